@@ -1,0 +1,2 @@
+//! The `durer` command.
+fn main() {}

@@ -1,0 +1,125 @@
+//! What can be wrong with bytes.
+
+use thiserror::Error;
+
+/// Where in a file something is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Place {
+    /// The file as a whole.
+    #[default]
+    Whole,
+    /// A line of a text file, counted from 1, and a column, counted from 1 in bytes (0: unknown).
+    Line(u64, u64),
+    /// A byte offset, counted from 0.
+    Byte(u64),
+    /// A path inside a structured file, e.g. `meshes[0].primitives[1].indices`.
+    Path(String),
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::Line(line, 0) => write!(f, "line {line}: "),
+            Self::Line(line, column) => write!(f, "line {line}, column {column}: "),
+            Self::Byte(offset) => write!(f, "byte {offset}: "),
+            Self::Path(path) => write!(f, "{path}: "),
+        }
+    }
+}
+
+/// Why bytes could not be read or written. The caller puts the file's name before the message.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The bytes are not what their format demands.
+    #[error("{place}{message}")]
+    Decode {
+        /// Where.
+        place: Place,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// The file needs something that durer does not have, e.g. a required glTF extension.
+    #[error("{place}{what} is not supported{}", if hint.is_empty() { String::new() } else { format!("; {hint}") })]
+    Unsupported {
+        /// Where.
+        place: Place,
+        /// What is missing.
+        what: String,
+        /// What to do instead, or empty.
+        hint: String,
+    },
+    /// A stated limit would be exceeded.
+    #[error("{place}{what} of {value} is above the limit of {limit}")]
+    Limit {
+        /// Where.
+        place: Place,
+        /// What is limited, e.g. `"decoded size"`.
+        what: &'static str,
+        /// What the file asks for.
+        value: u64,
+        /// The limit in force.
+        limit: u64,
+    },
+    /// Something that the file refers to could not be had.
+    #[error("{place}cannot read `{uri}`: {message}")]
+    Resource {
+        /// Where the reference stands.
+        place: Place,
+        /// What is referred to, as the file writes it.
+        uri: String,
+        /// Why not.
+        message: String,
+    },
+    /// The format is not known, by content or by name.
+    #[error("not a known format: {0}")]
+    Unknown(String),
+    /// The library refused the value.
+    #[error(transparent)]
+    Library(#[from] durer::Error),
+    /// Reading or writing failed.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+impl Error {
+    /// A decode error at a line and column, both counted from 1 (column 0: unknown).
+    pub fn line(line: u64, column: u64, message: impl Into<String>) -> Self {
+        Self::Decode { place: Place::Line(line, column), message: message.into() }
+    }
+
+    /// A decode error at a byte offset.
+    pub fn byte(offset: u64, message: impl Into<String>) -> Self {
+        Self::Decode { place: Place::Byte(offset), message: message.into() }
+    }
+
+    /// A decode error at a path inside a structured file.
+    pub fn path(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Decode { place: Place::Path(path.into()), message: message.into() }
+    }
+
+    /// A decode error of the file as a whole.
+    pub fn whole(message: impl Into<String>) -> Self {
+        Self::Decode { place: Place::Whole, message: message.into() }
+    }
+}
+
+/// Something that was repaired or left out; the result is usable all the same.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// Where.
+    pub place: Place,
+    /// What was wrong and what was done about it.
+    pub message: String,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}{}", self.place, self.message)
+    }
+}
+
+/// The crate's result.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -1,0 +1,12 @@
+//! File formats of durer: bytes to scenes and shapes, pictures and drawings to bytes.
+//!
+//! Nothing here opens a file: readers take bytes and a [`Resources`] that finds what a file refers
+//! to, writers take a `Write`. So the library and its tests need no files.
+
+#![forbid(unsafe_code)]
+
+mod error;
+mod model;
+
+pub use error::{Error, Place, Result, Warning};
+pub use model::{Limits, Model, NoResources, Pose, ReadOptions, Resources};

@@ -1,0 +1,95 @@
+//! What all readers of models share.
+
+use crate::{Place, Warning};
+use durer::scene::Scene;
+
+/// Finds what a file refers to: buffers, images, material libraries.
+///
+/// The command's implementation looks only below the model's own folder and never at a network
+/// address; data URIs never get here.
+pub trait Resources {
+    /// The bytes behind a relative, already percent-decoded path with `/` as separator, at most
+    /// `limit` of them.
+    ///
+    /// # Errors
+    /// A sentence that says why not, for the reader to put into [`crate::Error::Resource`].
+    fn read(&self, path: &str, limit: u64) -> std::result::Result<Vec<u8>, String>;
+}
+
+/// Finds nothing: for files that must stand alone.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoResources;
+
+impl Resources for NoResources {
+    fn read(&self, _path: &str, _limit: u64) -> std::result::Result<Vec<u8>, String> {
+        Err("this source has no folder to look in".to_owned())
+    }
+}
+
+/// What readers refuse to exceed; each refusal is [`crate::Error::Limit`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Triangles, lines and points over all meshes, before instancing.
+    pub primitives: u64,
+    /// Instances of meshes.
+    pub instances: u64,
+    /// Bytes of all decoded buffers and images together, also after decompression.
+    pub decoded_bytes: u64,
+    /// Width and height of one image, in pixels.
+    pub image_side: u32,
+    /// Depth of a tree of nodes or components.
+    pub depth: u32,
+}
+
+impl Default for Limits {
+    /// 100 million primitives, a million instances, 4 GiB decoded, images of 16,384², depth 512.
+    fn default() -> Self {
+        Self {
+            primitives: 100_000_000,
+            instances: 1_000_000,
+            decoded_bytes: 4 << 30,
+            image_side: 16_384,
+            depth: 512,
+        }
+    }
+}
+
+/// Which moment of an animation a model is posed at.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Pose {
+    /// Name or number of the animation; `None` = the first, where there is a time.
+    pub animation: Option<String>,
+    /// Seconds from its start; clamped to its end.
+    pub time: f64,
+}
+
+/// How a model is read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ReadOptions {
+    /// What is refused.
+    pub limits: Limits,
+    /// The moment to pose at; `None` = the rest pose of the file.
+    pub pose: Option<Pose>,
+}
+
+/// A model as read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Model {
+    /// What can be drawn. Passes [`Scene::check`].
+    pub scene: Scene,
+    /// The format, e.g. `"glTF 2.0 binary"` or `"STL, ascii"`.
+    pub format: String,
+    /// Extensions that the file uses, by name.
+    pub extensions: Vec<String>,
+    /// Names of the animations.
+    pub animations: Vec<String>,
+    /// What was repaired or left out.
+    pub warnings: Vec<Warning>,
+}
+
+impl Model {
+    /// Adds a warning.
+    pub fn warn(&mut self, place: Place, message: impl Into<String>) {
+        self.warnings.push(Warning { place, message: message.into() });
+    }
+}

@@ -1,0 +1,1 @@
+//! Line clipping: one file per algorithm.

@@ -1,0 +1,6 @@
+//! Clipping in two dimensions and in homogeneous coordinates.
+
+pub mod line;
+pub mod outcode;
+pub mod polygon;
+pub mod volume;

@@ -1,0 +1,1 @@
+//! Polygon clipping: one file per algorithm.

@@ -1,0 +1,1 @@
+//! Clipping in homogeneous coordinates against −w ≤ x, y, z ≤ w.

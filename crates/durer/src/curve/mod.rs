@@ -1,0 +1,1 @@
+//! Bézier, B-spline and NURBS curves, and their flattening into lines.

@@ -1,0 +1,1 @@
+//! Steps of algorithms as captions and small drawings.

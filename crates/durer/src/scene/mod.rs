@@ -1,0 +1,129 @@
+//! What a model file becomes: meshes placed in a right-handed world, with materials, lights, cameras.
+
+mod bounds;
+mod camera;
+mod light;
+mod material;
+mod mesh;
+mod texture;
+
+pub use bounds::{Aabb, BoundingSphere};
+pub use camera::{Camera, NamedCamera, Projection};
+pub use light::{Light, LightKind};
+pub use material::{AlphaMode, Material, ShadingModel, TextureRef};
+pub use mesh::{Mesh, Part, Topology};
+pub use texture::{Filter, Image, MipFilter, Sampler, Texture, Wrap};
+
+use crate::math::{DMat4, DVec3};
+use crate::{Error, Result};
+
+/// Which axis of the file points up in the model's own world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum UpAxis {
+    /// y up: glTF, most OBJ and PLY files.
+    #[default]
+    Y,
+    /// z up: most STL and 3MF files.
+    Z,
+}
+
+/// A mesh placed in the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Instance {
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// Takes the mesh's coordinates to the world's. Affine; may mirror.
+    pub world_from_mesh: DMat4,
+    /// The name of the node or object, empty where the file has none.
+    pub name: String,
+}
+
+/// Everything that can be drawn, posed at one moment. Instances are drawn in their order.
+///
+/// The item index of a triangle is its place in the sequence of all triangles of all instances.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Scene {
+    /// Shared geometry.
+    pub meshes: Vec<Mesh>,
+    /// Meshes in their places; item order.
+    pub instances: Vec<Instance>,
+    /// What the parts of the meshes are made of.
+    pub materials: Vec<Material>,
+    /// Images with samplers.
+    pub textures: Vec<Texture>,
+    /// Decoded images, shared by textures.
+    pub images: Vec<Image>,
+    /// The file's own lights, in world space; empty where it has none.
+    pub lights: Vec<Light>,
+    /// The file's own cameras, in world space.
+    pub cameras: Vec<NamedCamera>,
+    /// Which axis is up.
+    pub up_axis: UpAxis,
+}
+
+impl Scene {
+    /// The number of triangles over all instances: one more than the largest item index.
+    pub fn triangle_count(&self) -> u64 {
+        let of = |i: &Instance| self.meshes.get(i.mesh).map_or(0, |m| m.triangle_count() as u64);
+        self.instances.iter().map(of).sum()
+    }
+
+    /// The box around all finite vertices that some instance uses, in world space.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let mut bounds: Option<Aabb> = None;
+        for instance in &self.instances {
+            let Some(mesh) = self.meshes.get(instance.mesh) else { continue };
+            let points = mesh
+                .positions
+                .iter()
+                .map(|p| instance.world_from_mesh.transform_point3(p.as_dvec3()));
+            if let Some(b) = Aabb::around(points) {
+                bounds = Some(bounds.map_or(b, |a| a.union(&b)));
+            }
+        }
+        bounds
+    }
+
+    /// A sphere around all finite vertices in world space, centred on the box's centre: tighter than
+    /// the box's own sphere, and found in one more pass.
+    pub fn bounding_sphere(&self) -> Option<BoundingSphere> {
+        let center: DVec3 = self.bounds()?.center();
+        let mut radius2: f64 = 0.0;
+        for instance in &self.instances {
+            let Some(mesh) = self.meshes.get(instance.mesh) else { continue };
+            for p in &mesh.positions {
+                let d = instance.world_from_mesh.transform_point3(p.as_dvec3()) - center;
+                if d.is_finite() {
+                    radius2 = radius2.max(d.length_squared());
+                }
+            }
+        }
+        Some(BoundingSphere { center, radius: radius2.sqrt() })
+    }
+
+    /// Checks that every index refers to something that exists.
+    ///
+    /// # Errors
+    /// [`Error::Dangling`] or [`Error::Parameter`] for the first thing that is wrong.
+    pub fn check(&self) -> Result<()> {
+        let exists = |what, index: usize, count: usize| {
+            if index < count { Ok(()) } else { Err(Error::Dangling { what, index, count }) }
+        };
+        for instance in &self.instances {
+            exists("mesh", instance.mesh, self.meshes.len())?;
+        }
+        for mesh in &self.meshes {
+            mesh.check()?;
+            for material in mesh.parts.iter().filter_map(|p| p.material) {
+                exists("material", material, self.materials.len())?;
+            }
+        }
+        for texture in self.materials.iter().flat_map(Material::textures) {
+            exists("texture", texture.texture, self.textures.len())?;
+        }
+        for texture in &self.textures {
+            exists("image", texture.image, self.images.len())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,74 @@
+//! Images and how they are sampled.
+
+/// A decoded image: 8-bit RGBA, straight alpha, row 0 on top.
+///
+/// Whether its colours are sRGB or linear is decided by the material slot that uses it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Image {
+    /// Name or URI in the file.
+    pub name: String,
+    /// Pixels; `data` of zero size stands for an image that could not be read and samples white.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width · height` pixels, row after row.
+    pub data: Vec<[u8; 4]>,
+}
+
+/// How a texel is chosen from one image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// The texel whose area holds the point.
+    Nearest,
+    /// The four texels around the point, weighted bilinearly.
+    #[default]
+    Linear,
+}
+
+/// How the level of the mip chain is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum MipFilter {
+    /// Always the full image.
+    None,
+    /// The nearest level.
+    Nearest,
+    /// The two nearest levels, weighted.
+    #[default]
+    Linear,
+}
+
+/// What lies outside 0…1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// The image, every second time mirrored.
+    MirroredRepeat,
+    /// The border texel.
+    ClampToEdge,
+}
+
+/// How a texture is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Sampler {
+    /// Where a texel is larger than a pixel.
+    pub mag: Filter,
+    /// Where a texel is smaller than a pixel.
+    pub min: Filter,
+    /// The choice of level where a texel is smaller than a pixel.
+    pub mip: MipFilter,
+    /// Along u.
+    pub wrap_u: Wrap,
+    /// Along v.
+    pub wrap_v: Wrap,
+}
+
+/// An image with a sampler.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Texture {
+    /// Index into [`super::Scene::images`].
+    pub image: usize,
+    /// How it is sampled.
+    pub sampler: Sampler,
+}

@@ -1,0 +1,1 @@
+//! What cannot be seen: boxes and spheres outside a volume, faces turned away.

@@ -1,0 +1,5 @@
+//! From the world to the screen: windows and viewports, projection, culling.
+
+pub mod cull;
+pub mod projection;
+pub mod window;

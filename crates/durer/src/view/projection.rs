@@ -1,0 +1,1 @@
+//! Cameras chosen by name, by angles, and fitted to a scene.

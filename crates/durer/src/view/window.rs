@@ -1,0 +1,1 @@
+//! Windows in the world and viewports on the screen.

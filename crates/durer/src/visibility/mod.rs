@@ -1,0 +1,3 @@
+//! Which surfaces and lines can be seen.
+
+pub mod surface;

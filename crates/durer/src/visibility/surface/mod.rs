@@ -1,0 +1,3 @@
+//! Visible surfaces.
+
+pub mod z_buffer;

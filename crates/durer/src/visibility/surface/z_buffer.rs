@@ -1,0 +1,1 @@
+//! The z-buffer: the production path.

@@ -1,0 +1,81 @@
+//! Invariants of the source itself: dependencies run one way, no file is opened, nothing is printed.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn sources(dir: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(dir).expect("source folder") {
+        let path = entry.expect("entry").path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+fn library() -> (PathBuf, Vec<PathBuf>) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut found = Vec::new();
+    sources(&root, &mut found);
+    found.sort();
+    assert!(found.len() > 10, "sources not found under {}", root.display());
+    (root, found)
+}
+
+/// Code lines of a file: without comments, up to its test module.
+fn code(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("source");
+    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
+    text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn library_touches_no_file_and_prints_nothing() {
+    let (_, files) = library();
+    for path in files {
+        let code = code(&path);
+        for forbidden in [
+            "std::fs",
+            "std::net",
+            "std::process",
+            "std::env",
+            "println!",
+            "print!(",
+            "dbg!",
+            "todo!(",
+            "unimplemented!(",
+        ] {
+            assert!(!code.contains(forbidden), "{} uses {forbidden}", path.display());
+        }
+    }
+}
+
+#[test]
+fn dependencies_run_in_the_order_of_the_modules() {
+    let (root, files) = library();
+    let lib = fs::read_to_string(root.join("lib.rs")).expect("lib.rs");
+    let order: Vec<&str> = lib
+        .lines()
+        .filter_map(|l| l.strip_prefix("pub mod ").or_else(|| l.strip_prefix("mod ")))
+        .map(|l| l.trim_end_matches(';'))
+        .collect();
+    let rank = |module: &str| order.iter().position(|m| *m == module);
+    for path in files {
+        let relative = path.strip_prefix(&root).expect("below src");
+        let first = relative.components().next().expect("component").as_os_str();
+        let own = first.to_string_lossy().trim_end_matches(".rs").to_owned();
+        let Some(own_rank) = rank(&own) else { continue };
+        for piece in code(&path).split("crate::").skip(1) {
+            let name: String =
+                piece.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            if let Some(used) = rank(&name) {
+                assert!(
+                    used <= own_rank,
+                    "{}: `{own}` uses `{name}`, which comes later",
+                    relative.display()
+                );
+            }
+        }
+    }
+}
