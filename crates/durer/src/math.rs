@@ -211,6 +211,6 @@ mod tests {
         let tiny = f64::EPSILON;
         let (a, b) = (DVec2::new(12.0, 12.0), DVec2::new(24.0, 24.0));
         assert_eq!(orient2d(DVec2::splat(0.5), a, b), Orientation::Collinear);
-        assert_eq!(orient2d(DVec2::new(0.5, 0.5 + tiny), a, b), Orientation::Clockwise);
+        assert_eq!(orient2d(DVec2::new(0.5, 0.5 + tiny), a, b), Orientation::CounterClockwise);
     }
 }
