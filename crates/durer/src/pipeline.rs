@@ -3,17 +3,10 @@
 use crate::math::Vec4;
 use crate::scene::{Camera, Light, Scene, ShadingModel};
 use crate::target::Framebuffer;
+use crate::view::View;
+use crate::visibility::surface::z_buffer;
+pub use crate::visibility::surface::{Background, Cull, Samples};
 use crate::{Error, Result};
-
-/// Which faces are left out by the way they face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Cull {
-    /// All faces are drawn, from both sides.
-    #[default]
-    None,
-    /// Faces seen from behind are left out.
-    Back,
-}
 
 /// How intensities are interpolated and which formula lights a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,27 +31,6 @@ impl From<ShadingModel> for Shading {
             ShadingModel::Unlit => Self::Unlit,
         }
     }
-}
-
-/// Samples per pixel of the production path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Samples {
-    /// One, at the pixel's centre.
-    One,
-    /// Four, on a rotated grid.
-    #[default]
-    Four,
-    /// Sixteen, no two in a row or column of the 16 × 16 grid.
-    Sixteen,
-}
-
-/// What is behind everything; colours are linear RGBA with straight alpha.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Background {
-    /// One colour; alpha 0 makes it transparent.
-    Color(Vec4),
-    /// From the top row to the bottom row.
-    Gradient(Vec4, Vec4),
 }
 
 /// Where light comes from.
@@ -164,6 +136,28 @@ pub struct Report {
 pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Report)> {
     options.check()?;
     scene.check()?;
-    let framebuffer = Framebuffer::new(options.width, options.height);
-    Ok((framebuffer, Report { triangles_in: scene.triangle_count(), ..Report::default() }))
+    let view = View::new(options.camera, options.width, options.height)?;
+    let mut framebuffer = Framebuffer::new(options.width, options.height);
+    if options.depth {
+        framebuffer = framebuffer.with_depth();
+    }
+    if options.item {
+        framebuffer = framebuffer.with_items();
+    }
+    if options.normal {
+        framebuffer = framebuffer.with_normals();
+    }
+    let z =
+        z_buffer::Options { samples: options.samples, cull: options.cull, ..Default::default() };
+    let report = z_buffer::render(scene, &view, &z, &mut framebuffer)?;
+    let report = Report {
+        triangles_in: scene.triangle_count(),
+        non_finite: report.counts.non_finite,
+        clipped: report.counts.clipped,
+        culled: report.counts.culled,
+        drawn: report.counts.drawn,
+        geometry_seconds: report.geometry_seconds,
+        raster_seconds: report.raster_seconds,
+    };
+    Ok((framebuffer, report))
 }
