@@ -1,37 +1,15 @@
 //! The order of the stages; nothing else knows it.
 
 use crate::math::Vec4;
-use crate::scene::{Camera, Light, Scene, ShadingModel};
+use crate::scene::{Camera, Light, Scene};
+use crate::shade::PreparedLights;
+pub use crate::shade::Shading;
+use crate::simd::Level;
 use crate::target::Framebuffer;
 use crate::view::View;
 use crate::visibility::surface::z_buffer;
 pub use crate::visibility::surface::{Background, Cull, Samples};
 use crate::{Error, Result};
-
-/// How intensities are interpolated and which formula lights a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shading {
-    /// One intensity per face (Bouknight 1970).
-    Flat,
-    /// Intensities at the vertices, interpolated (Gouraud 1971).
-    Gouraud,
-    /// Normals interpolated, one intensity per pixel (Phong 1975), Blinn's halfway form.
-    Phong,
-    /// glTF's metallic-roughness formula per pixel.
-    MetallicRoughness,
-    /// The base colour as it is.
-    Unlit,
-}
-
-impl From<ShadingModel> for Shading {
-    fn from(model: ShadingModel) -> Self {
-        match model {
-            ShadingModel::MetallicRoughness => Self::MetallicRoughness,
-            ShadingModel::Phong => Self::Phong,
-            ShadingModel::Unlit => Self::Unlit,
-        }
-    }
-}
 
 /// Where light comes from.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -45,7 +23,7 @@ pub enum Lighting {
 }
 
 /// Everything about a picture but the scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct RenderOptions {
     /// Width in pixels, at least 1.
     pub width: u32,
@@ -71,6 +49,8 @@ pub struct RenderOptions {
     pub normal: bool,
     /// Refuse pictures of more pixels than this.
     pub max_pixels: u64,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
 }
 
 impl RenderOptions {
@@ -89,6 +69,7 @@ impl RenderOptions {
             item: false,
             normal: false,
             max_pixels: 16_384 * 16_384,
+            level: Level::new(),
         }
     }
 
@@ -147,9 +128,18 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
     if options.normal {
         framebuffer = framebuffer.with_normals();
     }
-    let z =
-        z_buffer::Options { samples: options.samples, cull: options.cull, ..Default::default() };
-    let report = z_buffer::render(scene, &view, &z, &mut framebuffer)?;
+    let lights = match &options.lighting {
+        Lighting::Auto => PreparedLights::of(scene, &options.camera),
+        Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
+    };
+    let z_options = z_buffer::Options {
+        samples: options.samples,
+        cull: options.cull,
+        shading: options.shading,
+        background: options.background,
+        level: options.level,
+    };
+    let report = z_buffer::render(scene, &view, &lights, &z_options, &mut framebuffer)?;
     let report = Report {
         triangles_in: scene.triangle_count(),
         non_finite: report.counts.non_finite,

@@ -4,8 +4,8 @@
 //! (M. Olano, T. Greer, *Triangle scan conversion using 2D homogeneous coordinates*, 1997), so
 //! triangles that were cut at the near plane need no special care.
 
-use crate::math::{DMat4, DVec3, Mat3, Vec3};
-use crate::scene::{Scene, Topology};
+use crate::math::{DMat4, DVec3, Mat3, Vec3, Vec4};
+use crate::scene::{Mesh, Scene, Topology};
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
@@ -18,6 +18,7 @@ struct RunTransform {
     screen_from_mesh: DMat4,
     eye_from_mesh: DMat4,
     normal_from_mesh: Mat3,
+    world_from_mesh: Mat3,
     /// −1 where the instance mirrors, so that fronts stay fronts.
     handedness: f32,
 }
@@ -37,8 +38,8 @@ pub struct VisibleTriangle {
     pub normals: [Vec3; 3],
     /// Unit normal of the face's front, world axes.
     pub face_normal: Vec3,
-    /// Whether the front is turned to the eye.
-    pub front_facing: bool,
+    /// Directions from mesh to world, for tangents.
+    world_from_mesh: Mat3,
     /// The pixel from whose centre x and y are counted.
     origin: [i32; 2],
     /// Edge function i at (x, y) is `edges[i][0] + edges[i][1]·x + edges[i][2]·y`.
@@ -59,6 +60,32 @@ impl VisibleTriangle {
         let (a, b, c) = (edge(&self.edges[0]), edge(&self.edges[1]), edge(&self.edges[2]));
         let inverse = 1.0 / (a + b + c).max(f32::MIN_POSITIVE);
         [a * inverse, b * inverse, c * inverse]
+    }
+
+    /// Coordinates at the centres of the pixels to the right and below, also outside the triangle.
+    pub fn weights_beside(&self, x: i32, y: i32) -> (Weights, Weights) {
+        let at = |x: i32, y: i32| {
+            let (fx, fy) = ((x - self.origin[0]) as f32, (y - self.origin[1]) as f32);
+            let [a, b, c] = [0, 1, 2].map(|i| {
+                let e = &self.edges[i];
+                e[0] + (e[1] * fx + e[2] * fy)
+            });
+            let sum = a + b + c;
+            // Beyond the horizon there is no such point: the derivative is that of the border.
+            if sum > 0.0 { Some([a / sum, b / sum, c / sum]) } else { None }
+        };
+        let here = || self.weights(x, y, [0.0; 2]);
+        (at(x + 1, y).unwrap_or_else(here), at(x, y + 1).unwrap_or_else(here))
+    }
+
+    /// The interpolated tangent, world axes, where the mesh has tangents.
+    pub fn tangent(&self, mesh: &Mesh, w: Weights) -> Option<Vec4> {
+        let [a, b, c] = match mesh.tangents.as_slice() {
+            [] => return None,
+            tangents => self.corners.map(|c| tangents[c as usize]),
+        };
+        let tangent = a * w[0] + b * w[1] + c * w[2];
+        Some((self.world_from_mesh * tangent.truncate()).normalize_or_zero().extend(a.w))
     }
 
     /// [`Self::weights`] of eight pixels in a row, without shift.
@@ -191,18 +218,9 @@ impl<'a> Triangles<'a> {
             positions: at_eye.map(DVec3::as_vec3),
             normals,
             face_normal,
-            front_facing: self.front_facing(face, a),
+            world_from_mesh: t.world_from_mesh,
             origin,
             edges,
-        }
-    }
-
-    fn front_facing(&self, face: DVec3, at_eye: DVec3) -> bool {
-        match self.view.camera().projection {
-            crate::scene::Projection::Perspective { .. } => face.dot(at_eye) < 0.0,
-            crate::scene::Projection::Orthographic { .. } => {
-                face.dot(self.view.camera().axes()[2]) > 0.0
-            }
         }
     }
 }
@@ -227,6 +245,7 @@ impl RunTransform {
             screen_from_mesh: view.screen_from_world() * world_from_mesh,
             eye_from_mesh: eye_from_world * world_from_mesh,
             normal_from_mesh: (cofactors * scale).as_mat3(),
+            world_from_mesh: linear.as_mat3(),
             handedness: sign as f32,
         }
     }

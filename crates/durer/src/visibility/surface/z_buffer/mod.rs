@@ -11,19 +11,25 @@
 
 mod attributes;
 mod bins;
+mod resolve;
+mod surface;
 mod tile;
 
 use crate::info::{Class, Info};
-use crate::raster::fixed::SUBPIXELS;
+use crate::math::Vec4;
 use crate::scene::Scene;
+use crate::shade::color::{encode_rgba8, unpremultiply};
+use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
-use crate::visibility::surface::setup::{Counts, Coverage, Filter, Run, runs};
-use crate::visibility::surface::{Cull, Samples};
+use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
+use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
-use tile::{AllPass, SamplePlane, TILE};
+use resolve::{Fragments, MaskTest, TileColors, background_rows};
+use surface::{Lighting, Lit};
+use tile::{AllPass, FragmentTest, SamplePlane, TILE};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -44,14 +50,24 @@ pub struct Options {
     pub samples: Samples,
     /// Which faces are left out.
     pub cull: Cull,
+    /// `None` = by material.
+    pub shading: Option<Shading>,
+    /// What is behind everything.
+    pub background: Background,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
 }
 
 impl Default for Options {
-    /// Four samples, nothing culled, the machine's best level.
+    /// Four samples on white, nothing culled, the machine's best level.
     fn default() -> Self {
-        Self { samples: Samples::Four, cull: Cull::None, level: Level::new() }
+        Self {
+            samples: Samples::Four,
+            cull: Cull::None,
+            shading: None,
+            background: Background::Color(Vec4::ONE),
+            level: Level::new(),
+        }
     }
 }
 
@@ -73,6 +89,7 @@ pub struct Report {
 pub fn render(
     scene: &Scene,
     view: &View,
+    lights: &PreparedLights,
     options: &Options,
     framebuffer: &mut Framebuffer,
 ) -> crate::Result<Report> {
@@ -91,7 +108,11 @@ pub fn render(
     report.geometry_seconds = start.elapsed().as_secs_f64();
 
     let start = std::time::Instant::now();
-    let frame = Frame { scene, view, options, runs: &runs, bins: &bins };
+    let materials = PreparedMaterials::new(scene);
+    let lighting =
+        Lighting { scene, view, runs: &runs, materials: &materials, lights, shading: options.shading };
+    let triangle_count = scene.triangle_count() as u32;
+    let frame = Frame { view, options, lighting, bins: &bins, triangle_count };
     crate::parallel::map(bands(framebuffer), |band| frame.render_band(band));
     report.raster_seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -130,18 +151,36 @@ fn bands(framebuffer: &mut Framebuffer) -> Vec<Band<'_>> {
 
 /// What all tiles share.
 struct Frame<'a> {
-    scene: &'a Scene,
     view: &'a View,
     options: &'a Options,
-    runs: &'a [Run],
+    lighting: Lighting<'a>,
     bins: &'a [Bins],
+    /// Items from here on are lines and points, which the item plane does not show.
+    triangle_count: u32,
+}
+
+/// One thread's buffers.
+struct Scratch<'a> {
+    planes: Vec<SamplePlane>,
+    /// One sample at the pixel's centre, for depth, item and normal.
+    center: Vec<SamplePlane>,
+    fragments: Fragments,
+    colors: TileColors,
+    lit: Lit<'a>,
 }
 
 impl Frame<'_> {
     fn render_band(&self, mut band: Band<'_>) {
         let grid = TileGrid::new(self.view.width(), self.view.height());
-        let mut planes: Vec<SamplePlane> =
-            self.options.samples.offsets().iter().map(|&o| SamplePlane::new(o)).collect();
+        let offsets = self.options.samples.offsets();
+        let wants_center = band.depth.is_some() || band.item.is_some() || band.normal.is_some();
+        let mut scratch = Scratch {
+            planes: offsets.iter().map(|&o| SamplePlane::new(o)).collect(),
+            center: wants_center.then(|| SamplePlane::new([0; 2])).into_iter().collect(),
+            fragments: Fragments::new(offsets),
+            colors: TileColors::new(),
+            lit: Lit::new(self.lighting),
+        };
         for column in 0..grid.columns {
             let tile = [column * TILE, band.row * TILE];
             let size = [
@@ -149,41 +188,88 @@ impl Frame<'_> {
                 TILE.min(self.view.height() as i32 - tile[1]),
             ];
             let index = (band.row * grid.columns + column) as u32;
-            self.render_tile(&mut band, &mut planes, tile, size, index);
+            self.color_tile(&mut band, &mut scratch, [tile, size], index);
+            if wants_center {
+                self.center_tile(&mut band, &mut scratch, [tile, size], index);
+            }
         }
     }
 
-    fn render_tile(
+    /// Rasterizes the tile's triangles of one coverage.
+    fn rasterize<T: FragmentTest>(
+        &self,
+        coverage: Coverage,
+        planes: &mut [SamplePlane],
+        area: [[i32; 2]; 2],
+        index: u32,
+        mut test: Option<&mut T>,
+    ) {
+        for bins in self.bins.iter().filter(|b| b.coverage == coverage) {
+            let triangles = bins.of_tile(index);
+            let test = test.as_deref_mut();
+            dispatch!(self.options.level, simd =>
+                tile::rasterize(simd, planes, area, triangles, test));
+        }
+    }
+
+    fn color_tile(
         &self,
         band: &mut Band<'_>,
-        planes: &mut [SamplePlane],
-        tile: [i32; 2],
-        size: [i32; 2],
+        scratch: &mut Scratch<'_>,
+        area: [[i32; 2]; 2],
         index: u32,
     ) {
+        let [tile, size] = area;
+        let Scratch { planes, fragments, colors, lit, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
-        for bins in self.bins.iter().filter(|b| b.coverage == Coverage::Opaque) {
-            let triangles = bins.of_tile(index);
-            dispatch!(self.options.level, simd => tile::rasterize(
-                simd, planes, [tile, size], triangles, None::<&mut AllPass>
-            ));
+        self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
+        let mut mask = MaskTest { lit, tile };
+        self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
+        fragments.clear(tile);
+        self.rasterize(Coverage::Blended, planes, area, index, Some(fragments));
+        let background = background_rows(self.options.background, self.view.height());
+        dispatch!(self.options.level, simd =>
+            colors.resolve(simd, planes, fragments, lit, &background, tile, size));
+        for y in 0..size[1] {
+            let start = y as usize * band.width + tile[0] as usize;
+            let out = &mut band.color[start..start + size[0] as usize];
+            for (out, color) in out.iter_mut().zip(colors.row(y)) {
+                *out = encode_rgba8(if color.w < 1.0 { unpremultiply(*color) } else { *color });
+            }
         }
-        let _ = (self.scene, self.runs);
-        for y in 0..size[1] as usize {
-            let row = y * band.width + tile[0] as usize;
-            for x in 0..size[0] as usize {
-                let item = planes[0].items()[y * TILE as usize + x];
-                if item != NO_ITEM {
-                    let h = item.wrapping_mul(0x9e37_79b9);
-                    band.color[row + x] = [(h >> 8) as u8, (h >> 16) as u8, (h >> 24) as u8, 255];
-                }
-                if let Some(plane) = &mut band.item {
-                    plane[row + x] = item;
-                }
-                if let Some(plane) = &mut band.depth {
-                    plane[row + x] = planes[0].depth(y * TILE as usize + x);
-                }
-                let _ = (&mut band.normal, SUBPIXELS);
+    }
+
+    /// Depth, item and normal: one sample at the centre, where blended surfaces count as opaque.
+    fn center_tile(
+        &self,
+        band: &mut Band<'_>,
+        scratch: &mut Scratch<'_>,
+        area: [[i32; 2]; 2],
+        index: u32,
+    ) {
+        let [tile, size] = area;
+        let Scratch { center, lit, .. } = scratch;
+        center.iter_mut().for_each(SamplePlane::clear);
+        for coverage in [Coverage::Opaque, Coverage::Blended] {
+            self.rasterize(coverage, center, area, index, None::<&mut AllPass>);
+        }
+        let mut mask = MaskTest { lit, tile };
+        self.rasterize(Coverage::Masked, center, area, index, Some(&mut mask));
+        let plane = &center[0];
+        for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
+            let from = (y * TILE + x) as usize;
+            let to = y as usize * band.width + (tile[0] + x) as usize;
+            let item = plane.items()[from];
+            if let Some(depth) = &mut band.depth {
+                depth[to] = plane.depth(from);
+            }
+            if let Some(items) = &mut band.item {
+                items[to] = if item < self.triangle_count { item } else { NO_ITEM };
+            }
+            if let Some(normal) = &mut band.normal
+                && item != NO_ITEM
+            {
+                normal[to] = lit.normal(item, tile[0] + x, tile[1] + y).to_array();
             }
         }
     }

@@ -73,7 +73,7 @@ struct TileTriangle {
     /// Change of the edge functions per pixel to the right and downwards.
     step_x: [i64; 3],
     step_y: [i64; 3],
-    /// Edge functions at the sample of tile pixel (0, 0), divided by 256 and rounded down.
+    /// Edge functions at the sample of tile pixel (0, 0).
     edge: [i64; 3],
     /// Depth at the sample of tile pixel (0, 0) is `depth + depth_dx · from[0] + depth_dy · from[1]`.
     from: [f32; 2],
@@ -83,27 +83,41 @@ struct TileTriangle {
 }
 
 impl TileTriangle {
+    /// At the centre of the pixels.
     #[inline(always)]
-    fn new(t: &ScreenTriangle, tile: [i32; 2], offset: SampleOffset, sample: usize) -> Self {
-        let sx = i64::from(tile[0] * SUBPIXELS + HALF_PIXEL + offset[0]);
-        let sy = i64::from(tile[1] * SUBPIXELS + HALF_PIXEL + offset[1]);
-        let mut step_x = [0; 3];
-        let mut step_y = [0; 3];
-        let mut edge = [0; 3];
+    fn new(t: &ScreenTriangle, tile: [i32; 2]) -> Self {
+        let sx = i64::from(tile[0] * SUBPIXELS + HALF_PIXEL);
+        let sy = i64::from(tile[1] * SUBPIXELS + HALF_PIXEL);
+        let (mut step_x, mut step_y, mut edge) = ([0; 3], [0; 3], [0; 3]);
         for i in 0..3 {
             let j = (i + 1) % 3;
             let (dx, dy) = (i64::from(t.x[j] - t.x[i]), i64::from(t.y[j] - t.y[i]));
             // Pixels on a top or left edge belong to the triangle, on others they do not.
             let top_left = dy < 0 || (dy == 0 && dx > 0);
             let value = dx * (sy - i64::from(t.y[i])) - dy * (sx - i64::from(t.x[i]));
-            edge[i] = (value - i64::from(!top_left)) >> SUBPIXEL_BITS;
+            edge[i] = value - i64::from(!top_left);
             step_x[i] = -dy;
             step_y[i] = dx;
         }
         let origin = t.origin();
-        let from_x = (tile[0] - origin[0]) as f32 + offset[0] as f32 / 256.0;
-        let from_y = (tile[1] - origin[1]) as f32 + offset[1] as f32 / 256.0;
-        Self { step_x, step_y, edge, from: [from_x, from_y], sample, triangle: *t }
+        let from = [(tile[0] - origin[0]) as f32, (tile[1] - origin[1]) as f32];
+        Self { step_x, step_y, edge, from, sample: 0, triangle: *t }
+    }
+
+    /// At a sample of the pixels, with edge functions divided by 256 and rounded down: their signs
+    /// stay, for whole pixels change them by multiples of 256.
+    #[inline(always)]
+    fn at_sample(&self, offset: SampleOffset, sample: usize) -> Self {
+        let mut moved = *self;
+        let (ox, oy) = (i64::from(offset[0]), i64::from(offset[1]));
+        for i in 0..3 {
+            let edge = self.edge[i] + self.step_x[i] * ox + self.step_y[i] * oy;
+            moved.edge[i] = edge >> SUBPIXEL_BITS;
+        }
+        moved.from[0] += offset[0] as f32 / SUBPIXELS as f32;
+        moved.from[1] += offset[1] as f32 / SUBPIXELS as f32;
+        moved.sample = sample;
+        moved
     }
 
     /// The edge functions at a tile-local pixel.
@@ -158,8 +172,17 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
     mut test: Option<&mut T>,
 ) {
     for triangle in triangles {
+        let small = extent(&triangle.x) < SMALL_EXTENT && extent(&triangle.y) < SMALL_EXTENT;
+        let at_center = TileTriangle::new(triangle, tile);
         for (sample, plane) in planes.iter_mut().enumerate() {
-            rasterize_one(simd, plane, sample, [tile, size], triangle, &mut test);
+            let Some(bounds) = sample_bounds(triangle, tile, size, plane.offset) else { continue };
+            let t = at_center.at_sample(plane.offset, sample);
+            let [x0, y0, x1, y1] = bounds;
+            if small && x1 - x0 < SMALL && y1 - y0 < SMALL {
+                rasterize_box(simd, plane, &t, bounds, &mut test);
+            } else {
+                rasterize_blocks(simd, plane, &t, bounds, &mut test);
+            }
         }
     }
 }
@@ -171,28 +194,21 @@ const SMALL: i32 = 16;
 /// 2 · 2¹⁷ · (512 + 64) < 2²⁸.
 const SMALL_EXTENT: i32 = 512 * SUBPIXELS;
 
+/// Small triangles: all rows of their bounding box, eight pixels at a time.
 #[inline(always)]
-fn rasterize_one<S: Simd, T: FragmentTest>(
+fn rasterize_box<S: Simd, T: FragmentTest>(
     simd: S,
     plane: &mut SamplePlane,
-    sample: usize,
-    [tile, size]: [[i32; 2]; 2],
-    triangle: &ScreenTriangle,
+    t: &TileTriangle,
+    [x0, y0, x1, y1]: [i32; 4],
     test: &mut Option<&mut T>,
 ) {
-    let Some([x0, y0, x1, y1]) = sample_bounds(triangle, tile, size, plane.offset) else { return };
-    let t = TileTriangle::new(triangle, tile, plane.offset, sample);
-    let small = x1 - x0 < SMALL && y1 - y0 < SMALL;
-    if small && extent(&triangle.x) < SMALL_EXTENT && extent(&triangle.y) < SMALL_EXTENT {
-        let mut x = x0 & !7;
-        while x <= x1 {
-            let at = low_bits(t.edges_at(x, y0));
-            let edges = RowEdges::new(simd, at, low_bits(t.step_x), low_bits(t.step_y));
-            fill_rows(simd, plane, &t, edges, [x, y0, y1], test);
-            x += 8;
-        }
-    } else {
-        rasterize_blocks(simd, plane, &t, [x0 & !7, y0 & !7, x1, y1], test);
+    let mut x = x0 & !7;
+    while x <= x1 {
+        let at = low_bits(t.edges_at(x, y0));
+        let edges = RowEdges::new(simd, at, low_bits(t.step_x), low_bits(t.step_y));
+        fill_rows(simd, plane, t, edges, [x, y0, y1], test);
+        x += 8;
     }
 }
 
@@ -243,7 +259,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
         lowest[i] = 7 * (t.step_x[i].min(0) + t.step_y[i].min(0));
         highest[i] = 7 * (t.step_x[i].max(0) + t.step_y[i].max(0));
     }
-    let mut y = y0;
+    let (x0, mut y) = (x0 & !7, y0 & !7);
     while y <= y1 {
         let mut x = x0;
         while x <= x1 {
