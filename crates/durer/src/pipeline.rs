@@ -1,7 +1,8 @@
 //! The order of the stages; nothing else knows it.
 
 use crate::math::Vec4;
-use crate::scene::{Camera, Light, Scene, ShadingModel};
+use crate::scene::{Camera, Light, Scene};
+pub use crate::shade::Shading;
 use crate::target::Framebuffer;
 use crate::{Error, Result};
 
@@ -13,31 +14,6 @@ pub enum Cull {
     None,
     /// Faces seen from behind are left out.
     Back,
-}
-
-/// How intensities are interpolated and which formula lights a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shading {
-    /// One intensity per face (Bouknight 1970).
-    Flat,
-    /// Intensities at the vertices, interpolated (Gouraud 1971).
-    Gouraud,
-    /// Normals interpolated, one intensity per pixel (Phong 1975), Blinn's halfway form.
-    Phong,
-    /// glTF's metallic-roughness formula per pixel.
-    MetallicRoughness,
-    /// The base colour as it is.
-    Unlit,
-}
-
-impl From<ShadingModel> for Shading {
-    fn from(model: ShadingModel) -> Self {
-        match model {
-            ShadingModel::MetallicRoughness => Self::MetallicRoughness,
-            ShadingModel::Phong => Self::Phong,
-            ShadingModel::Unlit => Self::Unlit,
-        }
-    }
 }
 
 /// Samples per pixel of the production path.
