@@ -109,8 +109,14 @@ pub fn render(
 
     let start = std::time::Instant::now();
     let materials = PreparedMaterials::new(scene);
-    let lighting =
-        Lighting { scene, view, runs: &runs, materials: &materials, lights, shading: options.shading };
+    let lighting = Lighting {
+        scene,
+        view,
+        runs: &runs,
+        materials: &materials,
+        lights,
+        shading: options.shading,
+    };
     let triangle_count = scene.triangle_count() as u32;
     let frame = Frame { view, options, lighting, bins: &bins, triangle_count };
     crate::parallel::map(bands(framebuffer), |band| frame.render_band(band));

@@ -56,10 +56,7 @@ impl Fragments {
             same
         });
         self.list.sort_by(|a, b| {
-            a.pixel
-                .cmp(&b.pixel)
-                .then(b.depth.total_cmp(&a.depth))
-                .then(b.item.cmp(&a.item))
+            a.pixel.cmp(&b.pixel).then(b.depth.total_cmp(&a.depth)).then(b.item.cmp(&a.item))
         });
     }
 }
