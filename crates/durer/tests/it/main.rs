@@ -1,5 +1,7 @@
 //! The one test binary of the library.
 
+mod clip_place;
+mod clip_volume;
 mod raster_interpolate;
 mod raster_triangle;
 mod tidy;
