@@ -1,5 +1,10 @@
 //! The one test binary of the library.
 
+mod clip_place;
+mod clip_volume;
 mod conformance_visible_surface;
 mod data;
+mod raster_interpolate;
+mod raster_triangle;
 mod tidy;
+mod view_window;
