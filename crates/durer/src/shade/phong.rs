@@ -142,7 +142,7 @@ pub(super) fn from_metallic_roughness(base: Vec3, metallic: f32, roughness: f32)
     let shininess = Shininess::new((2.0 / alpha2 - 2.0).clamp(1.0, LARGEST_WHOLE).round());
     let peak = (1.0 / (4.0 * alpha2)).min(8.0);
     let specular = (f0 * peak).min(Vec3::splat(0.6) * (f0 / f0.max_element().max(1e-6)));
-    Colors { diffuse: base * (1.0 - 0.6 * metallic), specular, shininess }
+    Colors { diffuse: base * (1.0 - 0.4 * metallic), specular, shininess }
 }
 
 #[cfg(test)]
