@@ -246,9 +246,9 @@ mod tests {
         for (color, alpha) in functions().zip(functions().skip(7).cycle()) {
             let blend = Blend::Functions { color, alpha, constant: CONSTANT.into() };
             let found = blend.apply(s, d).to_array();
-            for i in 0..4 {
+            for (i, found) in found.into_iter().enumerate() {
                 let expected = channel(if i < 3 { color } else { alpha }, i);
-                assert_eq!(found[i], expected, "{color:?} {alpha:?} channel {i}");
+                assert_eq!(found, expected, "{color:?} {alpha:?} channel {i}");
             }
         }
     }

@@ -152,8 +152,8 @@ impl PointLight {
 /// The light that shows the form of any model: key light from the upper left, weaker fill light from
 /// the right, rim light from behind, ambient light; all of them go with the camera.
 ///
-/// Made so that white matte surfaces stay just below white and no side is black: a grey of 0.8 lies
-/// between 0.17 and 0.8 all round.
+/// Made so that white matte surfaces stay below white and no side is black: on a matte sphere of
+/// reflectance 0.8 the 8-bit colours lie between 76 and 220.
 pub fn auto_lights(camera: &Camera) -> Vec<Light> {
     let [right, up, back] = camera.axes();
     let from = |x: f64, y: f64, z: f64, intensity: f32| {

@@ -52,7 +52,7 @@ impl Shininess {
     fn of_squared<L: Lane>(self, cos2: L) -> L {
         if self.whole == 0 {
             cos2.power_real(self.half)
-        } else if self.whole % 2 == 0 {
+        } else if self.whole.is_multiple_of(2) {
             cos2.power(self.whole / 2)
         } else {
             cos2.sqrt().power(self.whole)
