@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn minified_checker_is_mean_grey() {
-        let texel = |i: u32| if (i / 64 + i) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
+        let texel = |i: u32| if (i / 64 + i).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
         let data = (0..64 * 64).map(texel).collect();
         let image = Image { name: String::new(), width: 64, height: 64, data };
         for mip in [MipFilter::Linear, MipFilter::Nearest] {
