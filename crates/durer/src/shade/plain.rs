@@ -30,8 +30,8 @@ fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> Vec3Lane<f32x8<S>> {
 ///
 /// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
 /// looked at, alpha is 1. To be called inside a function with the token's target features
-/// (`fearless_simd::dispatch!` or `#[simd]`); it is always inlined. Cost: about 2 ns per sample and
-/// light.
+/// (`fearless_simd::dispatch!` or `#[simd]`); it is always inlined. Cost: O(lights), a tenth of
+/// [`super::shade`] per sample where eight lanes are native.
 #[inline(always)]
 pub fn shade_x8<S: Simd>(
     simd: S,
