@@ -3,4 +3,5 @@
 pub mod cull;
 pub mod layout;
 pub mod projection;
+pub mod topology;
 pub mod window;

@@ -5,4 +5,6 @@ mod clip_volume;
 mod raster_interpolate;
 mod raster_triangle;
 mod tidy;
+mod view_cull;
+mod view_projection;
 mod view_window;
