@@ -96,13 +96,16 @@ fn weld(positions: &[Vec3]) -> Vec<u32> {
     let bounds = Aabb::around(positions.iter().map(|p| p.as_dvec3()));
     let tolerance = bounds.map_or(0.0, |b| b.size().max_element() * WELD);
     let axes = [0, 1, 2].map(|axis| classes(positions, axis, tolerance));
-    let key = |i: u32| [&axes[0], &axes[1], &axes[2]].map(|class| class[i as usize]);
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by_key(|&i| (key(i), i));
+    // Class numbers and the vertex's own in one integer: sorting needs no look-up.
+    let packed = (0..positions.len()).map(|i| {
+        axes.iter().fold(0, |bits, class| bits << 32 | u128::from(class[i])) << 32 | i as u128
+    });
+    let mut order: Vec<u128> = packed.collect();
+    order.sort_unstable();
     let mut welded = vec![0; positions.len()];
-    for same in order.chunk_by(|&i, &j| key(i) == key(j)) {
-        for &i in same {
-            welded[i as usize] = same[0];
+    for same in order.chunk_by(|a, b| a >> 32 == b >> 32) {
+        for &vertex in same {
+            welded[vertex as u32 as usize] = same[0] as u32;
         }
     }
     welded
@@ -111,15 +114,14 @@ fn weld(positions: &[Vec3]) -> Vec<u32> {
 /// Numbers the distinct coordinates of one axis from the smallest; neighbours within the tolerance
 /// share a number.
 fn classes(positions: &[Vec3], axis: usize, tolerance: f64) -> Vec<u32> {
-    let at = |i: u32| positions[i as usize][axis];
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by(|&i, &j| at(i).total_cmp(&at(j)));
+    let mut order: Vec<(f32, u32)> = positions.iter().zip(0..).map(|(p, i)| (p[axis], i)).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut class = vec![0; positions.len()];
     let mut number = 0;
     for pair in order.windows(2) {
-        let gap = f64::from(at(pair[1])) - f64::from(at(pair[0]));
+        let gap = f64::from(pair[1].0) - f64::from(pair[0].0);
         number += u32::from(gap.is_nan() || gap > tolerance);
-        class[pair[1] as usize] = number;
+        class[pair[1].1 as usize] = number;
     }
     class
 }

@@ -92,6 +92,30 @@ proptest! {
     }
 }
 
+proptest! {
+    #[test]
+    fn fitted_points_lie_in_the_frame_and_touch_it(
+        points in prop::collection::vec([-5.0..5.0f64, -5.0..5.0, -5.0..5.0], 3..40),
+        d in directions(), o in options(),
+    ) {
+        let mut points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
+        let camera = fit_points(points.iter().copied().chain([DVec3::NAN]), &d, &o).unwrap();
+        let box_camera = fit_box(Aabb::around(points.iter().copied()).as_ref(), &d, &o).unwrap();
+        let frame = 1.0 - 2.0 * o.margin;
+        let outermost = |camera: &Camera| {
+            let seen = points.iter().map(|p| ndc(camera, o.aspect, *p));
+            seen.fold(0.0_f64, |m, p| m.max(p.x.abs()).max(p.y.abs()))
+        };
+        prop_assert!(outermost(&camera) <= frame + 1e-9);
+        let wide = matches!(o.lens, Lens::Perspective { fov_y } if fov_y > 2.0);
+        prop_assert!(wide || outermost(&camera) >= frame - 1e-9);
+        prop_assert!(outermost(&box_camera) <= frame + 1e-9);
+        // The order of the points is of no matter.
+        points.reverse();
+        prop_assert_eq!(fit_points(points, &d, &o).unwrap(), camera);
+    }
+}
+
 #[test]
 fn named_views_look_along_the_axes() {
     let check = |view: NamedView, axis, to_eye: DVec3, up: DVec3| {
