@@ -192,7 +192,7 @@ impl Default for FitOptions {
 
 /// The nearest point of the model is no nearer to the eye than this part of its radius: a needle that
 /// points at the eye is not looked at from within.
-const CLOSEST: f64 = 0.02;
+pub const CLOSEST: f64 = 0.02;
 
 /// Near and far plane keep this part of the radius from the model.
 const DEPTH_PAD: f64 = 0.01;
@@ -200,7 +200,7 @@ const DEPTH_PAD: f64 = 0.01;
 /// The camera whose picture holds the box as large as it can be, in the middle.
 ///
 /// The box's own corners are projected: at least two opposite borders of the frame (less the margin)
-/// are touched. `None` (an empty scene), a point, and a line are seen too: what has no extent is
+/// are touched, unless the nearest point would come nearer than [`CLOSEST`]. `None` (an empty scene), a point, and a line are seen too: what has no extent is
 /// taken for a cube of side 1, or as much as the digits at its place can tell apart.
 ///
 /// # Errors
