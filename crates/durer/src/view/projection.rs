@@ -252,8 +252,8 @@ fn fit(
     let (back, front) = range(&corners, 2);
     let (nearest, farthest) = (eye.z - front, eye.z - back);
     let world = |v: DVec3| center + axes[0] * v.x + axes[1] * v.y + axes[2] * v.z;
-    // A line seen end-on has no extent in the picture, but a neighbourhood.
-    let height = frame.height_for(&corners).max(radius * 1e-3);
+    // A line seen end-on has no extent in the picture, or that of rounding.
+    let height = frame.height_for(&corners).max(radius * 1e-9);
     let target = DVec3::new(eye.x, eye.y, 0.0);
     finished(world(eye), world(target), direction, options, height, nearest..farthest, radius)
 }
