@@ -8,4 +8,6 @@ mod raster_triangle;
 mod scenes;
 mod shading;
 mod tidy;
+mod view_cull;
+mod view_projection;
 mod view_window;
