@@ -215,11 +215,14 @@ impl Source<'_> {
         }
         let layout = Layout::of(self.root, index.index())?;
         let accessor = &self.root.accessors[index.index()];
-        let size = layout.count as u64 * layout.element() as u64;
-        self.budget.bytes(size, at)?;
         let mut bytes = match accessor.buffer_view {
             Some(view) => gather(self.view(view, at)?, &layout, at)?,
-            None => vec![0; size as usize],
+            None => {
+                // No data stand behind this count, so the limit alone bounds it.
+                let size = (layout.count as u64).saturating_mul(layout.element() as u64);
+                self.budget.bytes(size, at)?;
+                vec![0; layout.count * layout.element()]
+            }
         };
         if let Some(sparse) = &accessor.sparse {
             let at = format!("accessors[{}]", index.0);

@@ -138,7 +138,10 @@ impl Builder<'_> {
             };
             // Skins bring vertices to the world themselves; their node's place means nothing.
             let world_from_mesh = if skinned { DMat4::IDENTITY } else { self.world[n] };
-            if let Some(mesh) = made {
+            if !world_from_mesh.is_finite() {
+                let place = Place::Path(format!("nodes[{n}]"));
+                model.warn(place, "its place in the world is not finite; left out");
+            } else if let Some(mesh) = made {
                 model.scene.instances.push(Instance { mesh, world_from_mesh, name: name(node) });
             }
         }
