@@ -1,3 +1,4 @@
 //! One test binary for the formats.
 
 mod conformance_gltf;
+mod gltf;
