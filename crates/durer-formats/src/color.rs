@@ -1,6 +1,7 @@
-//! The transfer function of sRGB.
+//! The transfer function of sRGB, and the material of vertex colours.
 
-use durer::math::{Vec3, powf};
+use durer::math::{Vec3, Vec4, powf};
+use durer::scene::Material;
 
 /// Linear light from an sRGB value, IEC 61966-2-1; values above 1 go on by the same curve.
 pub(crate) fn linear(srgb: f32) -> f32 {
@@ -15,6 +16,11 @@ pub(crate) fn linear3(srgb: [f32; 3]) -> Vec3 {
 /// [`linear`] of all 256 bytes: for formats that store colours as bytes.
 pub(crate) fn linear_bytes() -> [f32; 256] {
     std::array::from_fn(|i| linear(i as f32 / 255.0))
+}
+
+/// What shows vertex colors as they are: the default material, but white.
+pub(crate) fn vertex_color_material() -> Material {
+    Material { name: "vertex colors".to_owned(), base_color: Vec4::ONE, ..Material::default() }
 }
 
 #[cfg(test)]

@@ -71,6 +71,16 @@ impl<'a> Cursor<'a> {
         Self { bytes, at: 0, line: 1, line_start: 0, word_start: 0, sloppy }
     }
 
+    /// At the start of a text that is the rest of a file, after so many lines.
+    pub fn at_line(bytes: &'a [u8], lines: u64) -> Self {
+        Self { line: lines, ..Self::new(bytes) }
+    }
+
+    /// Bytes after the current place.
+    pub fn bytes_left(&self) -> usize {
+        self.bytes.len().saturating_sub(self.at)
+    }
+
     /// Whether the text is over.
     pub fn at_end(&self) -> bool {
         self.at >= self.bytes.len()
@@ -253,11 +263,9 @@ mod tests {
 
     #[test]
     fn utf16_becomes_utf8() {
-        let le: Vec<u8> =
-            "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let le: Vec<u8> = "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         assert_eq!(utf8(&le).as_ref(), "v ä\n".as_bytes());
-        let be: Vec<u8> =
-            "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let be: Vec<u8> = "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         assert_eq!(utf8(&be).as_ref(), "v ä\n".as_bytes());
         assert_eq!(utf8(b"\xef\xbb\xbfv").as_ref(), b"v");
     }

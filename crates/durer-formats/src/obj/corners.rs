@@ -64,8 +64,7 @@ impl Corners {
         self.keyed = true;
         let mut indices = std::mem::take(&mut self.indices);
         for index in &mut indices {
-            *index =
-                self.find_or_add(Corner { position: *index, tex_coord: NONE, normal: NONE });
+            *index = self.find_or_add(Corner { position: *index, tex_coord: NONE, normal: NONE });
         }
         self.indices = indices;
     }

@@ -72,7 +72,8 @@ mod tests {
 
     #[test]
     fn statements_are_counted() {
-        let text = b"v 0 0 0\r\n v 1 1 1\rvt 0 0\nvn 0 0 1\nf 1 1 1 1 1\nl 1 2 1\np 1 2\nvp 1\n# v 1\nv";
+        let text =
+            b"v 0 0 0\r\n v 1 1 1\rvt 0 0\nvn 0 0 1\nf 1 1 1 1 1\nl 1 2 1\np 1 2\nvp 1\n# v 1\nv";
         let expected =
             Counts { positions: 3, tex_coords: 1, normals: 1, triangles: 3, lines: 2, points: 2 };
         assert_eq!(count(text), expected);

@@ -78,6 +78,8 @@ struct Parser<'a> {
     material: Option<usize>,
     object: &'a [u8],
     group: &'a [u8],
+    /// What the last run of triangles, lines and points was begun for.
+    open: [Option<Part<'a>>; 3],
     /// The largest color value, to tell 0…1 from 0…255.
     brightest: f32,
     /// Faces with three or more corners so far.
@@ -110,6 +112,7 @@ impl<'a> Parser<'a> {
             material: None,
             object: b"",
             group: b"",
+            open: [None; 3],
             brightest: 0.0,
             faces: 0,
         }
@@ -272,7 +275,7 @@ impl<'a> Parser<'a> {
         };
         let Some(third) = self.corner()? else { return self.short_face(place) };
         let start = self.out.triangles.indices.len();
-        self.out.begin(start / 3, Topology::Triangles, self.part());
+        self.begin(start / 3, Topology::Triangles);
         for corner in [first, second, third] {
             self.out.triangles.push(corner);
         }
@@ -309,7 +312,7 @@ impl<'a> Parser<'a> {
         let mut last = None;
         while let Some(Corner { position, .. }) = self.corner()? {
             if let Some(from) = last.replace(position) {
-                self.out.begin(start, Topology::Lines, self.part());
+                self.begin(start, Topology::Lines);
                 self.out.lines.extend([from, position]);
             }
         }
@@ -322,15 +325,29 @@ impl<'a> Parser<'a> {
 
     fn points(&mut self) -> Result<()> {
         while let Some(Corner { position, .. }) = self.corner()? {
-            self.out.begin(self.out.points.len(), Topology::Points, self.part());
+            self.begin(self.out.points.len(), Topology::Points);
             self.out.points.push(position);
         }
         self.check_limit()
     }
 
-    /// The part that is open: material, object and group.
-    fn part(&self) -> Part<'a> {
-        Part { material: self.material, object: self.object, group: self.group }
+    /// Starts a run at primitive `start` where material or name change.
+    fn begin(&mut self, start: usize, topology: Topology) {
+        let part = Part { material: self.material, object: self.object, group: self.group };
+        let (slot, runs) = match topology {
+            Topology::Triangles => (&mut self.open[0], &mut self.out.triangle_runs),
+            Topology::Lines => (&mut self.open[1], &mut self.out.line_runs),
+            Topology::Points => (&mut self.open[2], &mut self.out.point_runs),
+        };
+        if slot.is_some_and(|open| open == part) {
+            return;
+        }
+        let same_material = slot.replace(part).is_some_and(|open| open.material == part.material);
+        if same_material && runs.len() >= MAX_NAMED_PARTS {
+            self.out.repairs.unnamed_parts.add(|| Place::Line(self.cursor.line(), 0));
+        } else {
+            runs.push(Run { start, material: part.material, name: part.name() });
+        }
     }
 
     /// # Errors
@@ -398,7 +415,7 @@ impl<'a> Parser<'a> {
 }
 
 /// What names the primitives that follow.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct Part<'a> {
     material: Option<usize>,
     object: &'a [u8],
@@ -415,39 +432,5 @@ impl Part<'_> {
             (false, true) => object.into_owned(),
             _ => group.into_owned(),
         }
-    }
-}
-
-impl Parsed {
-    /// Starts a run at primitive `start` where material or name change.
-    fn begin(&mut self, start: usize, topology: Topology, part: Part<'_>) {
-        let runs = match topology {
-            Topology::Triangles => &mut self.triangle_runs,
-            Topology::Lines => &mut self.line_runs,
-            Topology::Points => &mut self.point_runs,
-        };
-        if let Some(last) = runs.last() {
-            let same_material = last.material == part.material;
-            if same_material && last.is_named(&part) {
-                return;
-            }
-            if same_material && runs.len() >= MAX_NAMED_PARTS {
-                return self.repairs.unnamed_parts.add(|| Place::Whole);
-            }
-        }
-        runs.push(Run { start, material: part.material, name: part.name() });
-    }
-}
-
-impl Run {
-    /// Compares names without building one.
-    fn is_named(&self, part: &Part<'_>) -> bool {
-        let (own, object, group) = (self.name.as_bytes(), part.object, part.group);
-        if object.is_empty() || group.is_empty() {
-            return own == object || (object.is_empty() && own == group);
-        }
-        own.len() == object.len() + 1 + group.len()
-            && own.starts_with(object)
-            && own.ends_with(group)
     }
 }

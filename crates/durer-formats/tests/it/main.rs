@@ -1,1 +1,4 @@
 //! One test binary for the formats.
+
+mod conformance_meshes;
+mod shared;
