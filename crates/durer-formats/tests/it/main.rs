@@ -1,4 +1,6 @@
 //! One test binary for the formats.
 
 mod conformance_meshes;
+mod mesh_properties;
 mod shared;
+mod threemf;
