@@ -1,4 +1,8 @@
 //! One test binary for the formats.
 
 mod conformance_gltf;
+mod conformance_meshes;
 mod gltf;
+mod mesh_properties;
+mod shared;
+mod threemf;
