@@ -7,6 +7,7 @@
 
 mod error;
 mod model;
+pub mod png;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Limits, Model, NoResources, Pose, ReadOptions, Resources};
