@@ -1,1 +1,133 @@
-//! Interpolation: barycentric coordinates, areas, perspective-correct attributes.
+//! Interpolation: barycentric coordinates, areas, perspective-correct attributes, depth planes.
+//!
+//! Barycentric coordinates: August Ferdinand Möbius, *Der barycentrische Calcul*, 1827.
+//! Perspective-correct interpolation: James Blinn, *Hyperbolic Interpolation*, IEEE CG&A, 1992; Paul
+//! Heckbert and Henry Moreton, *Interpolation for Polygon Texture Mapping and Shading*, 1991.
+
+use crate::math::{DVec2, DVec3};
+use std::ops::{Add, Mul};
+
+/// Twice the signed area of a triangle by the short formula, in square units of its coordinates;
+/// positive where a, b, c turn to the left with y up.
+pub fn doubled_area([a, b, c]: [DVec2; 3]) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// The area of a triangle in space, in square units of its coordinates; not negative.
+pub fn area_3d([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() * 0.5
+}
+
+/// The signed area of a polygon by the short formula, A = ½ Σ xᵢ (yᵢ₊₁ − yᵢ₋₁); positive where it
+/// turns to the left with y up. The ring is closed by itself. Coordinates are taken from the first
+/// vertex, so that a small polygon far from the origin keeps its area.
+///
+/// ```
+/// use durer::math::DVec2;
+/// let square = [(1e9, 0.0), (1e9 + 1.0, 0.0), (1e9 + 1.0, 1.0), (1e9, 1.0)].map(DVec2::from);
+/// assert_eq!(durer::raster::interpolate::polygon_area(&square), 1.0);
+/// ```
+pub fn polygon_area(ring: &[DVec2]) -> f64 {
+    let n = ring.len();
+    let Some(&origin) = ring.first() else { return 0.0 };
+    let term = |(i, p): (usize, &DVec2)| {
+        (p.x - origin.x) * (ring[(i + 1) % n].y - ring[(i + n - 1) % n].y)
+    };
+    0.5 * ring.iter().enumerate().map(term).sum::<f64>()
+}
+
+/// The barycentric coordinates of a point of the plane: weights that add up to 1 and give the point.
+///
+/// All are in 0 … 1 for a point in the triangle. `None` for a triangle without area.
+pub fn barycentric_2d([a, b, c]: [DVec2; 3], p: DVec2) -> Option<[f64; 3]> {
+    let area = doubled_area([a, b, c]);
+    let weights = [doubled_area([p, b, c]), doubled_area([p, c, a]), doubled_area([p, a, b])];
+    normalized(weights, area)
+}
+
+/// The barycentric coordinates of a point in space, projected along the normal onto the triangle's
+/// plane. `None` for a triangle without area.
+pub fn barycentric_3d([a, b, c]: [DVec3; 3], p: DVec3) -> Option<[f64; 3]> {
+    let normal = (b - a).cross(c - a);
+    // Areas of the three parts, as seen along the normal.
+    let part = |u: DVec3, v: DVec3| normal.dot((u - p).cross(v - p));
+    normalized([part(b, c), part(c, a), part(a, b)], normal.length_squared())
+}
+
+fn normalized(weights: [f64; 3], total: f64) -> Option<[f64; 3]> {
+    (total != 0.0 && total.is_finite()).then(|| weights.map(|w| w / total))
+}
+
+/// The weighted sum of a value at the corners.
+pub fn blend<T: Mul<f64, Output = T> + Add<Output = T>>(weights: [f64; 3], [a, b, c]: [T; 3]) -> T {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+/// Weights in space from weights on the screen: each counts as much as its corner is near.
+///
+/// `inv_w` is 1/w of the corners, positive. Weights that add up to 1 give weights that add up to 1.
+///
+/// ```
+/// use durer::raster::interpolate::perspective_correct;
+/// // Half way on the screen from a near point to one three times as far is a quarter of the way.
+/// assert_eq!(perspective_correct([0.5, 0.5, 0.0], [1.0, 1.0 / 3.0, 1.0]), [0.75, 0.25, 0.0]);
+/// ```
+pub fn perspective_correct(screen: [f64; 3], inv_w: [f64; 3]) -> [f64; 3] {
+    let near = std::array::from_fn::<f64, 3, _>(|k| screen[k] * inv_w[k]);
+    let total = near[0] + near[1] + near[2];
+    near.map(|w| w / total)
+}
+
+/// A linear function over the screen, f(p) = value + gradient · (p − origin): depth, 1/w, or an
+/// attribute divided by w.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScreenPlane {
+    /// Where `value` holds, in pixels: a corner, so that far-off triangles lose no digits.
+    pub origin: DVec2,
+    /// The function at `origin`.
+    pub value: f64,
+    /// What it gains per pixel to the right and downwards.
+    pub gradient: DVec2,
+}
+
+impl ScreenPlane {
+    /// The plane through three values at three screen points; `None` for a triangle without area.
+    pub fn through([a, b, c]: [DVec2; 3], [fa, fb, fc]: [f64; 3]) -> Option<Self> {
+        let (u, v) = (b - a, c - a);
+        let area = u.perp_dot(v);
+        let (fu, fv) = (fb - fa, fc - fa);
+        let gradient = DVec2::new(fu * v.y - fv * u.y, fv * u.x - fu * v.x) / area;
+        (area != 0.0 && gradient.is_finite()).then_some(Self { origin: a, value: fa, gradient })
+    }
+
+    /// The function at a screen point in pixels.
+    #[inline]
+    pub fn at(&self, p: DVec2) -> f64 {
+        let d = p - self.origin;
+        self.value + (self.gradient.x * d.x + self.gradient.y * d.y)
+    }
+}
+
+/// An attribute over a triangle in perspective: (attribute / w) and (1 / w) are linear on the screen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PerspectivePlane {
+    over_w: ScreenPlane,
+    inv_w: ScreenPlane,
+}
+
+impl PerspectivePlane {
+    /// From screen points, 1/w (positive) and attributes of the corners; `None` without area.
+    pub fn through(points: [DVec2; 3], inv_w: [f64; 3], values: [f64; 3]) -> Option<Self> {
+        let over_w = std::array::from_fn(|k| values[k] * inv_w[k]);
+        Some(Self {
+            over_w: ScreenPlane::through(points, over_w)?,
+            inv_w: ScreenPlane::through(points, inv_w)?,
+        })
+    }
+
+    /// The attribute at a screen point in pixels.
+    #[inline]
+    pub fn at(&self, p: DVec2) -> f64 {
+        self.over_w.at(p) / self.inv_w.at(p)
+    }
+}

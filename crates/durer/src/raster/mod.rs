@@ -4,4 +4,5 @@
 
 pub mod fixed;
 pub mod interpolate;
+pub mod span;
 pub mod triangle;

@@ -1,1 +1,342 @@
 //! Windows in the world and viewports on the screen.
+//!
+//! The window-to-viewport transformation of Newman & Sproull, *Principles of Interactive Computer
+//! Graphics* (1973): x' = a·x + b and y' = c·y + d, with a … d computed once.
+
+use crate::math::{DVec2, Rect};
+use crate::{Error, Result};
+
+/// Pixels x0 … x1 − 1 of rows y0 … y1 − 1; y grows downwards. May be empty.
+///
+/// # Guarantees
+/// `x0 ≤ x1` and `y0 ≤ y1`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PixelRect {
+    min: [i32; 2],
+    max: [i32; 2],
+}
+
+impl PixelRect {
+    /// All pixels that an i32 can name, but the last row and column.
+    pub const EVERYTHING: Self = Self { min: [i32::MIN; 2], max: [i32::MAX; 2] };
+
+    /// # Errors
+    /// [`Error::Parameter`] where `x0 > x1` or `y0 > y1`.
+    pub fn new(x0: i32, y0: i32, x1: i32, y1: i32) -> Result<Self> {
+        if x0 <= x1 && y0 <= y1 {
+            Ok(Self { min: [x0, y0], max: [x1, y1] })
+        } else {
+            let value = format!("{x0},{y0} … {x1},{y1}");
+            Err(Error::parameter("pixel rectangle", value, "not reversed"))
+        }
+    }
+
+    /// All pixels of a picture from the origin.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a side above 2³¹ − 1.
+    pub fn of_size(width: u32, height: u32) -> Result<Self> {
+        let side = |value: u32| {
+            let limit = i32::MAX as u64;
+            i32::try_from(value).map_err(|_| Error::Limit {
+                what: "pixels a side",
+                value: value.into(),
+                limit,
+            })
+        };
+        Ok(Self { min: [0; 2], max: [side(width)?, side(height)?] })
+    }
+
+    /// The rectangle between two corners, empty where they are reversed.
+    pub fn spanning(x0: i32, y0: i32, x1: i32, y1: i32) -> Self {
+        Self { min: [x0, y0], max: [x1.max(x0), y1.max(y0)] }
+    }
+
+    /// First column.
+    pub fn x0(&self) -> i32 {
+        self.min[0]
+    }
+
+    /// First row.
+    pub fn y0(&self) -> i32 {
+        self.min[1]
+    }
+
+    /// Last column, exclusive.
+    pub fn x1(&self) -> i32 {
+        self.max[0]
+    }
+
+    /// Last row, exclusive.
+    pub fn y1(&self) -> i32 {
+        self.max[1]
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.max[0].abs_diff(self.min[0])
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.max[1].abs_diff(self.min[1])
+    }
+
+    /// Whether there is no pixel in it.
+    pub fn is_empty(&self) -> bool {
+        self.min[0] == self.max[0] || self.min[1] == self.max[1]
+    }
+
+    /// Whether the pixel lies in it.
+    pub fn contains(&self, x: i32, y: i32) -> bool {
+        (self.min[0]..self.max[0]).contains(&x) && (self.min[1]..self.max[1]).contains(&y)
+    }
+
+    /// The pixels in both; where there are none, some empty rectangle.
+    pub fn intersection(&self, other: &Self) -> Self {
+        let lo = [0, 1].map(|k| self.min[k].max(other.min[k]));
+        let hi = [0, 1].map(|k| self.max[k].min(other.max[k]));
+        Self::spanning(lo[0], lo[1], hi[0], hi[1])
+    }
+}
+
+/// A rectangle of the world with an area, y up; closed.
+///
+/// # Guarantees
+/// Finite, `left < right`, `bottom < top`, and neither a coordinate nor an extent is beyond
+/// 10^±100, so that no scale overflows, nor their ratio.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    rect: Rect,
+}
+
+/// Beyond this, and for extents below its inverse, scales times extents leave the range of f64.
+const WINDOW_LIMIT: f64 = 1e100;
+
+impl Window {
+    /// The window from `left` to `right` and from `bottom` to `top`, in world units.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a number that is NaN, infinite or beyond ± 10¹⁰⁰, and for a window
+    /// that is reversed, empty or narrower than 10⁻¹⁰⁰.
+    pub fn new(left: f64, right: f64, bottom: f64, top: f64) -> Result<Self> {
+        let all = [left, right, bottom, top];
+        let sound = all.iter().all(|v| v.abs() <= WINDOW_LIMIT)
+            && right - left >= WINDOW_LIMIT.recip()
+            && top - bottom >= WINDOW_LIMIT.recip();
+        if !sound {
+            let value = format!("{left} … {right} × {bottom} … {top}");
+            return Err(Error::parameter(
+                "window",
+                value,
+                "finite, with left < right and bottom < top",
+            ));
+        }
+        Ok(Self { rect: Rect::new(DVec2::new(left, bottom), DVec2::new(right, top))? })
+    }
+
+    /// The same as a closed rectangle, for clipping.
+    pub fn rect(&self) -> &Rect {
+        &self.rect
+    }
+}
+
+/// A rectangle of pixels to draw in.
+///
+/// # Guarantees
+/// Not empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Viewport {
+    pixels: PixelRect,
+}
+
+impl Viewport {
+    /// # Errors
+    /// [`Error::Parameter`] for a rectangle without pixels.
+    pub fn new(pixels: PixelRect) -> Result<Self> {
+        if pixels.is_empty() {
+            let value = format!("{}x{}", pixels.width(), pixels.height());
+            return Err(Error::parameter("viewport", value, "at least 1x1"));
+        }
+        Ok(Self { pixels })
+    }
+
+    /// Its pixels.
+    pub fn pixels(&self) -> &PixelRect {
+        &self.pixels
+    }
+}
+
+/// What happens where window and viewport differ in shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Aspect {
+    /// Each axis has its own scale; corners map to corners.
+    #[default]
+    Stretch,
+    /// One scale; all of the window is visible, in the middle of the viewport.
+    Fit,
+    /// One scale; all of the viewport is filled, with the middle of the window.
+    Fill,
+}
+
+/// Which way y grows on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum YAxis {
+    /// The top of the window is the top row: y is flipped, as row 0 is on top.
+    #[default]
+    Down,
+    /// The bottom of the window is row 0; for framebuffers with the origin at the bottom left.
+    Up,
+}
+
+/// The mapping from a window to a viewport and back.
+///
+/// Coefficients are kept to twice the precision of f64, and x is taken from a corner of the window,
+/// so that corners map to corners exactly and the way back returns within 1 ulp of the extent, also
+/// for a small window far from the origin.
+///
+/// ```
+/// use durer::math::DVec2;
+/// use durer::view::window::*;
+/// let window = Window::new(-2.0, 2.0, -1.0, 1.0).unwrap();
+/// let viewport = Viewport::new(PixelRect::of_size(640, 480).unwrap()).unwrap();
+/// let map = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
+/// assert_eq!(map.to_screen(DVec2::new(-2.0, 1.0)), DVec2::new(0.0, 80.0));
+/// assert_eq!(map.coefficients(), [160.0, 320.0, -160.0, 240.0]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindowToViewport {
+    x: Axis,
+    y: Axis,
+}
+
+impl WindowToViewport {
+    /// The mapping of `window` to `viewport`.
+    pub fn new(window: &Window, viewport: &Viewport, aspect: Aspect, y_axis: YAxis) -> Self {
+        let (lo, hi, p) = (window.rect.min(), window.rect.max(), &viewport.pixels);
+        let x = Axis::stretched([lo.x, hi.x], [p.x0().into(), p.x1().into()]);
+        let rows = match y_axis {
+            YAxis::Down => [p.y1().into(), p.y0().into()],
+            YAxis::Up => [p.y0().into(), p.y1().into()],
+        };
+        let y = Axis::stretched([lo.y, hi.y], rows);
+        let x_is_smaller = x.scale.hi < y.scale.hi.abs();
+        match aspect {
+            Aspect::Stretch => Self { x, y },
+            Aspect::Fit | Aspect::Fill if x_is_smaller == (aspect == Aspect::Fit) => {
+                Self { x, y: y.rescaled(&x, [lo.y, hi.y], rows) }
+            }
+            Aspect::Fit | Aspect::Fill => {
+                let columns = [p.x0().into(), p.x1().into()];
+                Self { x: x.rescaled(&y, [lo.x, hi.x], columns), y }
+            }
+        }
+    }
+
+    /// From world coordinates to screen coordinates in pixels.
+    pub fn to_screen(&self, world: DVec2) -> DVec2 {
+        DVec2::new(self.x.forward(world.x), self.y.forward(world.y))
+    }
+
+    /// From screen coordinates in pixels to world coordinates.
+    pub fn to_world(&self, screen: DVec2) -> DVec2 {
+        DVec2::new(self.x.backward(screen.x), self.y.backward(screen.y))
+    }
+
+    /// a, b, c, d of x' = a·x + b and y' = c·y + d, rounded to f64.
+    pub fn coefficients(&self) -> [f64; 4] {
+        let b = |axis: &Axis| axis.forward(0.0);
+        [self.x.scale.hi, b(&self.x), self.y.scale.hi, b(&self.y)]
+    }
+}
+
+/// One axis: to' = scale · (from − from0) + to0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Axis {
+    from0: f64,
+    to0: f64,
+    scale: Double,
+    inverse: Double,
+}
+
+impl Axis {
+    /// Maps the ends to the ends.
+    fn stretched(from: [f64; 2], to: [f64; 2]) -> Self {
+        let (span, length) = (Double::sum(from[1], -from[0]), Double::sum(to[1], -to[0]));
+        let (scale, inverse) = (length.over(span), span.over(length));
+        Self { from0: from[0], to0: to[0], scale, inverse }
+    }
+
+    /// The same axis with the size of the other's scale, the middle staying in the middle.
+    fn rescaled(&self, other: &Self, from: [f64; 2], to: [f64; 2]) -> Self {
+        let sign = (self.scale.hi * other.scale.hi).signum();
+        let (scale, inverse) = (other.scale.times(sign), other.inverse.times(sign));
+        let covered = scale.product(Double::sum(from[1], -from[0])).hi;
+        let to0 = (to[0] + to[1]) * 0.5 - covered * 0.5;
+        Self { from0: from[0], to0, scale, inverse }
+    }
+
+    fn forward(&self, x: f64) -> f64 {
+        transform(x, self.from0, self.scale, self.to0)
+    }
+
+    fn backward(&self, x: f64) -> f64 {
+        transform(x, self.to0, self.inverse, self.from0)
+    }
+}
+
+/// scale · (x − from) + to, rounded once where all is in range.
+fn transform(x: f64, from: f64, scale: Double, to: f64) -> f64 {
+    let product = scale.product(Double::sum(x, -from));
+    let total = Double::sum(product.hi, to);
+    let result = total.hi + (total.lo + product.lo);
+    if result.is_finite() { result } else { scale.hi * (x - from) + to }
+}
+
+/// An unevaluated sum of two f64, about 106 bits (T. J. Dekker, *A Floating-Point Technique for
+/// Extending the Available Precision*, 1971).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Double {
+    hi: f64,
+    lo: f64,
+}
+
+impl Double {
+    /// a + b without error (Knuth's two-sum).
+    fn sum(a: f64, b: f64) -> Self {
+        let hi = a + b;
+        let b_part = hi - a;
+        Self { hi, lo: (a - (hi - b_part)) + (b - b_part) }
+    }
+
+    /// a · b without error (Veltkamp's splitting, Dekker's product).
+    fn exact_product(a: f64, b: f64) -> Self {
+        let hi = a * b;
+        let ((a1, a0), (b1, b0)) = (split(a), split(b));
+        Self { hi, lo: ((a1 * b1 - hi) + a1 * b0 + a0 * b1) + a0 * b0 }
+    }
+
+    /// Multiplied by ± 1.
+    fn times(self, sign: f64) -> Self {
+        Self { hi: self.hi * sign, lo: self.lo * sign }
+    }
+
+    fn product(self, other: Self) -> Self {
+        let p = Self::exact_product(self.hi, other.hi);
+        Self::sum(p.hi, p.lo + (self.hi * other.lo + self.lo * other.hi))
+    }
+
+    fn over(self, divisor: Self) -> Self {
+        let q = self.hi / divisor.hi;
+        let p = divisor.product(Self { hi: q, lo: 0.0 });
+        let rest = (self.hi - p.hi) + (self.lo - p.lo);
+        Self::sum(q, rest / divisor.hi)
+    }
+}
+
+/// Two halves of 26 bits that add up to `a`.
+fn split(a: f64) -> (f64, f64) {
+    let c = a * 134_217_729.0;
+    let high = c - (c - a);
+    (high, a - high)
+}

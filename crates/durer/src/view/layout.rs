@@ -1,0 +1,112 @@
+//! Several viewports on one screen.
+//!
+//! Viewports of a layout tile the screen: each pixel belongs to exactly one, so nothing drawn in one
+//! can touch another.
+
+use super::window::{PixelRect, Viewport};
+use crate::{Error, Result};
+use std::str::FromStr;
+
+/// A grid of named cells, filled row by row from the upper left.
+///
+/// Written `front,top,side,iso` (as square a grid as possible) or `3x1:front,side,top`
+/// (columns × rows). The last row's cells share the whole width where names run out.
+///
+/// ```
+/// use durer::view::layout::Layout;
+/// let layout: Layout = "2x2:front,top,side,iso".parse().unwrap();
+/// let cells = layout.viewports(101, 100).unwrap();
+/// assert_eq!(cells[1].0, "top");
+/// assert_eq!((cells[0].1.pixels().width(), cells[1].1.pixels().width()), (50, 51));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layout {
+    columns: usize,
+    rows: usize,
+    names: Vec<String>,
+}
+
+/// More cells than this on one screen are refused.
+pub const MAX_CELLS: usize = 4096;
+
+impl Layout {
+    /// A grid of `columns` × `rows` cells with their names, row by row.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where a name is empty, there are none, or there are more than cells or so
+    /// few that a row stays empty; [`Error::Limit`] above [`MAX_CELLS`].
+    pub fn new(columns: usize, rows: usize, names: Vec<String>) -> Result<Self> {
+        let cells = columns.saturating_mul(rows);
+        if cells > MAX_CELLS {
+            let limit = MAX_CELLS as u64;
+            return Err(Error::Limit { what: "viewports", value: cells as u64, limit });
+        }
+        if names.iter().any(|n| n.is_empty()) || names.is_empty() {
+            return Err(Error::parameter("layout", names.join(","), "names parted by commas"));
+        }
+        if names.len() > cells || names.len() <= cells - columns {
+            let value = format!("{} names in {columns}x{rows} cells", names.len());
+            return Err(Error::parameter("layout", value, "names in every row, and not too many"));
+        }
+        Ok(Self { columns, rows, names })
+    }
+
+    /// The names of the cells, row by row.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The viewports with their names, in order, on a screen of this size in pixels.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where a cell would have no pixel, [`Error::Limit`] for a side above
+    /// 2³¹ − 1.
+    pub fn viewports(&self, width: u32, height: u32) -> Result<Vec<(&str, Viewport)>> {
+        let screen = PixelRect::of_size(width, height)?;
+        let mut cells = Vec::with_capacity(self.names.len());
+        for (row, names) in self.names.chunks(self.columns).enumerate() {
+            let (y0, y1) = part(screen.y1(), row, self.rows);
+            for (column, name) in names.iter().enumerate() {
+                let (x0, x1) = part(screen.x1(), column, names.len());
+                let pixels = PixelRect::new(x0, y0, x1, y1)?;
+                cells.push((name.as_str(), Viewport::new(pixels)?));
+            }
+        }
+        Ok(cells)
+    }
+}
+
+/// Part `i` of `n` of a length, to whole pixels; the parts add up to it.
+fn part(length: i32, i: usize, n: usize) -> (i32, i32) {
+    // i ≤ n, so the quotient is at most `length`.
+    let border = |i: usize| (i64::from(length) * i as i64 / n.max(1) as i64) as i32;
+    (border(i), border(i + 1))
+}
+
+impl FromStr for Layout {
+    type Err = Error;
+
+    fn from_str(s: &str) -> Result<Self> {
+        let (grid, names) = match s.split_once(':') {
+            Some((grid, names)) => (Some(parse_grid(grid)?), names),
+            None => (None, s),
+        };
+        let names: Vec<String> = names.split(',').map(|n| n.trim().to_owned()).collect();
+        let (columns, rows) = grid.unwrap_or_else(|| squarish(names.len()));
+        Self::new(columns, rows, names)
+    }
+}
+
+fn parse_grid(grid: &str) -> Result<(usize, usize)> {
+    let sizes = grid.split_once('x').and_then(|(c, r)| Some((c.parse().ok()?, r.parse().ok()?)));
+    match sizes {
+        Some((columns, rows)) if columns > 0 && rows > 0 => Ok((columns, rows)),
+        _ => Err(Error::parameter("layout grid", grid, "columns x rows, e.g. 2x2")),
+    }
+}
+
+/// The fewest columns whose square holds `n`, and the rows they need.
+fn squarish(n: usize) -> (usize, usize) {
+    let columns = (1..=n).find(|c| c.saturating_mul(*c) >= n).unwrap_or(1);
+    (columns, n.div_ceil(columns))
+}
