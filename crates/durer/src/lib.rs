@@ -8,6 +8,8 @@
 pub mod error;
 pub mod info;
 pub mod math;
+pub mod parallel;
+pub mod simd;
 pub mod trace;
 
 pub mod target;

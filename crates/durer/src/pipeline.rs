@@ -1,65 +1,15 @@
 //! The order of the stages; nothing else knows it.
 
 use crate::math::Vec4;
-use crate::scene::{Camera, Light, Scene, ShadingModel};
+use crate::scene::{Camera, Light, Scene};
+use crate::shade::PreparedLights;
+pub use crate::shade::Shading;
+use crate::simd::Level;
 use crate::target::Framebuffer;
+use crate::view::View;
+use crate::visibility::surface::z_buffer;
+pub use crate::visibility::surface::{Background, Cull, Samples};
 use crate::{Error, Result};
-
-/// Which faces are left out by the way they face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Cull {
-    /// All faces are drawn, from both sides.
-    #[default]
-    None,
-    /// Faces seen from behind are left out.
-    Back,
-}
-
-/// How intensities are interpolated and which formula lights a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shading {
-    /// One intensity per face (Bouknight 1970).
-    Flat,
-    /// Intensities at the vertices, interpolated (Gouraud 1971).
-    Gouraud,
-    /// Normals interpolated, one intensity per pixel (Phong 1975), Blinn's halfway form.
-    Phong,
-    /// glTF's metallic-roughness formula per pixel.
-    MetallicRoughness,
-    /// The base colour as it is.
-    Unlit,
-}
-
-impl From<ShadingModel> for Shading {
-    fn from(model: ShadingModel) -> Self {
-        match model {
-            ShadingModel::MetallicRoughness => Self::MetallicRoughness,
-            ShadingModel::Phong => Self::Phong,
-            ShadingModel::Unlit => Self::Unlit,
-        }
-    }
-}
-
-/// Samples per pixel of the production path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Samples {
-    /// One, at the pixel's centre.
-    One,
-    /// Four, on a rotated grid.
-    #[default]
-    Four,
-    /// Sixteen, no two in a row or column of the 16 × 16 grid.
-    Sixteen,
-}
-
-/// What is behind everything; colours are linear RGBA with straight alpha.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Background {
-    /// One colour; alpha 0 makes it transparent.
-    Color(Vec4),
-    /// From the top row to the bottom row.
-    Gradient(Vec4, Vec4),
-}
 
 /// Where light comes from.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -73,7 +23,7 @@ pub enum Lighting {
 }
 
 /// Everything about a picture but the scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct RenderOptions {
     /// Width in pixels, at least 1.
     pub width: u32,
@@ -99,6 +49,8 @@ pub struct RenderOptions {
     pub normal: bool,
     /// Refuse pictures of more pixels than this.
     pub max_pixels: u64,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
 }
 
 impl RenderOptions {
@@ -117,6 +69,7 @@ impl RenderOptions {
             item: false,
             normal: false,
             max_pixels: 16_384 * 16_384,
+            level: Level::new(),
         }
     }
 
@@ -164,6 +117,37 @@ pub struct Report {
 pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Report)> {
     options.check()?;
     scene.check()?;
-    let framebuffer = Framebuffer::new(options.width, options.height);
-    Ok((framebuffer, Report { triangles_in: scene.triangle_count(), ..Report::default() }))
+    let view = View::new(options.camera, options.width, options.height)?;
+    let mut framebuffer = Framebuffer::new(options.width, options.height);
+    if options.depth {
+        framebuffer = framebuffer.with_depth();
+    }
+    if options.item {
+        framebuffer = framebuffer.with_items();
+    }
+    if options.normal {
+        framebuffer = framebuffer.with_normals();
+    }
+    let lights = match &options.lighting {
+        Lighting::Auto => PreparedLights::of(scene, &options.camera),
+        Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
+    };
+    let z_options = z_buffer::Options {
+        samples: options.samples,
+        cull: options.cull,
+        shading: options.shading,
+        background: options.background,
+        level: options.level,
+    };
+    let report = z_buffer::render(scene, &view, &lights, &z_options, &mut framebuffer)?;
+    let report = Report {
+        triangles_in: scene.triangle_count(),
+        non_finite: report.counts.non_finite,
+        clipped: report.counts.clipped,
+        culled: report.counts.culled,
+        drawn: report.counts.drawn,
+        geometry_seconds: report.geometry_seconds,
+        raster_seconds: report.raster_seconds,
+    };
+    Ok((framebuffer, report))
 }

@@ -85,6 +85,15 @@ impl Mesh {
         }
     }
 
+    /// The ends of line `i`, or twice the vertex of point `i`; `i < primitive_count()`.
+    pub fn line_or_point(&self, i: usize) -> [u32; 2] {
+        let index = |i: usize| self.indices.as_ref().map_or(i as u32, |indices| indices[i]);
+        match self.topology {
+            Topology::Points => [index(i); 2],
+            _ => [index(2 * i), index(2 * i + 1)],
+        }
+    }
+
     /// Runs of primitives with one material; never empty unless the mesh is.
     pub fn material_runs(&self) -> impl Iterator<Item = (Range<u32>, Option<usize>)> + '_ {
         let whole = self.parts.is_empty().then(|| (0..self.primitive_count() as u32, None));

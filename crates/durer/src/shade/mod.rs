@@ -1,1 +1,59 @@
 //! Light on surfaces.
+//!
+//! [`PreparedMaterials`] and [`PreparedLights`] are made once per picture, [`shade`] is called per
+//! visible sample, [`shade_x8`] for eight samples of one plain material, [`shade_vertex`] and
+//! [`shade_face`] for the interpolated and the flat model.
+//!
+//! Space: world axes, but with the origin moved to the eye ([`PreparedLights::origin`]), so that
+//! `f32` suffices far from the world's own origin. Colours are linear with sRGB's primaries.
+
+pub mod color;
+pub mod environment;
+pub mod flat;
+mod formula;
+pub mod gouraud;
+pub mod lane;
+pub mod light;
+pub mod material;
+pub mod metallic_roughness;
+mod mip;
+mod normal;
+pub mod phong;
+mod plain;
+pub mod texture;
+mod tone;
+pub mod unlit;
+
+pub use flat::shade_face;
+pub use gouraud::{Reflected, shade_vertex};
+pub use light::PreparedLights;
+pub use material::{PreparedMaterial, PreparedMaterials, Surface, TexCoord, shade};
+pub use plain::{Batch, shade_x8};
+pub use texture::PreparedTexture;
+
+crate::info::family! {
+    /// How intensities are interpolated and which formula lights a surface.
+    pub enum Shading {
+        /// One intensity per face (Bouknight 1970).
+        Flat => flat::INFO,
+        /// Intensities at the vertices, interpolated (Gouraud 1971).
+        Gouraud => gouraud::INFO,
+        /// Normals interpolated, one intensity per pixel (Phong 1975), Blinn's halfway form.
+        Phong => phong::INFO,
+        /// glTF's metallic-roughness formula per pixel.
+        MetallicRoughness => metallic_roughness::INFO,
+        /// The base colour as it is.
+        Unlit => unlit::INFO,
+    }
+}
+
+impl From<crate::scene::ShadingModel> for Shading {
+    fn from(model: crate::scene::ShadingModel) -> Self {
+        use crate::scene::ShadingModel;
+        match model {
+            ShadingModel::MetallicRoughness => Self::MetallicRoughness,
+            ShadingModel::Phong => Self::Phong,
+            ShadingModel::Unlit => Self::Unlit,
+        }
+    }
+}

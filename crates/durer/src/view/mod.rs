@@ -4,3 +4,69 @@ pub mod cull;
 pub mod layout;
 pub mod projection;
 pub mod window;
+
+use crate::math::{DMat4, DVec4};
+use crate::scene::Camera;
+use crate::{Error, Result};
+
+/// A camera with a screen of pixels behind it.
+///
+/// Screen space is y down, in pixels, depth 0 (near plane) … 1 (far plane); `screen_from_world`
+/// gives it in homogeneous form, so a point is visible if 0 ≤ x ≤ width·w, 0 ≤ y ≤ height·w and
+/// 0 ≤ z ≤ w.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    camera: Camera,
+    width: u32,
+    height: u32,
+    clip_from_world: DMat4,
+    screen_from_world: DMat4,
+}
+
+impl View {
+    /// The view of a camera on a screen of `width × height` square pixels.
+    ///
+    /// # Errors
+    /// What [`Camera::check`] finds, and [`Error::Parameter`] for a size of zero.
+    pub fn new(camera: Camera, width: u32, height: u32) -> Result<Self> {
+        camera.check()?;
+        if width == 0 || height == 0 {
+            return Err(Error::parameter("size", format!("{width}x{height}"), "at least 1x1"));
+        }
+        let (w, h) = (f64::from(width), f64::from(height));
+        let clip_from_world = camera.clip_from_view(w / h) * camera.view_from_world();
+        let screen_from_clip = DMat4::from_cols(
+            DVec4::new(0.5 * w, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, -0.5 * h, 0.0, 0.0),
+            DVec4::new(0.0, 0.0, 0.5, 0.0),
+            DVec4::new(0.5 * w, 0.5 * h, 0.5, 1.0),
+        );
+        let screen_from_world = screen_from_clip * clip_from_world;
+        Ok(Self { camera, width, height, clip_from_world, screen_from_world })
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Width of the screen in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height of the screen in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// World space to clip space, −w ≤ x, y, z ≤ w.
+    pub fn clip_from_world(&self) -> DMat4 {
+        self.clip_from_world
+    }
+
+    /// World space to homogeneous screen space: x and y in pixels times w, y down, z in 0…w.
+    pub fn screen_from_world(&self) -> DMat4 {
+        self.screen_from_world
+    }
+}

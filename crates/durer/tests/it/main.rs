@@ -2,5 +2,7 @@
 
 mod raster_interpolate;
 mod raster_triangle;
+mod conformance_visible_surface;
+mod data;
 mod tidy;
 mod view_window;

@@ -1,3 +1,78 @@
 //! Visible surfaces.
 
+pub mod setup;
 pub mod z_buffer;
+
+use crate::math::Vec4;
+
+/// Which faces are left out by the way they face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Cull {
+    /// All faces are drawn, from both sides.
+    #[default]
+    None,
+    /// Faces seen from behind are left out.
+    Back,
+}
+
+/// Samples per pixel of the production path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Samples {
+    /// One, at the pixel's centre.
+    One,
+    /// Four, on a rotated grid.
+    #[default]
+    Four,
+    /// Sixteen, no two in a row or column of the 16 × 16 grid.
+    Sixteen,
+}
+
+impl Samples {
+    /// Where the samples lie, from the pixel's centre in 1/256 pixel, x right and y down: the
+    /// standard patterns of Direct3D 11.
+    pub fn offsets(self) -> &'static [[i32; 2]] {
+        const FOUR: [[i32; 2]; 4] = sixteenths([[-2, -6], [6, -2], [-6, 2], [2, 6]]);
+        const SIXTEEN: [[i32; 2]; 16] = sixteenths([
+            [1, 1],
+            [-1, -3],
+            [-3, 2],
+            [4, -1],
+            [-5, -2],
+            [2, 5],
+            [5, 3],
+            [3, -5],
+            [-2, 6],
+            [0, -7],
+            [-4, -6],
+            [-6, 4],
+            [-8, 0],
+            [7, -4],
+            [6, 7],
+            [-7, -8],
+        ]);
+        match self {
+            Self::One => &[[0, 0]],
+            Self::Four => &FOUR,
+            Self::Sixteen => &SIXTEEN,
+        }
+    }
+}
+
+/// From sixteenths of a pixel to the 24.8 grid.
+const fn sixteenths<const N: usize>(mut offsets: [[i32; 2]; N]) -> [[i32; 2]; N] {
+    let mut i = 0;
+    while i < N {
+        offsets[i] = [offsets[i][0] * 16, offsets[i][1] * 16];
+        i += 1;
+    }
+    offsets
+}
+
+/// What is behind everything; colours are linear RGBA with straight alpha.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// One colour; alpha 0 makes it transparent.
+    Color(Vec4),
+    /// From the top row to the bottom row.
+    Gradient(Vec4, Vec4),
+}

@@ -1,0 +1,241 @@
+//! Colours: sRGB's transfer curve both ways by table, luminance, premultiplication.
+//!
+//! The tables are made when the crate is compiled, from IEEE basic operations alone, so they are the
+//! same bits on every machine. Curve: IEC 61966-2-1 (1999).
+
+use crate::math::{Vec3, Vec4};
+
+/// Linear value of each 8-bit sRGB code, correctly rounded from double precision.
+pub static LINEAR_FROM_SRGB: [f32; 256] = linear_table();
+
+/// The linear value half a code step above each code but the last: where rounding changes.
+static THRESHOLD: [f32; 256] = threshold_table();
+
+/// Binary exponent below which everything rounds to code 0: the first threshold is 2^-12.7.
+const LOWEST_EXPONENT: u32 = 127 - 13;
+/// Mantissa bits that choose a bucket; with 7 no bucket holds two thresholds (tested).
+const BUCKET_BITS: u32 = 7;
+/// Buckets from 2^-13 up to 1.
+const BUCKETS: usize = 13 << BUCKET_BITS;
+/// Bits of an f32 below the bucket number.
+const BUCKET_SHIFT: u32 = 23 - BUCKET_BITS;
+/// The first bucket's number in the bits of an f32.
+const FIRST_BUCKET: u32 = LOWEST_EXPONENT << BUCKET_BITS;
+
+/// The code of each bucket's lower end.
+static BUCKET_CODE: [u8; BUCKETS] = bucket_table();
+
+/// Fifth root of x in 0…1 by Newton's iteration from above.
+const fn fifth_root(x: f64) -> f64 {
+    if x <= 0.0 {
+        return 0.0;
+    }
+    let mut y: f64 = 1.0;
+    let mut i = 0;
+    while i < 60 {
+        let y4 = y * y * y * y;
+        y = (4.0 * y + x / y4) / 5.0;
+        i += 1;
+    }
+    y
+}
+
+/// sRGB 0…1 to linear 0…1: x^2.4 = x² · (x²)^(1/5).
+const fn linear_from_srgb(s: f64) -> f64 {
+    if s <= 0.04045 {
+        return s / 12.92;
+    }
+    let x = (s + 0.055) / 1.055;
+    x * x * fifth_root(x * x)
+}
+
+const fn linear_table() -> [f32; 256] {
+    let mut table = [0.0; 256];
+    let mut code = 0;
+    while code < 256 {
+        table[code] = linear_from_srgb(code as f64 / 255.0) as f32;
+        code += 1;
+    }
+    table
+}
+
+const fn threshold_table() -> [f32; 256] {
+    let mut table = [f32::INFINITY; 256];
+    let mut code = 0;
+    while code < 255 {
+        table[code] = linear_from_srgb((code as f64 + 0.5) / 255.0) as f32;
+        code += 1;
+    }
+    table
+}
+
+const fn bucket_table() -> [u8; BUCKETS] {
+    let threshold = threshold_table();
+    let mut table = [0; BUCKETS];
+    let (mut bucket, mut code) = (0, 0);
+    while bucket < BUCKETS {
+        let lower = f32::from_bits((bucket as u32 + FIRST_BUCKET) << BUCKET_SHIFT);
+        while threshold[code] <= lower {
+            code += 1;
+        }
+        table[bucket] = code as u8;
+        bucket += 1;
+    }
+    table
+}
+
+/// Linear value of an 8-bit sRGB code.
+#[inline(always)]
+pub fn decode_srgb8(code: u8) -> f32 {
+    LINEAR_FROM_SRGB[usize::from(code)]
+}
+
+/// The 8-bit sRGB code nearest to a linear value, halves upwards; NaN and all below 0 give 0, all
+/// above 1 give 255.
+///
+/// Monotone, never more than half a step off, and the inverse of [`decode_srgb8`] on all 256 codes.
+/// Cost: two look-ups and a comparison.
+#[inline(always)]
+pub fn encode_srgb8(linear: f32) -> u8 {
+    if linear >= 1.0 {
+        return 255;
+    }
+    let bucket = (linear.to_bits() >> BUCKET_SHIFT).wrapping_sub(FIRST_BUCKET) as usize;
+    // Below 2^-13 the subtraction wraps; negative numbers and NaN land beyond the table too.
+    let Some(&code) = BUCKET_CODE.get(bucket) else { return 0 };
+    code + u8::from(linear >= THRESHOLD[usize::from(code)])
+}
+
+/// Linear RGBA to 8-bit sRGB with 8-bit linear alpha.
+#[inline(always)]
+pub fn encode_rgba8(color: Vec4) -> [u8; 4] {
+    [encode_srgb8(color.x), encode_srgb8(color.y), encode_srgb8(color.z), encode_unorm8(color.w)]
+}
+
+/// 8-bit sRGB with 8-bit alpha to linear RGBA.
+#[inline(always)]
+pub fn decode_rgba8(code: [u8; 4]) -> Vec4 {
+    Vec4::new(
+        decode_srgb8(code[0]),
+        decode_srgb8(code[1]),
+        decode_srgb8(code[2]),
+        decode_unorm8(code[3]),
+    )
+}
+
+/// The nearest of 256 equal steps over 0…1; NaN gives 0.
+#[inline(always)]
+pub fn encode_unorm8(value: f32) -> u8 {
+    // `as` saturates and takes NaN to 0.
+    (value * 255.0 + 0.5) as u8
+}
+
+/// The value of one of 256 equal steps over 0…1.
+#[inline(always)]
+pub fn decode_unorm8(code: u8) -> f32 {
+    f32::from(code) * (1.0 / 255.0)
+}
+
+/// Relative luminance of a linear colour with sRGB's primaries (ITU-R BT.709).
+#[inline(always)]
+pub fn luminance(color: Vec3) -> f32 {
+    0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z
+}
+
+/// Straight alpha to premultiplied alpha (Porter and Duff 1984).
+#[inline(always)]
+pub fn premultiply(color: Vec4) -> Vec4 {
+    Vec4::new(color.x * color.w, color.y * color.w, color.z * color.w, color.w)
+}
+
+/// Premultiplied alpha to straight alpha; where alpha is not above 0, transparent black.
+#[inline(always)]
+pub fn unpremultiply(color: Vec4) -> Vec4 {
+    if color.w > 0.0 {
+        Vec4::new(color.x / color.w, color.y / color.w, color.z / color.w, color.w)
+    } else {
+        Vec4::ZERO
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exact_linear(s: f64) -> f64 {
+        if s <= 0.04045 { s / 12.92 } else { libm::pow((s + 0.055) / 1.055, 2.4) }
+    }
+
+    fn exact_srgb(l: f64) -> f64 {
+        if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * libm::pow(l, 1.0 / 2.4) - 0.055 }
+    }
+
+    #[test]
+    fn decoding_is_the_published_curve() {
+        for code in 0..=255_u8 {
+            let exact = exact_linear(f64::from(code) / 255.0);
+            let error = (f64::from(decode_srgb8(code)) - exact).abs();
+            assert!(error <= exact * 6e-8, "{code}: {error}");
+        }
+    }
+
+    #[test]
+    fn all_codes_come_back() {
+        for code in 0..=255_u8 {
+            assert_eq!(encode_srgb8(decode_srgb8(code)), code);
+            assert_eq!(encode_unorm8(decode_unorm8(code)), code);
+        }
+    }
+
+    #[test]
+    fn encoding_is_never_more_than_half_a_step_off_and_monotone() {
+        let mut last = 0;
+        // Every 61st float from 2^-20 to 1: over two million of them.
+        for bits in (0x3580_0000..=0x3f80_0000_u32).step_by(61) {
+            let x = f32::from_bits(bits);
+            let code = encode_srgb8(x);
+            assert!(code >= last, "{x}");
+            last = code;
+            let off = (exact_srgb(f64::from(x)) * 255.0 - f64::from(code)).abs();
+            // The standard's two pieces miss each other by 1e-8 at their joint.
+            assert!(off <= 0.5 + 1e-4, "{x}: {off}");
+        }
+        assert_eq!(last, 255);
+    }
+
+    #[test]
+    fn rounding_changes_exactly_at_the_thresholds() {
+        for code in 0..255_u8 {
+            let t = THRESHOLD[usize::from(code)];
+            assert_eq!(encode_srgb8(t), code + 1);
+            assert_eq!(encode_srgb8(f32::from_bits(t.to_bits() - 1)), code);
+        }
+    }
+
+    #[test]
+    fn strange_numbers_have_a_code() {
+        for (x, code) in [
+            (f32::NAN, 0),
+            (-f32::NAN, 0),
+            (-1.0, 0),
+            (-0.0, 0),
+            (0.0, 0),
+            (1e-40, 0),
+            (f32::NEG_INFINITY, 0),
+            (f32::INFINITY, 255),
+            (1.0, 255),
+            (7.0, 255),
+        ] {
+            assert_eq!(encode_srgb8(x), code, "{x}");
+        }
+        assert_eq!([f32::NAN, -1.0, 0.5, 2.0].map(encode_unorm8), [0, 0, 128, 255]);
+    }
+
+    #[test]
+    fn premultiplication_turns_back() {
+        let c = Vec4::new(0.25, 0.5, 1.0, 0.5);
+        assert_eq!(unpremultiply(premultiply(c)), c);
+        assert_eq!(unpremultiply(Vec4::ZERO), Vec4::ZERO);
+        assert_eq!(luminance(Vec3::ONE), 1.0);
+    }
+}

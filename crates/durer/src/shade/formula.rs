@@ -1,0 +1,68 @@
+//! The one place where a shading model's name becomes its formula, for one sample and for eight.
+
+use super::gouraud::Reflected;
+use super::lane::{Lane, Vec3Lane};
+use super::light::PreparedLights;
+use super::metallic_roughness::{self, Substance};
+use super::normal::Frame;
+use super::phong::{self, Shininess};
+use super::{Shading, tone};
+
+/// Everything that textures and factors say about a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inputs<L> {
+    /// For the metallic-roughness and the unlit model.
+    pub substance: Substance<L>,
+    /// Phong's diffuse colour.
+    pub diffuse: Vec3Lane<L>,
+    /// Phong's specular colour.
+    pub specular: Vec3Lane<L>,
+    /// Phong's exponent, the same in all lanes.
+    pub shininess: Shininess,
+    /// Light of its own.
+    pub emission: Vec3Lane<L>,
+}
+
+/// The displayed colour; `lit` is interpolated or per-face light where the caller has it.
+#[inline(always)]
+pub(super) fn display<L: Lane>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    inputs: &Inputs<L>,
+    lit: Option<&Reflected>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> Vec3Lane<L> {
+    let color = match shading {
+        Shading::Unlit => inputs.substance.base,
+        Shading::MetallicRoughness => {
+            metallic_roughness::reflect(frame, position, &inputs.substance, lights)
+                .plus(inputs.emission)
+        }
+        Shading::Flat => {
+            let frame = Frame { normal: frame.face, ..*frame };
+            phong_color(&frame, position, inputs, lit, lights)
+        }
+        Shading::Gouraud => phong_color(frame, position, inputs, lit, lights),
+        Shading::Phong => phong_color(frame, position, inputs, None, lights),
+    };
+    tone::display(color)
+}
+
+#[inline(always)]
+fn phong_color<L: Lane>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    inputs: &Inputs<L>,
+    lit: Option<&Reflected>,
+    lights: &PreparedLights,
+) -> Vec3Lane<L> {
+    let occlusion = inputs.substance.occlusion;
+    let (diffuse, specular) = match lit {
+        Some(lit) => {
+            (Vec3Lane::splat(occlusion, lit.diffuse), Vec3Lane::splat(occlusion, lit.specular))
+        }
+        None => phong::reflect(frame, position, lights, inputs.shininess, occlusion),
+    };
+    diffuse.times(inputs.diffuse).plus(specular.times(inputs.specular)).plus(inputs.emission)
+}

@@ -1,0 +1,66 @@
+//! Gouraud shading: intensities are computed at the vertices and interpolated over the face.
+//!
+//! H. Gouraud, *Continuous Shading of Curved Surfaces*, IEEE Transactions on Computers C-20(6), 1971.
+//! Cost: O(lights) per vertex, one interpolation per pixel. Limits: highlights inside a face are
+//! lost, and those at a vertex show the face's shape (Mach bands).
+//!
+//! Diffuse and specular light are interpolated apart, so that textures and vertex colours, which are
+//! looked up per pixel, tint the one and not the other.
+
+use super::light::PreparedLights;
+use super::material::PreparedMaterial;
+use super::normal::face_viewer;
+use super::phong;
+use crate::info::{Class, Info};
+use crate::math::Vec3;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "gouraud",
+    title: "Gouraud shading",
+    authors: "Henri Gouraud",
+    year: 1971,
+    source: "IEEE Transactions on Computers C-20(6)",
+    class: Class::ImageSpace,
+    cost: "O(l) per vertex, l lights; O(1) per pixel",
+    limits: "highlights inside a face are lost; the result depends on the triangulation",
+};
+
+/// Light that a point reflects, before the material's colours are applied; linear.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reflected {
+    /// Ambient and diffuse light: times the diffuse colour.
+    pub diffuse: Vec3,
+    /// Specular light: times the specular colour.
+    pub specular: Vec3,
+}
+
+impl Reflected {
+    /// The value at barycentric coordinates of three vertices' values.
+    #[inline(always)]
+    pub fn interpolate(corners: [Self; 3], weights: [f32; 3]) -> Self {
+        let [a, b, c] = corners;
+        let [u, v, w] = weights;
+        Self {
+            diffuse: a.diffuse * u + b.diffuse * v + c.diffuse * w,
+            specular: a.specular * u + b.specular * v + c.specular * w,
+        }
+    }
+}
+
+/// The light at one vertex of a face, for [`super::Surface::lit`].
+///
+/// `position` is relative to the lights' origin, `view` points to the eye (any length), `normal` is
+/// the vertex's and `face` the face's unit normal, which decides from which side it is seen.
+/// Textures of roughness and occlusion have no say at a vertex. Cost: O(lights).
+pub fn shade_vertex(
+    position: Vec3,
+    view: Vec3,
+    normal: Vec3,
+    face: Vec3,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+) -> Reflected {
+    let frame = face_viewer(view.into(), face.into(), normal.into());
+    phong::reflect_one(&frame, position, lights, material.shininess(), 1.0)
+}

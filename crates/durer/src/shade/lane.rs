@@ -1,0 +1,357 @@
+//! One formula for one pixel and for eight: numbers that are either an `f32` or eight of them.
+//!
+//! The lighting formulas are written once over [`Lane`]. Every operation is an IEEE basic operation
+//! done in the same order, so a pixel has the same bits whichever way it was shaded.
+
+use crate::math::Vec3;
+use fearless_simd::{f32x8, i32x8, prelude::*};
+use std::ops::{Add, Div, Mul, Sub};
+
+/// An `f32`, or several side by side.
+pub trait Lane:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f32, Output = Self>
+    + Sub<f32, Output = Self>
+    + Mul<f32, Output = Self>
+{
+    /// `value` in every lane; `self` only says how many there are.
+    fn splat(self, value: f32) -> Self;
+    /// The square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// `then` where `self > limit`, `otherwise` elsewhere and where `self` is NaN.
+    fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self;
+    /// The larger of two; where either is NaN, `other`.
+    fn larger(self, other: Self) -> Self;
+    /// Splits a positive number into its exponent and a mantissa between √½ and √2.
+    fn split(self) -> (Self, Self);
+    /// Two to the power `self`, a whole number between −126 and 127.
+    fn exp2_whole(self) -> Self;
+    /// The nearest whole number below or equal.
+    fn floor(self) -> Self;
+
+    /// `self` where it is above `limit`, else `limit`; NaN becomes `limit`.
+    #[inline(always)]
+    fn at_least(self, limit: f32) -> Self {
+        self.if_above(limit, self, self.splat(limit))
+    }
+
+    /// `self` where it is not above `limit`, else `limit`; NaN stays.
+    #[inline(always)]
+    fn at_most(self, limit: f32) -> Self {
+        self.if_above(limit, self.splat(limit), self)
+    }
+
+    /// `1 − self`.
+    #[inline(always)]
+    fn one_minus(self) -> Self {
+        self.splat(1.0) - self
+    }
+
+    /// `self` to a whole power, by repeated squaring.
+    #[inline(always)]
+    fn power(self, mut exponent: u32) -> Self {
+        let (mut result, mut square) = (self.splat(1.0), self);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = result * square;
+            }
+            square = square * square;
+            exponent >>= 1;
+        }
+        result
+    }
+
+    /// `self`, at least 1e-37, to any power: relative error below 1e-6 · (1 + |exponent · log2 self|).
+    #[inline(always)]
+    fn power_real(self, exponent: f32) -> Self {
+        (self.at_least(1e-37).log2() * exponent).exp2()
+    }
+
+    /// The logarithm to base 2 of a positive normal number.
+    #[inline(always)]
+    fn log2(self) -> Self {
+        let (exponent, m) = self.split();
+        // ln m = 2 artanh s with s = (m − 1)/(m + 1), |s| ≤ 0.1716; five terms reach 1e-9.
+        let s = (m - 1.0) / (m + 1.0);
+        let s2 = s * s;
+        let series = (((s2 * (1.0 / 9.0) + 1.0 / 7.0) * s2 + 1.0 / 5.0) * s2 + 1.0 / 3.0) * s2;
+        exponent + s * (series + 1.0) * (2.0 * std::f32::consts::LOG2_E)
+    }
+
+    /// Two to the power `self`, which is held between −126 and 127.
+    #[inline(always)]
+    fn exp2(self) -> Self {
+        let x = self.at_least(-126.0).at_most(127.0);
+        let whole = (x + 0.5).floor().at_most(127.0);
+        // e^t by Taylor's polynomial, |t| ≤ 0.3466: degree 6 reaches 1e-7.
+        let t = (x - whole) * std::f32::consts::LN_2;
+        let tail = ((t * (1.0 / 720.0) + 1.0 / 120.0) * t + 1.0 / 24.0) * t + 1.0 / 6.0;
+        let series = ((tail * t + 0.5) * t + 1.0) * t + 1.0;
+        series * whole.exp2_whole()
+    }
+}
+
+/// Bits of √½: numbers are split so that mantissas lie between it and its double.
+const SQRT_HALF_BITS: i32 = 0x3f35_04f3;
+const MANTISSA: i32 = 0x007f_ffff;
+
+impl Lane for f32 {
+    #[inline(always)]
+    fn splat(self, value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+    #[inline(always)]
+    fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self {
+        if self > limit { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let bits = (self.to_bits() as i32).wrapping_sub(SQRT_HALF_BITS);
+        let mantissa = (bits & MANTISSA).wrapping_add(SQRT_HALF_BITS);
+        ((bits >> 23) as f32, f32::from_bits(mantissa as u32))
+    }
+    #[inline(always)]
+    fn exp2_whole(self) -> Self {
+        f32::from_bits(((self as i32).wrapping_add(127) << 23) as u32)
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f32::floor(self)
+    }
+}
+
+impl<S: Simd> Lane for f32x8<S> {
+    #[inline(always)]
+    fn splat(self, value: f32) -> Self {
+        self.simd.splat_f32x8(value)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.simd.sqrt_f32x8(self)
+    }
+    #[inline(always)]
+    fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self {
+        let limit = self.simd.splat_f32x8(limit);
+        self.simd.select_f32x8(self.simd.simd_gt_f32x8(self, limit), then, otherwise)
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        self.simd.select_f32x8(self.simd.simd_gt_f32x8(self, other), self, other)
+    }
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let bits = self.bitcast::<i32x8<S>>() - SQRT_HALF_BITS;
+        let mantissa = (bits & MANTISSA) + SQRT_HALF_BITS;
+        (self.simd.cvt_f32_i32x8(bits >> 23), mantissa.bitcast())
+    }
+    #[inline(always)]
+    fn exp2_whole(self) -> Self {
+        ((self.simd.cvt_i32_f32x8(self) + 127) << 23).bitcast()
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.simd.floor_f32x8(self)
+    }
+}
+
+/// A vector or a linear colour, in lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct Vec3Lane<L> {
+    /// First component, or red.
+    pub x: L,
+    /// Second component, or green.
+    pub y: L,
+    /// Third component, or blue.
+    pub z: L,
+}
+
+/// The squared lengths that have a reciprocal: outside, a vector counts as without direction.
+const LENGTH2: (f32, f32) = (1e-36, 1e36);
+
+impl<L: Lane> Vec3Lane<L> {
+    /// From components.
+    #[inline(always)]
+    pub fn new(x: L, y: L, z: L) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The same vector in every lane; `like` only says how many there are.
+    #[inline(always)]
+    pub fn splat(like: L, v: Vec3) -> Self {
+        Self::new(like.splat(v.x), like.splat(v.y), like.splat(v.z))
+    }
+
+    /// Scalar product, summed from the left.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> L {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// Scalar product with one vector for all lanes.
+    #[inline(always)]
+    pub fn dot_all(self, o: Vec3) -> L {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// Vector product.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self::new(
+            self.y * o.z - o.y * self.z,
+            self.z * o.x - o.z * self.x,
+            self.x * o.y - o.x * self.y,
+        )
+    }
+
+    /// Sum.
+    #[inline(always)]
+    pub fn plus(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+
+    /// Difference.
+    #[inline(always)]
+    pub fn minus(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+
+    /// Each component times one factor.
+    #[inline(always)]
+    pub fn scale(self, k: L) -> Self {
+        Self::new(self.x * k, self.y * k, self.z * k)
+    }
+
+    /// Turned about.
+    #[inline(always)]
+    pub fn reversed(self) -> Self {
+        self.scale(self.x.splat(-1.0))
+    }
+
+    /// Component by component.
+    #[inline(always)]
+    pub fn times(self, o: Self) -> Self {
+        Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
+    }
+
+    /// Component by component, with one colour for all lanes.
+    #[inline(always)]
+    pub fn times_all(self, o: Vec3) -> Self {
+        Self::new(self.x * o.x, self.y * o.y, self.z * o.z)
+    }
+
+    /// `then` where `value > limit`, `otherwise` elsewhere and where `value` is NaN.
+    #[inline(always)]
+    pub fn if_above(value: L, limit: f32, then: Self, otherwise: Self) -> Self {
+        Self::new(
+            value.if_above(limit, then.x, otherwise.x),
+            value.if_above(limit, then.y, otherwise.y),
+            value.if_above(limit, then.z, otherwise.z),
+        )
+    }
+
+    /// Unit length; `otherwise` where there is no direction: zero, NaN, or beyond 1e18.
+    #[inline(always)]
+    pub fn unit_or(self, otherwise: Self) -> Self {
+        let length2 = self.dot(self);
+        let unit = self.scale(length2.splat(1.0) / length2.sqrt());
+        let bounded = Self::if_above(length2, LENGTH2.1, otherwise, unit);
+        Self::if_above(length2, LENGTH2.0, bounded, otherwise)
+    }
+}
+
+impl From<Vec3> for Vec3Lane<f32> {
+    #[inline(always)]
+    fn from(v: Vec3) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
+impl From<Vec3Lane<f32>> for Vec3 {
+    #[inline(always)]
+    fn from(v: Vec3Lane<f32>) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
+/// Every SIMD level of this machine, for tests.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<fearless_simd::Level> {
+    use fearless_simd::Level;
+    let best = Level::new();
+    let mut levels = vec![best, Level::baseline()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(best.as_sse2().map(Level::Sse2));
+        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::dispatch;
+
+    #[test]
+    fn powers_are_close_to_the_platforms() {
+        for i in 1..=1000 {
+            let x = i as f32 / 1000.0;
+            for e in [0.0_f32, 0.5, 1.0, 2.2, 17.3, 96.078, 900.5] {
+                let exact = f64::from(x).powf(f64::from(e));
+                let log = f64::from(e) * f64::from(x).log2();
+                if log > -120.0 {
+                    let error = (f64::from(x.power_real(e)) - exact).abs();
+                    assert!(error <= exact * 1e-6 * (1.0 + log.abs()), "{x}^{e}");
+                }
+            }
+            let exact = f64::from(x).powi(37);
+            assert!((f64::from(x.power(37)) - exact).abs() <= exact * 1e-5 + 1e-37);
+        }
+        assert!(0.0_f32.power_real(2.0) < 1e-37);
+        assert_eq!(1.0_f32.power_real(55.5), 1.0);
+        assert!(f32::NAN.power_real(2.0) < 1e-37);
+    }
+
+    #[inline(always)]
+    fn functions<L: Lane>(x: L) -> [L; 6] {
+        let v = Vec3Lane::new(x, x * 0.5, x - 1.0);
+        let unit = v.unit_or(Vec3Lane::splat(x, Vec3::X));
+        [x.power_real(3.7), x.log2(), (x * 0.3).exp2(), x.at_most(2.0).power(11), unit.x, unit.z]
+    }
+
+    #[test]
+    fn eight_lanes_are_eight_numbers_bit_for_bit() {
+        let inputs: [f32; 8] = [1e-30, 1e-3, 0.7, 1.0, 1.5, 3.25, 1e9, 1e30];
+        for level in levels() {
+            let lanes = dispatch!(level, simd => {
+                functions(f32x8::simd_from(simd, inputs)).map(<[f32; 8]>::from)
+            });
+            for (i, &x) in inputs.iter().enumerate() {
+                let scalar = functions(x);
+                for (a, b) in scalar.iter().zip(&lanes) {
+                    assert_eq!(a.to_bits(), b[i].to_bits(), "{x} at {level:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn vectors_without_direction_are_replaced() {
+        for v in [Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::INFINITY), Vec3::splat(1e30)] {
+            assert_eq!(Vec3::from(Vec3Lane::from(v).unit_or(Vec3::Y.into())), Vec3::Y);
+        }
+    }
+}

@@ -1,0 +1,396 @@
+//! Materials with their textures, ready for shading, and the one door to all shading models.
+
+use super::Shading;
+use super::formula::{self, Inputs};
+use super::gouraud::Reflected;
+use super::lane::{Lane, Vec3Lane};
+use super::light::PreparedLights;
+use super::metallic_roughness::Substance;
+use super::mip::MipChain;
+use super::normal::{face_viewer, perturbed};
+use super::phong::{Colors, Shininess, from_metallic_roughness};
+use super::texture::{PreparedTexture, Usage};
+use crate::math::{Vec2, Vec3, Vec4};
+use crate::scene::{AlphaMode, Material, Scene, ShadingModel, TextureRef};
+use std::sync::Arc;
+
+/// Texture coordinates and how they change over the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TexCoord {
+    /// (0, 0) is the upper left corner of the image.
+    pub uv: Vec2,
+    /// Change of `uv` from one pixel to the next along x.
+    pub ddx: Vec2,
+    /// Change of `uv` from one pixel to the next along y.
+    pub ddy: Vec2,
+}
+
+/// A visible point. World axes, positions relative to [`PreparedLights::origin`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface<'a> {
+    /// Where it is. Only read where there are point or spot lights.
+    pub position: Vec3,
+    /// Towards the eye, any length: `−position` in perspective, one direction for parallel lines.
+    pub view: Vec3,
+    /// The interpolated normal, any length. Zero where the mesh has none: the face's is taken.
+    pub normal: Vec3,
+    /// Unit normal of the face's plane, on either side: it is turned to the viewer.
+    pub geometric_normal: Vec3,
+    /// Tangent, w = ±1 the sign of the bitangent; without one a normal map's frame is taken from
+    /// the derivatives.
+    pub tangent: Option<Vec4>,
+    /// Change of `position` from one pixel to the next along x; only for normal maps.
+    pub position_dx: Vec3,
+    /// Change of `position` from one pixel to the next along y; only for normal maps.
+    pub position_dy: Vec3,
+    /// Set by set, as many as the mesh has; sets beyond count as (0, 0).
+    pub tex_coords: &'a [TexCoord],
+    /// Vertex colour, linear with straight alpha; multiplies the base colour.
+    pub color: Vec4,
+    /// For flat and Gouraud shading: from [`super::shade_face`], or interpolated from
+    /// [`super::shade_vertex`]. Without it both light the point itself.
+    pub lit: Option<Reflected>,
+}
+
+impl Default for Surface<'_> {
+    /// A white point that faces the eye, without textures.
+    fn default() -> Self {
+        Self {
+            position: Vec3::ZERO,
+            view: Vec3::Z,
+            normal: Vec3::ZERO,
+            geometric_normal: Vec3::Z,
+            tangent: None,
+            position_dx: Vec3::ZERO,
+            position_dy: Vec3::ZERO,
+            tex_coords: &[],
+            color: Vec4::ONE,
+            lit: None,
+        }
+    }
+}
+
+/// A texture in its place.
+#[derive(Debug, Clone)]
+struct Slot<'a> {
+    texture: PreparedTexture<'a>,
+    set: usize,
+    /// Columns of the affine map from the mesh's coordinates to the texture's.
+    columns: [Vec2; 3],
+}
+
+impl Slot<'_> {
+    #[inline]
+    fn coordinates(&self, surface: &Surface<'_>) -> TexCoord {
+        let at = surface.tex_coords.get(self.set).copied().unwrap_or_default();
+        let [x, y, offset] = self.columns;
+        let turned = |d: Vec2| x * d.x + y * d.y;
+        TexCoord { uv: turned(at.uv) + offset, ddx: turned(at.ddx), ddy: turned(at.ddy) }
+    }
+
+    #[inline]
+    fn sample(&self, surface: &Surface<'_>) -> Vec4 {
+        let at = self.coordinates(surface);
+        self.texture.sample(at.uv, at.ddx, at.ddy)
+    }
+}
+
+/// The mip chains made so far: one per image and use, however many materials share it.
+struct Chains<'a> {
+    scene: &'a Scene,
+    made: Vec<(usize, Usage, Arc<MipChain<'a>>)>,
+}
+
+impl<'a> Chains<'a> {
+    /// A slot for a texture; none where it refers to nothing.
+    fn slot(&mut self, reference: Option<TextureRef>, usage: Usage) -> Option<Slot<'a>> {
+        let reference = reference?;
+        let texture = self.scene.textures.get(reference.texture)?;
+        let image = self.scene.images.get(texture.image)?;
+        let known = self.made.iter().find(|(i, u, _)| (*i, *u) == (texture.image, usage));
+        let chain = if let Some((_, _, chain)) = known {
+            Arc::clone(chain)
+        } else {
+            let chain = Arc::new(MipChain::new(image, usage));
+            self.made.push((texture.image, usage, Arc::clone(&chain)));
+            chain
+        };
+        let columns = reference.transform.to_cols_array_2d().map(|c| {
+            let [x, y, _] = c;
+            Vec2::new(x as f32, y as f32)
+        });
+        let texture = PreparedTexture::from_chain(chain, texture.sampler);
+        Some(Slot { texture, set: reference.tex_coord as usize, columns })
+    }
+}
+
+/// All materials of a scene, ready for shading. Borrows the scene's images.
+#[derive(Debug, Clone)]
+pub struct PreparedMaterials<'a> {
+    materials: Vec<PreparedMaterial<'a>>,
+    default: PreparedMaterial<'a>,
+}
+
+impl<'a> PreparedMaterials<'a> {
+    /// Filters the mip chains that the scene's materials use, each once.
+    ///
+    /// Cost: O(texels) time, a third of the images in memory.
+    pub fn new(scene: &'a Scene) -> Self {
+        let mut chains = Chains { scene, made: Vec::new() };
+        let mut prepare = |m: &Material| PreparedMaterial::new(m, &mut chains);
+        let materials = scene.materials.iter().map(&mut prepare).collect();
+        let default = prepare(&Material::default());
+        Self { materials, default }
+    }
+
+    /// The material of this index; for `None`, or where there is none, the default material.
+    #[inline]
+    pub fn get(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
+        index.and_then(|i| self.materials.get(i)).unwrap_or(&self.default)
+    }
+}
+
+/// A material with its textures.
+#[derive(Debug, Clone)]
+pub struct PreparedMaterial<'a> {
+    model: ShadingModel,
+    base_color: Vec4,
+    alpha_mode: AlphaMode,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    emissive: Vec3,
+    specular: Vec3,
+    /// Phong's parameters without textures.
+    phong: Colors,
+    base_color_slot: Option<Slot<'a>>,
+    metallic_roughness_slot: Option<Slot<'a>>,
+    normal_slot: Option<Slot<'a>>,
+    occlusion_slot: Option<Slot<'a>>,
+    emissive_slot: Option<Slot<'a>>,
+    specular_slot: Option<Slot<'a>>,
+    textured: bool,
+}
+
+impl<'a> PreparedMaterial<'a> {
+    fn new(m: &Material, chains: &mut Chains<'a>) -> Self {
+        let base_usage = match m.alpha_mode {
+            AlphaMode::Opaque => Usage::Color,
+            _ => Usage::ColorWithAlpha,
+        };
+        let (metallic, roughness) = metallic_roughness_of(m);
+        let mut slot = |reference, usage| chains.slot(reference, usage);
+        let mut prepared = Self {
+            model: m.model,
+            base_color: m.base_color,
+            alpha_mode: m.alpha_mode,
+            metallic,
+            roughness,
+            normal_scale: m.normal_scale,
+            occlusion_strength: m.occlusion_strength,
+            emissive: m.emissive,
+            specular: m.specular,
+            phong: phong_of(m),
+            base_color_slot: slot(m.base_color_texture, base_usage),
+            metallic_roughness_slot: slot(m.metallic_roughness_texture, Usage::Data),
+            normal_slot: slot(m.normal_texture, Usage::Data),
+            occlusion_slot: slot(m.occlusion_texture, Usage::Data),
+            emissive_slot: slot(m.emissive_texture, Usage::Color),
+            specular_slot: slot(m.specular_texture, Usage::Color),
+            textured: false,
+        };
+        prepared.textured = prepared.any_slot();
+        prepared
+    }
+
+    fn any_slot(&self) -> bool {
+        let slots = [
+            &self.base_color_slot,
+            &self.metallic_roughness_slot,
+            &self.normal_slot,
+            &self.occlusion_slot,
+            &self.emissive_slot,
+            &self.specular_slot,
+        ];
+        slots.into_iter().any(Option::is_some)
+    }
+
+    /// The formula the material was written for.
+    pub fn shading(&self) -> Shading {
+        self.model.into()
+    }
+
+    /// Whether the material is opaque and without textures, so that [`super::shade_x8`] may be used
+    /// on meshes without vertex colours.
+    pub fn is_plain(&self) -> bool {
+        !self.textured && self.alpha_mode == AlphaMode::Opaque
+    }
+
+    /// Whether any slot has a texture, so that texture coordinates are needed.
+    pub fn is_textured(&self) -> bool {
+        self.textured
+    }
+
+    /// Whether tangents or position derivatives are needed.
+    pub fn has_normal_map(&self) -> bool {
+        self.normal_slot.is_some()
+    }
+
+    /// What alpha means.
+    pub fn alpha_mode(&self) -> AlphaMode {
+        self.alpha_mode
+    }
+
+    /// Phong's exponent without textures.
+    pub(super) fn shininess(&self) -> Shininess {
+        self.phong.shininess
+    }
+
+    /// The inputs of all formulas where no texture has a say.
+    #[inline(always)]
+    pub(super) fn constant_inputs<L: Lane>(&self, like: L) -> Inputs<L> {
+        let substance = Substance {
+            base: Vec3Lane::splat(like, self.base_color.truncate()),
+            metallic: like.splat(self.metallic),
+            roughness: like.splat(self.roughness),
+            occlusion: like.splat(1.0),
+        };
+        Inputs {
+            substance,
+            diffuse: Vec3Lane::splat(like, self.phong.diffuse),
+            specular: Vec3Lane::splat(like, self.phong.specular),
+            shininess: self.phong.shininess,
+            emission: Vec3Lane::splat(like, self.emissive),
+        }
+    }
+
+    /// Base colour with its texture and the vertex colour.
+    #[inline]
+    fn base(&self, surface: &Surface<'_>) -> Vec4 {
+        let base = self.base_color * surface.color;
+        self.base_color_slot.as_ref().map_or(base, |slot| base * slot.sample(surface))
+    }
+
+    /// The alpha of a point, as [`shade`] gives it, without lighting it.
+    pub fn alpha(&self, surface: &Surface<'_>) -> f32 {
+        self.coverage(self.base(surface).w)
+    }
+
+    /// The alpha that is left of `alpha`: 1 or 0 unless the material blends.
+    #[inline]
+    fn coverage(&self, alpha: f32) -> f32 {
+        match self.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask { cutoff } => f32::from(u8::from(alpha >= cutoff)),
+            AlphaMode::Blend if alpha > 0.0 => alpha.min(1.0),
+            AlphaMode::Blend => 0.0,
+        }
+    }
+
+    /// The inputs of all formulas at one point.
+    #[inline]
+    fn inputs(&self, surface: &Surface<'_>, base: Vec3, shading: Shading) -> Inputs<f32> {
+        let mut inputs = self.constant_inputs(1.0);
+        inputs.substance.base = base.into();
+        if let Some(slot) = &self.emissive_slot {
+            inputs.emission = (self.emissive * slot.sample(surface).truncate()).into();
+        }
+        if let Some(slot) = &self.occlusion_slot {
+            let dark = 1.0 - slot.sample(surface).x;
+            inputs.substance.occlusion = 1.0 - self.occlusion_strength * dark;
+        }
+        if let Some(slot) = &self.metallic_roughness_slot {
+            let data = slot.sample(surface);
+            inputs.substance.roughness *= data.y;
+            inputs.substance.metallic *= data.z;
+        }
+        if !matches!(shading, Shading::MetallicRoughness | Shading::Unlit) {
+            self.phong_inputs(surface, base, &mut inputs);
+        }
+        inputs
+    }
+
+    #[inline]
+    fn phong_inputs(&self, surface: &Surface<'_>, base: Vec3, inputs: &mut Inputs<f32>) {
+        if self.model == ShadingModel::MetallicRoughness {
+            // Constant unless something varies the base colour or the roughness.
+            if self.textured || surface.color != Vec4::ONE {
+                let s = &inputs.substance;
+                let colors = from_metallic_roughness(base, s.metallic, s.roughness);
+                inputs.diffuse = colors.diffuse.into();
+                inputs.specular = colors.specular.into();
+                inputs.shininess = colors.shininess;
+            }
+            return;
+        }
+        inputs.diffuse = base.into();
+        if let Some(slot) = &self.specular_slot {
+            inputs.specular = (self.specular * slot.sample(surface).truncate()).into();
+        }
+    }
+
+    /// The interpolated normal, bent by the normal map.
+    #[inline]
+    fn normal(&self, surface: &Surface<'_>) -> Vec3 {
+        let Some(slot) = &self.normal_slot else { return surface.normal };
+        let at = slot.coordinates(surface);
+        let texel = slot.texture.sample(at.uv, at.ddx, at.ddy).truncate() * 2.0 - Vec3::ONE;
+        let map = Vec3::new(texel.x * self.normal_scale, texel.y * self.normal_scale, texel.z);
+        perturbed(surface, at, map)
+    }
+}
+
+/// The metallic-roughness parameters of a material, whichever formula it was written for.
+fn metallic_roughness_of(m: &Material) -> (f32, f32) {
+    if m.model == ShadingModel::Phong {
+        // The GGX lobe as wide as the Blinn–Phong lobe: α² = 2/(s + 2), roughness = √α.
+        let exponent = if m.shininess > 0.0 { m.shininess } else { 0.0 };
+        (0.0, (2.0 / (exponent + 2.0)).sqrt().sqrt())
+    } else {
+        (m.metallic, m.roughness)
+    }
+}
+
+/// Phong's parameters of a material, whichever formula it was written for.
+fn phong_of(m: &Material) -> Colors {
+    let base = m.base_color.truncate();
+    if m.model == ShadingModel::MetallicRoughness {
+        return from_metallic_roughness(base, m.metallic, m.roughness);
+    }
+    Colors { diffuse: base, specular: m.specular, shininess: Shininess::new(m.shininess) }
+}
+
+/// The colour of a visible point: linear RGBA with straight alpha, all within 0…1 and never NaN.
+///
+/// Alpha is 1 for opaque materials, 0 or 1 for masked ones (the caller drops what has 0), else the
+/// surface's alpha. Both sides of a face are lit; what is brighter than white keeps its hue and is
+/// drawn towards white, all else is kept exactly. Cost: O(lights) and one sample per texture;
+/// allocates nothing.
+pub fn shade(
+    surface: &Surface<'_>,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> Vec4 {
+    let base = material.base(surface);
+    let alpha = material.coverage(base.w);
+    if alpha == 0.0 {
+        return Vec4::ZERO;
+    }
+    let mut frame = face_viewer(
+        surface.view.into(),
+        surface.geometric_normal.into(),
+        Vec3Lane::from(surface.normal),
+    );
+    if material.has_normal_map() {
+        // The map bends the side that the mesh's normal is on; seen from behind, it is turned with it.
+        let bent = material.normal(surface);
+        let kept = Vec3::from(frame.normal).dot(surface.normal) >= 0.0;
+        frame.normal = if kept { bent } else { -bent }.into();
+    }
+    let inputs = material.inputs(surface, base.truncate(), shading);
+    let position = surface.position.into();
+    let shown = formula::display(&frame, position, &inputs, surface.lit.as_ref(), lights, shading);
+    Vec3::from(shown).extend(alpha)
+}

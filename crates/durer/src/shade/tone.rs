@@ -1,0 +1,73 @@
+//! The last step of every formula: what a display cannot show is brought into 0…1.
+
+use super::lane::{Lane, Vec3Lane};
+
+/// Share of white that an infinitely bright colour gets.
+const BLEACH: f32 = 0.5;
+/// Brighter counts as this bright, so that infinity stays calculable.
+const BRIGHTEST: f32 = 1e6;
+
+/// Colours within 0…1 are kept exactly; NaN and negative channels become 0. A brighter colour is
+/// scaled until its largest channel is 1, so that it keeps its hue where cutting each channel would
+/// turn orange into yellow, and drawn towards white by how much too bright it was.
+#[inline(always)]
+pub(super) fn display<L: Lane>(color: Vec3Lane<L>) -> Vec3Lane<L> {
+    let c = Vec3Lane::new(held(color.x), held(color.y), held(color.z));
+    let scale = c.x.splat(1.0) / c.x.larger(c.y).larger(c.z).at_least(1.0);
+    let white = scale.one_minus() * BLEACH;
+    Vec3Lane::new(
+        bleached(c.x * scale, white),
+        bleached(c.y * scale, white),
+        bleached(c.z * scale, white),
+    )
+}
+
+#[inline(always)]
+fn held<L: Lane>(channel: L) -> L {
+    channel.at_least(0.0).at_most(BRIGHTEST)
+}
+
+/// Moves a channel towards 1; exactly the channel itself where `white` is 0.
+#[inline(always)]
+fn bleached<L: Lane>(channel: L, white: L) -> L {
+    (channel + channel.one_minus() * white).at_most(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+
+    fn shown(c: Vec3) -> Vec3 {
+        display(Vec3Lane::from(c)).into()
+    }
+
+    #[test]
+    fn what_a_display_can_show_is_kept_bit_for_bit() {
+        for i in 0..=100 {
+            let c = Vec3::new(i as f32 / 100.0, 0.123, 1.0 - i as f32 / 100.0);
+            assert_eq!(shown(c), c);
+        }
+    }
+
+    #[test]
+    fn too_bright_colours_keep_their_order_and_grow_whiter() {
+        let mut last = shown(Vec3::new(1.0, 0.5, 0.1));
+        for i in 1..50 {
+            let now = shown(Vec3::new(1.0, 0.5, 0.1) * (1.0 + i as f32 * 0.2));
+            let ordered = now.y > last.y && now.z > last.z && now.y > now.z;
+            assert!(now.x > 0.999_999 && ordered, "{now}");
+            last = now;
+        }
+        assert!(last.z < 0.6);
+    }
+
+    #[test]
+    fn every_input_gives_a_colour() {
+        let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e38, 0.5];
+        for (r, g) in strange.iter().flat_map(|r| strange.map(|g| (*r, g))) {
+            let c = shown(Vec3::new(r, g, f32::NAN));
+            assert!(c.min_element() >= 0.0 && c.max_element() <= 1.0, "{r} {g}: {c}");
+        }
+    }
+}

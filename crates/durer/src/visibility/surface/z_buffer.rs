@@ -1,1 +1,0 @@
-//! The z-buffer: the production path.

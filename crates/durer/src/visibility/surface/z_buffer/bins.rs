@@ -1,0 +1,174 @@
+//! Which triangles touch which tiles: lists per job, joined in the order of the jobs.
+
+use super::tile::TILE;
+use crate::raster::fixed::SUBPIXEL_BITS;
+use crate::scene::Scene;
+use crate::simd::Level;
+use crate::view::View;
+use crate::visibility::surface::setup::{Assembler, Counts, Coverage, Filter, Run, ScreenTriangle};
+use std::ops::Range;
+
+/// Triangles per job: enough to keep a thread busy for about a tenth of a millisecond.
+const JOB_TRIANGLES: u32 = 8192;
+
+/// Pieces of runs that one thread sets up at a time; all of one coverage.
+pub struct Job {
+    coverage: Coverage,
+    pieces: Vec<(usize, Range<u32>)>,
+}
+
+/// Divides the runs into jobs: opaque ones first, then masked, then blended, each in scene order.
+pub fn jobs(runs: &[Run]) -> Vec<Job> {
+    let mut jobs: Vec<Job> = Vec::new();
+    for coverage in [Coverage::Opaque, Coverage::Masked, Coverage::Blended] {
+        let mut room = 0;
+        for (index, run) in runs.iter().enumerate().filter(|(_, r)| r.coverage == coverage) {
+            let mut start = run.range.start;
+            while start < run.range.end {
+                if room == 0 {
+                    jobs.push(Job { coverage, pieces: Vec::new() });
+                    room = JOB_TRIANGLES;
+                }
+                let end = run.range.end.min(start.saturating_add(room));
+                room -= end - start;
+                if let Some(job) = jobs.last_mut() {
+                    job.pieces.push((index, start..end));
+                }
+                start = end;
+            }
+        }
+    }
+    jobs
+}
+
+/// The triangles of one job and the tiles that they touch.
+pub struct Bins {
+    /// What the job's triangles do with their fragments.
+    pub coverage: Coverage,
+    /// What happened on the way.
+    pub counts: Counts,
+    triangles: Vec<ScreenTriangle>,
+    /// Tiles with something in them, ascending, and where their entries begin.
+    starts: Vec<(u32, u32)>,
+    entries: Vec<u32>,
+}
+
+impl Bins {
+    /// Sets up the triangles of a job and sorts them into tiles.
+    pub fn new(
+        job: &Job,
+        runs: &[Run],
+        scene: &Scene,
+        view: &View,
+        filter: Filter,
+        level: Level,
+    ) -> Self {
+        let mut assembler = Assembler::new(scene, view, filter, level);
+        let mut triangles = Vec::new();
+        let mut touched = Vec::new();
+        let screen = TileGrid::new(view.width(), view.height());
+        for (run, range) in &job.pieces {
+            assembler.primitives(&runs[*run], range.clone(), |triangle| {
+                let index = triangles.len() as u32;
+                screen.touched(&triangle, filter.sample_reach, |tile| touched.push((tile, index)));
+                triangles.push(triangle);
+            });
+        }
+        let (starts, entries) = sort_by_tile(&touched, screen.count());
+        Self { coverage: job.coverage, counts: assembler.counts, triangles, starts, entries }
+    }
+
+    /// The triangles that touch a tile, in item order.
+    pub fn of_tile(&self, tile: u32) -> impl Iterator<Item = &ScreenTriangle> + '_ {
+        let entries = match self.starts.binary_search_by_key(&tile, |s| s.0) {
+            Ok(i) => {
+                let end = self.starts.get(i + 1).map_or(self.entries.len(), |s| s.1 as usize);
+                &self.entries[self.starts[i].1 as usize..end]
+            }
+            Err(_) => &[],
+        };
+        entries.iter().map(|&e| &self.triangles[e as usize])
+    }
+}
+
+/// Sorts (tile, triangle) pairs by tile, keeping the order of the triangles.
+fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> (Vec<(u32, u32)>, Vec<u32>) {
+    let mut next = vec![0u32; tiles as usize + 1];
+    for (tile, _) in touched {
+        next[*tile as usize + 1] += 1;
+    }
+    let mut starts = Vec::new();
+    for tile in 0..tiles as usize {
+        if next[tile + 1] > 0 {
+            starts.push((tile as u32, next[tile]));
+        }
+        next[tile + 1] += next[tile];
+    }
+    let mut entries = vec![0; touched.len()];
+    for (tile, triangle) in touched {
+        let slot = &mut next[*tile as usize];
+        entries[*slot as usize] = *triangle;
+        *slot += 1;
+    }
+    (starts, entries)
+}
+
+/// The screen divided into tiles, row by row.
+#[derive(Debug, Clone, Copy)]
+pub struct TileGrid {
+    /// Tiles in a row.
+    pub columns: i32,
+    /// Rows of tiles.
+    pub rows: i32,
+}
+
+impl TileGrid {
+    /// The tiles that cover a screen of this many pixels.
+    pub fn new(width: u32, height: u32) -> Self {
+        let tiles = |pixels: u32| pixels.div_ceil(TILE as u32) as i32;
+        Self { columns: tiles(width), rows: tiles(height) }
+    }
+
+    fn count(&self) -> u32 {
+        (self.columns * self.rows) as u32
+    }
+
+    /// Calls `visit` with each tile that the triangle may touch.
+    #[inline(always)]
+    fn touched(&self, t: &ScreenTriangle, reach: i32, mut visit: impl FnMut(u32)) {
+        let (x0, x1) = tile_range(&t.x, reach, self.columns);
+        let (y0, y1) = tile_range(&t.y, reach, self.rows);
+        if x0 == x1 && y0 == y1 {
+            return visit((y0 * self.columns + x0) as u32);
+        }
+        for y in y0..=y1 {
+            for x in x0..=x1 {
+                if !beyond_an_edge(t, x, y) {
+                    visit((y * self.columns + x) as u32);
+                }
+            }
+        }
+    }
+}
+
+/// First and last tile that three coordinates, and `reach` around them, touch.
+#[inline(always)]
+fn tile_range(v: &[i32; 3], reach: i32, count: i32) -> (i32, i32) {
+    const SHIFT: u32 = SUBPIXEL_BITS + TILE.trailing_zeros();
+    let (lo, hi) = (v[0].min(v[1]).min(v[2]) - reach, v[0].max(v[1]).max(v[2]) + reach);
+    ((lo >> SHIFT).max(0), (hi >> SHIFT).min(count - 1))
+}
+
+/// Whether a tile lies wholly outside one edge of a triangle.
+fn beyond_an_edge(t: &ScreenTriangle, x: i32, y: i32) -> bool {
+    let size = i64::from(TILE) << SUBPIXEL_BITS;
+    let (left, top) = (i64::from(x) * size, i64::from(y) * size);
+    (0..3).any(|i| {
+        let j = (i + 1) % 3;
+        let (dx, dy) = (i64::from(t.x[j] - t.x[i]), i64::from(t.y[j] - t.y[i]));
+        // The corner of the tile that lies furthest inside the edge.
+        let far_x = if dy < 0 { left + size } else { left };
+        let far_y = if dx > 0 { top + size } else { top };
+        dx * (far_y - i64::from(t.y[i])) - dy * (far_x - i64::from(t.x[i])) < 0
+    })
+}

@@ -1,0 +1,282 @@
+//! The z-buffer: the production path.
+//!
+//! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation,
+//! University of Utah, 1974 (and W. Straßer, 1974). Image space. Cost: O(triangles + covered
+//! samples); memory O(triangles on the screen + one tile per thread).
+//!
+//! Deviations: the screen is worked off in tiles of 64 × 64 pixels; a tile first finds, for each
+//! sample, the nearest triangle (a visibility buffer: Burns & Hunt 2013), then lights each visible
+//! triangle once per pixel. Equal depths are won by the lower item. Blended surfaces are sorted per
+//! pixel.
+
+mod attributes;
+mod bins;
+mod resolve;
+mod surface;
+mod tile;
+
+use crate::info::{Class, Info};
+use crate::math::Vec4;
+use crate::scene::Scene;
+use crate::shade::color::{encode_rgba8, unpremultiply};
+use crate::shade::{PreparedLights, PreparedMaterials, Shading};
+use crate::simd::Level;
+use crate::target::{Framebuffer, NO_ITEM};
+use crate::view::View;
+use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
+use crate::visibility::surface::{Background, Cull, Samples};
+use bins::{Bins, TileGrid, jobs};
+use fearless_simd::dispatch;
+use resolve::{Fragments, MaskTest, TileColors, background_rows};
+use surface::{Lighting, Lit};
+use tile::{AllPass, FragmentTest, SamplePlane, TILE};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "z-buffer",
+    title: "z-buffer",
+    authors: "E. Catmull; W. Straßer",
+    year: 1974,
+    source: "A Subdivision Algorithm for Computer Display of Curved Surfaces, University of Utah",
+    class: Class::ImageSpace,
+    cost: "O(triangles + covered samples)",
+    limits: "one surface per sample; edges as fine as the samples",
+};
+
+/// What the picture is to have.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Samples per pixel of the colour plane.
+    pub samples: Samples,
+    /// Which faces are left out.
+    pub cull: Cull,
+    /// `None` = by material.
+    pub shading: Option<Shading>,
+    /// What is behind everything.
+    pub background: Background,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
+}
+
+impl Default for Options {
+    /// Four samples on white, nothing culled, the machine's best level.
+    fn default() -> Self {
+        Self {
+            samples: Samples::Four,
+            cull: Cull::None,
+            shading: None,
+            background: Background::Color(Vec4::ONE),
+            level: Level::new(),
+        }
+    }
+}
+
+/// Seconds of the two halves of the work, and what became of the triangles.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Report {
+    /// What became of the triangles.
+    pub counts: Counts,
+    /// Vertices, clipping, set-up, binning.
+    pub geometry_seconds: f64,
+    /// Rasterization, shading, resolve.
+    pub raster_seconds: f64,
+}
+
+/// Renders a scene that has passed [`Scene::check`] into the planes that the framebuffer has.
+///
+/// # Errors
+/// [`crate::Error::Limit`] where the scene has too many primitives to number.
+pub fn render(
+    scene: &Scene,
+    view: &View,
+    lights: &PreparedLights,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+) -> crate::Result<Report> {
+    let start = std::time::Instant::now();
+    let runs = runs(scene)?;
+    let offsets = options.samples.offsets();
+    let reach = offsets.iter().flatten().map(|o| o.abs()).max().unwrap_or(0);
+    let filter = Filter { cull_back: options.cull == Cull::Back, sample_reach: reach };
+    let bins = crate::parallel::map(jobs(&runs), |job| {
+        Bins::new(&job, &runs, scene, view, filter, options.level)
+    });
+    let mut report = Report::default();
+    for bin in &bins {
+        report.counts += bin.counts;
+    }
+    report.geometry_seconds = start.elapsed().as_secs_f64();
+
+    let start = std::time::Instant::now();
+    let materials = PreparedMaterials::new(scene);
+    let lighting = Lighting {
+        scene,
+        view,
+        runs: &runs,
+        materials: &materials,
+        lights,
+        shading: options.shading,
+    };
+    let triangle_count = scene.triangle_count() as u32;
+    let frame = Frame { view, options, lighting, bins: &bins, triangle_count };
+    crate::parallel::map(bands(framebuffer), |band| frame.render_band(band));
+    report.raster_seconds = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// A row of tiles of the framebuffer's planes.
+struct Band<'a> {
+    row: i32,
+    width: usize,
+    color: &'a mut [[u8; 4]],
+    depth: Option<&'a mut [f32]>,
+    item: Option<&'a mut [u32]>,
+    normal: Option<&'a mut [[f32; 3]]>,
+}
+
+/// Divides the planes into rows of tiles that threads can write at the same time.
+fn bands(framebuffer: &mut Framebuffer) -> Vec<Band<'_>> {
+    let width = framebuffer.width() as usize;
+    let size = width * TILE as usize;
+    let mut depth = framebuffer.depth.as_mut().map(|p| p.data_mut().chunks_mut(size));
+    let mut item = framebuffer.item.as_mut().map(|p| p.data_mut().chunks_mut(size));
+    let mut normal = framebuffer.normal.as_mut().map(|p| p.data_mut().chunks_mut(size));
+    let color = framebuffer.color.data_mut().chunks_mut(size);
+    color
+        .enumerate()
+        .map(|(row, color)| Band {
+            row: row as i32,
+            width,
+            color,
+            depth: depth.as_mut().and_then(Iterator::next),
+            item: item.as_mut().and_then(Iterator::next),
+            normal: normal.as_mut().and_then(Iterator::next),
+        })
+        .collect()
+}
+
+/// What all tiles share.
+struct Frame<'a> {
+    view: &'a View,
+    options: &'a Options,
+    lighting: Lighting<'a>,
+    bins: &'a [Bins],
+    /// Items from here on are lines and points, which the item plane does not show.
+    triangle_count: u32,
+}
+
+/// One thread's buffers.
+struct Scratch<'a> {
+    planes: Vec<SamplePlane>,
+    /// One sample at the pixel's centre, for depth, item and normal.
+    center: Vec<SamplePlane>,
+    fragments: Fragments,
+    colors: TileColors,
+    lit: Lit<'a>,
+}
+
+impl Frame<'_> {
+    fn render_band(&self, mut band: Band<'_>) {
+        let grid = TileGrid::new(self.view.width(), self.view.height());
+        let offsets = self.options.samples.offsets();
+        let wants_center = band.depth.is_some() || band.item.is_some() || band.normal.is_some();
+        let mut scratch = Scratch {
+            planes: offsets.iter().map(|&o| SamplePlane::new(o)).collect(),
+            center: wants_center.then(|| SamplePlane::new([0; 2])).into_iter().collect(),
+            fragments: Fragments::new(offsets),
+            colors: TileColors::new(),
+            lit: Lit::new(self.lighting),
+        };
+        for column in 0..grid.columns {
+            let tile = [column * TILE, band.row * TILE];
+            let size = [
+                TILE.min(self.view.width() as i32 - tile[0]),
+                TILE.min(self.view.height() as i32 - tile[1]),
+            ];
+            let index = (band.row * grid.columns + column) as u32;
+            self.color_tile(&mut band, &mut scratch, [tile, size], index);
+            if wants_center {
+                self.center_tile(&mut band, &mut scratch, [tile, size], index);
+            }
+        }
+    }
+
+    /// Rasterizes the tile's triangles of one coverage.
+    fn rasterize<T: FragmentTest>(
+        &self,
+        coverage: Coverage,
+        planes: &mut [SamplePlane],
+        area: [[i32; 2]; 2],
+        index: u32,
+        mut test: Option<&mut T>,
+    ) {
+        for bins in self.bins.iter().filter(|b| b.coverage == coverage) {
+            let triangles = bins.of_tile(index);
+            let test = test.as_deref_mut();
+            dispatch!(self.options.level, simd =>
+                tile::rasterize(simd, planes, area, triangles, test));
+        }
+    }
+
+    fn color_tile(
+        &self,
+        band: &mut Band<'_>,
+        scratch: &mut Scratch<'_>,
+        area: [[i32; 2]; 2],
+        index: u32,
+    ) {
+        let [tile, size] = area;
+        let Scratch { planes, fragments, colors, lit, .. } = scratch;
+        planes.iter_mut().for_each(SamplePlane::clear);
+        self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
+        let mut mask = MaskTest { lit, tile };
+        self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
+        fragments.clear(tile);
+        self.rasterize(Coverage::Blended, planes, area, index, Some(fragments));
+        let background = background_rows(self.options.background, self.view.height());
+        dispatch!(self.options.level, simd =>
+            colors.resolve(simd, planes, fragments, lit, &background, tile, size));
+        for y in 0..size[1] {
+            let start = y as usize * band.width + tile[0] as usize;
+            let out = &mut band.color[start..start + size[0] as usize];
+            for (out, color) in out.iter_mut().zip(colors.row(y)) {
+                *out = encode_rgba8(if color.w < 1.0 { unpremultiply(*color) } else { *color });
+            }
+        }
+    }
+
+    /// Depth, item and normal: one sample at the centre, where blended surfaces count as opaque.
+    fn center_tile(
+        &self,
+        band: &mut Band<'_>,
+        scratch: &mut Scratch<'_>,
+        area: [[i32; 2]; 2],
+        index: u32,
+    ) {
+        let [tile, size] = area;
+        let Scratch { center, lit, .. } = scratch;
+        center.iter_mut().for_each(SamplePlane::clear);
+        for coverage in [Coverage::Opaque, Coverage::Blended] {
+            self.rasterize(coverage, center, area, index, None::<&mut AllPass>);
+        }
+        let mut mask = MaskTest { lit, tile };
+        self.rasterize(Coverage::Masked, center, area, index, Some(&mut mask));
+        let plane = &center[0];
+        for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
+            let from = (y * TILE + x) as usize;
+            let to = y as usize * band.width + (tile[0] + x) as usize;
+            let item = plane.items()[from];
+            if let Some(depth) = &mut band.depth {
+                depth[to] = plane.depth(from);
+            }
+            if let Some(items) = &mut band.item {
+                items[to] = if item < self.triangle_count { item } else { NO_ITEM };
+            }
+            if let Some(normal) = &mut band.normal
+                && item != NO_ITEM
+            {
+                normal[to] = lit.normal(item, tile[0] + x, tile[1] + y).to_array();
+            }
+        }
+    }
+}

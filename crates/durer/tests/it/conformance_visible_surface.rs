@@ -1,0 +1,103 @@
+//! Item ids, coverage and depth against VTK's on real models: `reference/visible_surface`.
+
+use crate::data;
+use durer::math::DVec3;
+use durer::pipeline::{RenderOptions, Samples, render};
+use durer::scene::{Camera, Projection};
+use durer::target::NO_ITEM;
+use serde_json::Value;
+use std::path::Path;
+
+fn vector(value: &Value) -> DVec3 {
+    let at = |i: usize| value[i].as_f64().expect("number");
+    DVec3::new(at(0), at(1), at(2))
+}
+
+fn camera(value: &Value) -> Camera {
+    let number = |name: &str| value[name].as_f64().expect("number");
+    let projection = match value["type"].as_str() {
+        Some("perspective") => Projection::Perspective { fov_y: number("fovy_deg").to_radians() },
+        _ => Projection::Orthographic { height: 2.0 * number("half_height") },
+    };
+    Camera {
+        eye: vector(&value["eye"]),
+        target: vector(&value["target"]),
+        up: vector(&value["up"]),
+        projection,
+        near: number("near"),
+        far: number("far"),
+    }
+}
+
+/// Decodes a PNG to one number per pixel: R<<16|G<<8|B, or the 16-bit grey value.
+fn read_png(path: &Path) -> Vec<u32> {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("reference picture"));
+    let mut reader = png::Decoder::new(file).read_info().expect("PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("size")];
+    let info = reader.next_frame(&mut bytes).expect("PNG frame");
+    let channels = info.line_size / info.width as usize;
+    bytes[..info.buffer_size()]
+        .chunks_exact(channels)
+        .map(|p| p.iter().take(3).fold(0, |value, byte| value << 8 | u32::from(*byte)))
+        .collect()
+}
+
+/// What differs between a picture of ours and the reference.
+#[derive(Debug, Default)]
+struct Difference {
+    covered: usize,
+    items: usize,
+    coverage: usize,
+    worst_depth: u32,
+}
+
+fn compare(view: &Value, folder: &Path) -> Difference {
+    let mesh = view["mesh"].as_str().expect("mesh");
+    let tag = view["tag"].as_str().expect("tag");
+    let model = data::read_model(&folder.join(mesh));
+    let mut options = RenderOptions::new(camera(&view["camera"]));
+    options.width = view["width"].as_u64().expect("width") as u32;
+    options.height = view["height"].as_u64().expect("height") as u32;
+    options.samples = Samples::Four;
+    (options.item, options.depth) = (true, true);
+    let (framebuffer, _) = render(&model.scene, &options).expect("picture");
+    let items = framebuffer.item.expect("items").into_data();
+    let depths = framebuffer.depth.expect("depths").into_data();
+
+    let reference = folder.join("reference/visible_surface");
+    let their_items = read_png(&reference.join(format!("{tag}_vtk_id.png")));
+    let their_depths = read_png(&reference.join(format!("{tag}_vtk_depth16.png")));
+    let instanced = model.scene.instances.len() != model.scene.meshes.len();
+    let mut difference = Difference::default();
+    for (i, &item) in items.iter().enumerate() {
+        let theirs = their_items[i];
+        let (here, there) = (item != NO_ITEM, theirs != 0xff_ffff);
+        difference.covered += usize::from(there);
+        difference.coverage += usize::from(here != there);
+        if here && there {
+            difference.items += usize::from(!instanced && item != theirs);
+            if instanced || item == theirs {
+                let depth = (depths[i] * 65535.0).round() as u32;
+                difference.worst_depth =
+                    difference.worst_depth.max(depth.abs_diff(their_depths[i]));
+            }
+        }
+    }
+    difference
+}
+
+#[test]
+fn items_coverage_and_depth_agree_with_vtk() {
+    let Some(folder) = data::folder() else { return };
+    let views = std::fs::read_to_string(folder.join("reference/visible_surface/views.json"));
+    let views: Value = serde_json::from_str(&views.expect("views.json")).expect("JSON");
+    let views = views["views"].as_array().expect("views");
+    assert_eq!(views.len(), 22);
+    for view in views {
+        let d = compare(view, &folder);
+        let tag = &view["tag"];
+        assert!(d.items * 200 <= d.covered, "{tag}: {d:?}");
+        assert!(d.coverage <= 3, "{tag}: {d:?}");
+        assert!(d.worst_depth <= 2, "{tag}: {d:?}");
+    }
+}

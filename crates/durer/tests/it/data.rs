@@ -1,0 +1,33 @@
+//! Real models: where they are, and how tests read them.
+
+use durer_formats::{Model, ReadOptions, Resources};
+use std::path::{Path, PathBuf};
+
+/// The folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace. Says that a
+/// test is skipped where there is none.
+pub fn folder() -> Option<PathBuf> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("DURER_DATA").map_or(default, PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: there is no {}", folder.display());
+    None
+}
+
+/// Finds what a model refers to in the model's folder.
+struct Folder(PathBuf);
+
+impl Resources for Folder {
+    fn read(&self, path: &str, _limit: u64) -> Result<Vec<u8>, String> {
+        std::fs::read(self.0.join(path)).map_err(|e| e.to_string())
+    }
+}
+
+/// Reads a model that is known to be good.
+pub fn read_model(path: &Path) -> Model {
+    let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let resources = Folder(path.parent().expect("folder").to_owned());
+    durer_formats::read_model(&bytes, &path.to_string_lossy(), &resources, &ReadOptions::default())
+        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
