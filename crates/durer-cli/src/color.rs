@@ -1,7 +1,8 @@
 //! Colours and backgrounds as options take them.
 
-use durer::math::{Vec4, powf};
+use durer::math::Vec4;
 use durer::pipeline::Background;
+use durer::shade::color::LINEAR_FROM_SRGB;
 
 /// Names that can stand for a colour: those of CSS level 1, a few more greys, `transparent`.
 const NAMES: [(&str, u32); 22] = [
@@ -39,6 +40,7 @@ pub fn color(text: &str) -> Result<Vec4, String> {
         None => NAMES.iter().find(|(name, _)| text.eq_ignore_ascii_case(name)).map(|n| n.1),
     };
     let [r, g, b, a] = rgba.ok_or_else(wanted)?.to_be_bytes();
+    let linear = |channel: u8| LINEAR_FROM_SRGB[usize::from(channel)];
     Ok(Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0))
 }
 
@@ -61,12 +63,6 @@ fn hexadecimal(digits: &str) -> Option<u32> {
         8 => Some(value),
         _ => None,
     }
-}
-
-/// The linear value of an 8-bit sRGB channel (IEC 61966-2-1).
-fn linear(channel: u8) -> f32 {
-    let c = f32::from(channel) / 255.0;
-    if c <= 0.04045 { c / 12.92 } else { powf((c + 0.055) / 1.055, 2.4) }
 }
 
 /// A colour, `gradient`, or `TOP,BOTTOM`.
