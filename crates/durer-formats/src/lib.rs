@@ -6,6 +6,8 @@
 #![forbid(unsafe_code)]
 
 mod error;
+pub mod gltf;
+pub mod image;
 mod model;
 pub mod png;
 

@@ -1,0 +1,322 @@
+//! Accessors: typed arrays in buffer views, interleaved, sparse, normalized.
+
+use super::buffer::Source;
+use super::json::{Accessor, Root, Whole};
+use crate::{Error, Result};
+
+/// The type of one number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// Signed byte.
+    I8,
+    /// Unsigned byte.
+    U8,
+    /// Signed 16 bits.
+    I16,
+    /// Unsigned 16 bits.
+    U16,
+    /// Unsigned 32 bits.
+    U32,
+    /// 32-bit float.
+    F32,
+}
+
+impl Component {
+    /// By its number in the file, which is OpenGL's.
+    pub fn of(number: Whole) -> Option<Self> {
+        Some(match number.0 {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    /// In bytes.
+    pub fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// As a float; normalized integers become −1 … 1 or 0 … 1.
+    fn float(self, bytes: &[u8], normalized: bool) -> f32 {
+        let (value, max) = match (self, bytes) {
+            (Self::I8, &[a]) => (f32::from(a as i8), 127.0),
+            (Self::U8, &[a]) => (f32::from(a), 255.0),
+            (Self::I16, &[a, b]) => (f32::from(i16::from_le_bytes([a, b])), 32767.0),
+            (Self::U16, &[a, b]) => (f32::from(u16::from_le_bytes([a, b])), 65535.0),
+            (Self::U32, &[a, b, c, d]) => {
+                (u32::from_le_bytes([a, b, c, d]) as f32, 4_294_967_295.0)
+            }
+            (_, &[a, b, c, d]) => return f32::from_le_bytes([a, b, c, d]),
+            _ => return 0.0,
+        };
+        if normalized { (value / max).max(-1.0) } else { value }
+    }
+
+    /// As an unsigned number; `None` for signed and floating ones.
+    fn unsigned(self, bytes: &[u8]) -> Option<u32> {
+        match (self, bytes) {
+            (Self::U8, &[a]) => Some(u32::from(a)),
+            (Self::U16, &[a, b]) => Some(u32::from(u16::from_le_bytes([a, b]))),
+            (Self::U32, &[a, b, c, d]) => Some(u32::from_le_bytes([a, b, c, d])),
+            _ => None,
+        }
+    }
+}
+
+/// Shape, place and size of an accessor's data; checked against its view.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    /// The type of a number.
+    pub component: Component,
+    /// Numbers per element.
+    pub lanes: usize,
+    /// Elements.
+    pub count: usize,
+    /// Bytes from one element to the next.
+    stride: usize,
+    /// First byte in the view.
+    offset: usize,
+}
+
+/// The number of columns and of rows of a shape.
+fn shape(name: &str) -> Option<(usize, usize)> {
+    Some(match name {
+        "SCALAR" => (1, 1),
+        "VEC2" => (1, 2),
+        "VEC3" => (1, 3),
+        "VEC4" => (1, 4),
+        "MAT2" => (2, 2),
+        "MAT3" => (3, 3),
+        "MAT4" => (4, 4),
+        _ => return None,
+    })
+}
+
+impl Layout {
+    /// Bytes of an element without gaps.
+    pub fn element(&self) -> usize {
+        self.component.size() * self.lanes
+    }
+
+    /// The layout of accessor `index`.
+    ///
+    /// # Errors
+    /// Where the type is unknown or the elements do not fit into the view.
+    pub fn of(root: &Root, index: usize) -> Result<Self> {
+        let at = || format!("accessors[{index}]");
+        let accessor = root.accessors.get(index).ok_or_else(|| {
+            Error::path(at(), format!("does not exist: there are {}", root.accessors.len()))
+        })?;
+        let component = Component::of(accessor.component_type).ok_or_else(|| {
+            Error::path(at() + ".componentType", "must be 5120, 5121, 5122, 5123, 5125 or 5126")
+        })?;
+        let (columns, rows) = shape(&accessor.shape).ok_or_else(|| {
+            Error::path(at() + ".type", "must be SCALAR, VEC2 … VEC4, MAT2 … MAT4")
+        })?;
+        let count = accessor.count.ok_or_else(|| Error::path(at(), "`count` is missing"))?.index();
+        let lanes = columns * rows;
+        let mut layout =
+            Self { component, lanes, count, stride: 0, offset: accessor.byte_offset.index() };
+        layout.stride = layout.element();
+        if let Some(view) = accessor.buffer_view {
+            // Columns of small matrices begin at multiples of four bytes; no such matrix is read.
+            let padded = columns * (rows * component.size()).next_multiple_of(4);
+            layout.stride = if columns > 1 { padded } else { layout.element() };
+            layout.fit(root, view, &at())?;
+        }
+        if let Some(sparse) = &accessor.sparse {
+            check_sparse(root, accessor, &layout, &at())?;
+            debug_assert!(sparse.count.index() <= count);
+        }
+        Ok(layout)
+    }
+
+    /// Takes the view's stride and checks that all elements lie in it.
+    fn fit(&mut self, root: &Root, view: Whole, at: &str) -> Result<()> {
+        let view = root.buffer_views.get(view.index()).ok_or_else(|| {
+            let message =
+                format!("there is no buffer view {}, only {}", view.0, root.buffer_views.len());
+            Error::path(at, message)
+        })?;
+        // A stride of zero is not allowed but written by some for "tightly packed".
+        if let Some(stride) = view.byte_stride.filter(|s| s.0 != 0) {
+            if stride.index() < self.stride {
+                let message = format!("a stride of {} for elements of {}", stride.0, self.stride);
+                return Err(Error::path(at, message));
+            }
+            self.stride = stride.index();
+        }
+        let length = view.byte_length.unwrap_or_default().0;
+        let end = self.end();
+        if end > u128::from(length) {
+            return Err(Error::path(at, format!("ends at byte {end} of a view of {length}")));
+        }
+        Ok(())
+    }
+
+    /// The byte after the last element, from the view's begin.
+    fn end(&self) -> u128 {
+        match self.count as u128 {
+            0 => 0,
+            n => self.offset as u128 + (n - 1) * self.stride as u128 + self.element() as u128,
+        }
+    }
+}
+
+/// The layouts of a sparse accessor's indices and values.
+fn sparse_layouts(
+    root: &Root,
+    accessor: &Accessor,
+    whole: &Layout,
+    at: &str,
+) -> Result<[Layout; 2]> {
+    let sparse = accessor.sparse.clone().unwrap_or_default();
+    let component = Component::of(sparse.indices.component_type)
+        .filter(|c| matches!(c, Component::U8 | Component::U16 | Component::U32))
+        .ok_or_else(|| Error::path(format!("{at}.sparse.indices"), "must be unsigned integers"))?;
+    let layout = |component: Component, lanes: usize, offset: Whole| Layout {
+        component,
+        lanes,
+        count: sparse.count.index(),
+        stride: component.size() * lanes,
+        offset: offset.index(),
+    };
+    let mut indices = layout(component, 1, sparse.indices.byte_offset);
+    let mut values = layout(whole.component, whole.lanes, sparse.values.byte_offset);
+    let view = |view: Option<Whole>| view.unwrap_or(Whole(u64::MAX));
+    indices.fit(root, view(sparse.indices.buffer_view), &format!("{at}.sparse.indices"))?;
+    values.fit(root, view(sparse.values.buffer_view), &format!("{at}.sparse.values"))?;
+    Ok([indices, values])
+}
+
+fn check_sparse(root: &Root, accessor: &Accessor, whole: &Layout, at: &str) -> Result<()> {
+    let count = accessor.sparse.as_ref().map_or(0, |s| s.count.index());
+    if count > whole.count {
+        let message = format!("{count} values replaced of {}", whole.count);
+        return Err(Error::path(format!("{at}.sparse.count"), message));
+    }
+    sparse_layouts(root, accessor, whole, at).map(|_| ())
+}
+
+impl Source<'_> {
+    /// Elements without gaps, sparse values put in.
+    fn packed(&self, index: Whole, at: &str) -> Result<(Layout, Vec<u8>)> {
+        let layout = Layout::of(self.root, index.index()).map_err(|e| {
+            if index.index() < self.root.accessors.len() { e } else { missing(index, at) }
+        })?;
+        let accessor = &self.root.accessors[index.index()];
+        let size = layout.count as u64 * layout.element() as u64;
+        self.budget.bytes(size, at)?;
+        let mut bytes = match accessor.buffer_view {
+            Some(view) => gather(self.view(view, at)?, &layout, at)?,
+            None => vec![0; size as usize],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let at = format!("accessors[{}]", index.0);
+            let [places, values] = sparse_layouts(self.root, accessor, &layout, &at)?;
+            let view = |view: Option<Whole>| self.view(view.unwrap_or_default(), &at);
+            let places_bytes = gather(view(sparse.indices.buffer_view)?, &places, &at)?;
+            let values = gather(view(sparse.values.buffer_view)?, &values, &at)?;
+            let places = places_bytes
+                .chunks_exact(places.component.size())
+                .map(|b| places.component.unsigned(b));
+            for (place, value) in places.zip(values.chunks_exact(layout.element())) {
+                let place = place.map_or(usize::MAX, |p| p as usize);
+                let element =
+                    bytes.chunks_exact_mut(layout.element()).nth(place).ok_or_else(|| {
+                        let message = format!("element {place} of {} is replaced", layout.count);
+                        Error::path(format!("{at}.sparse.indices"), message)
+                    })?;
+                element.copy_from_slice(value);
+            }
+        }
+        Ok((layout, bytes))
+    }
+
+    /// Elements of N floats; integers are converted, normalized where the accessor says so.
+    ///
+    /// # Errors
+    /// Where the accessor has another shape, or its data are not there.
+    pub fn floats<const N: usize>(&self, index: Whole, at: &str) -> Result<Vec<[f32; N]>> {
+        let (layout, bytes) = self.packed(index, at)?;
+        if layout.lanes != N {
+            let message = format!("has {} numbers per element, {N} are needed", layout.lanes);
+            return Err(Error::path(at, message));
+        }
+        let normalized = self.root.accessors[index.index()].normalized;
+        self.budget.bytes(layout.count as u64 * 4 * N as u64, at)?;
+        let size = layout.component.size();
+        Ok(bytes
+            .chunks_exact(size * N)
+            .map(|e| {
+                std::array::from_fn(|lane| {
+                    layout.component.float(&e[lane * size..][..size], normalized)
+                })
+            })
+            .collect())
+    }
+
+    /// Elements of N unsigned integers.
+    ///
+    /// # Errors
+    /// As [`Self::floats`], and for signed or floating numbers.
+    pub fn integers<const N: usize>(&self, index: Whole, at: &str) -> Result<Vec<[u32; N]>> {
+        let (layout, bytes) = self.packed(index, at)?;
+        if layout.lanes != N
+            || matches!(layout.component, Component::I8 | Component::I16 | Component::F32)
+        {
+            return Err(Error::path(at, format!("must have {N} unsigned integers per element")));
+        }
+        self.budget.bytes(layout.count as u64 * 4 * N as u64, at)?;
+        let size = layout.component.size();
+        let number = |bytes: &[u8]| layout.component.unsigned(bytes).unwrap_or_default();
+        Ok(bytes
+            .chunks_exact(size * N)
+            .map(|e| std::array::from_fn(|lane| number(&e[lane * size..][..size])))
+            .collect())
+    }
+}
+
+fn missing(index: Whole, at: &str) -> Error {
+    Error::path(at, format!("there is no accessor {}", index.0))
+}
+
+/// Elements one after the other, whatever lies between them.
+fn gather(view: &[u8], layout: &Layout, at: &str) -> Result<Vec<u8>> {
+    let (element, stride) = (layout.element(), layout.stride);
+    if layout.count == 0 {
+        return Ok(Vec::new());
+    }
+    let end = layout.end();
+    let bytes = usize::try_from(end).ok().and_then(|end| view.get(layout.offset..end));
+    let bytes = bytes.ok_or_else(|| Error::path(at, "its elements lie outside of their view"))?;
+    if stride == element {
+        return Ok(bytes.to_vec());
+    }
+    Ok(bytes.chunks(stride).flat_map(|e| &e[..element]).copied().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normalized_numbers_reach_their_ends() {
+        let float = |c: Component, bytes: &[u8]| c.float(bytes, true);
+        assert_eq!(float(Component::U8, &[255]), 1.0);
+        assert_eq!(float(Component::I8, &[0x80]), -1.0);
+        assert_eq!(float(Component::I8, &[0x81]), -1.0);
+        assert_eq!(float(Component::U16, &[0xff, 0xff]), 1.0);
+        assert_eq!(float(Component::I16, &[0x00, 0x80]), -1.0);
+        assert_eq!(float(Component::I16, &[0x00, 0x40]), 16384.0 / 32767.0);
+        assert_eq!(Component::U16.float(&[1, 2], false), 513.0);
+    }
+}

@@ -1,0 +1,191 @@
+//! Buffers and the views into them, with what their memory is charged to.
+
+use super::container::Container;
+use super::json::{BufferView, Root, Whole};
+use super::{meshopt, uri};
+use crate::{Error, Limits, Place, Resources, Result};
+use std::borrow::Cow;
+use std::cell::Cell;
+
+/// What has been taken of the limits so far.
+#[derive(Debug)]
+pub struct Budget {
+    limits: Limits,
+    bytes: Cell<u64>,
+    primitives: Cell<u64>,
+    instances: Cell<u64>,
+}
+
+impl Budget {
+    /// Nothing taken yet.
+    pub fn new(limits: Limits) -> Self {
+        Self { limits, bytes: Cell::new(0), primitives: Cell::new(0), instances: Cell::new(0) }
+    }
+
+    /// The limits with only what is left of the decoded bytes.
+    pub fn rest(&self) -> Limits {
+        let decoded_bytes = self.limits.decoded_bytes.saturating_sub(self.bytes.get());
+        Limits { decoded_bytes, ..self.limits }
+    }
+
+    /// Takes bytes; called before the memory is.
+    pub fn bytes(&self, count: u64, at: &str) -> Result<()> {
+        take(&self.bytes, count, self.limits.decoded_bytes, "decoded size", at)
+    }
+
+    /// Takes triangles, lines or points.
+    pub fn primitives(&self, count: u64, at: &str) -> Result<()> {
+        take(&self.primitives, count, self.limits.primitives, "number of primitives", at)
+    }
+
+    /// Takes instances.
+    pub fn instances(&self, count: u64, at: &str) -> Result<()> {
+        take(&self.instances, count, self.limits.instances, "number of instances", at)
+    }
+}
+
+fn take(used: &Cell<u64>, count: u64, limit: u64, what: &'static str, at: &str) -> Result<()> {
+    let value = used.get().saturating_add(count);
+    used.set(value);
+    if value > limit {
+        return Err(Error::Limit { place: Place::Path(at.to_owned()), what, value, limit });
+    }
+    Ok(())
+}
+
+/// A file with its bytes at hand.
+#[derive(Debug)]
+pub struct Source<'a> {
+    /// The JSON.
+    pub root: &'a Root,
+    /// What is left of the limits.
+    pub budget: &'a Budget,
+    buffers: Vec<Option<Cow<'a, [u8]>>>,
+    unpacked: Vec<Option<Vec<u8>>>,
+}
+
+impl<'a> Source<'a> {
+    /// Loads all buffers and unpacks compressed views.
+    ///
+    /// # Errors
+    /// Where a buffer cannot be had or is shorter than it says, or a view does not unpack.
+    pub fn load(
+        root: &'a Root,
+        container: &Container<'a>,
+        resources: &dyn Resources,
+        budget: &'a Budget,
+    ) -> Result<Self> {
+        let buffers = (0..root.buffers.len())
+            .map(|i| load_buffer(root, i, container, resources, budget))
+            .collect::<Result<_>>()?;
+        let mut source = Self { root, budget, buffers, unpacked: Vec::new() };
+        source.unpacked =
+            (0..root.buffer_views.len()).map(|i| source.unpack(i)).collect::<Result<_>>()?;
+        Ok(source)
+    }
+
+    /// The bytes of a view, as long as its `byteLength`.
+    ///
+    /// # Errors
+    /// Where the view does not exist or its buffer has no data.
+    pub fn view(&self, index: Whole, at: &str) -> Result<&[u8]> {
+        let i = index.index();
+        let view = self.root.buffer_views.get(i).ok_or_else(|| {
+            let count = self.root.buffer_views.len();
+            Error::path(at, format!("there is no buffer view {i}, only {count}"))
+        })?;
+        match self.unpacked.get(i) {
+            Some(Some(bytes)) => Ok(bytes),
+            _ => self.slice(
+                view.buffer,
+                view.byte_offset,
+                length(view),
+                &format!("bufferViews[{i}]"),
+            ),
+        }
+    }
+
+    fn slice(
+        &self,
+        buffer: Option<Whole>,
+        offset: Whole,
+        length: Whole,
+        at: &str,
+    ) -> Result<&[u8]> {
+        let i = buffer.map_or(usize::MAX, Whole::index);
+        let bytes = self.buffers.get(i).ok_or_else(|| Error::path(at, "its buffer is missing"))?;
+        let bytes = bytes.as_deref().ok_or_else(|| {
+            Error::path(format!("buffers[{i}]"), "it has neither a URI nor a binary chunk")
+        })?;
+        let end = offset.0.saturating_add(length.0);
+        bytes.get(offset.index()..usize::try_from(end).unwrap_or(usize::MAX)).ok_or_else(|| {
+            Error::path(at, format!("ends at byte {end} of a buffer of {} bytes", bytes.len()))
+        })
+    }
+
+    /// The plain bytes of a compressed view; `None` for a plain one.
+    fn unpack(&self, index: usize) -> Result<Option<Vec<u8>>> {
+        let view = &self.root.buffer_views[index];
+        let Some(packing) = &view.extensions.meshopt else { return Ok(None) };
+        let at = format!("bufferViews[{index}].extensions.EXT_meshopt_compression");
+        let size = packing.count.0.saturating_mul(packing.byte_stride.0);
+        if size < length(view).0 {
+            let message = format!("unpacks to {size} bytes where {} are asked for", length(view).0);
+            return Err(Error::path(at, message));
+        }
+        let data = self.slice(packing.buffer, packing.byte_offset, packing.byte_length, &at)?;
+        self.budget.bytes(size, &at)?;
+        let packing = meshopt::Packing {
+            count: packing.count.index(),
+            stride: packing.byte_stride.index(),
+            mode: &packing.mode,
+            filter: packing.filter.as_deref().unwrap_or("NONE"),
+        };
+        let mut bytes = meshopt::decode(data, packing).map_err(|why| Error::path(at, why))?;
+        bytes.truncate(length(view).index());
+        Ok(Some(bytes))
+    }
+}
+
+/// The view's length; one that is missing was refused by the check of references.
+fn length(view: &BufferView) -> Whole {
+    view.byte_length.unwrap_or_default()
+}
+
+fn load_buffer<'a>(
+    root: &'a Root,
+    index: usize,
+    container: &Container<'a>,
+    resources: &dyn Resources,
+    budget: &Budget,
+) -> Result<Option<Cow<'a, [u8]>>> {
+    let buffer = &root.buffers[index];
+    let at = format!("buffers[{index}]");
+    let fallback = buffer.extensions.meshopt.as_ref().is_some_and(|m| m.fallback);
+    let bytes: Cow<'a, [u8]> = match (&buffer.uri, container.bin) {
+        _ if fallback => return Ok(None),
+        (Some(uri), _) => {
+            let length = buffer.byte_length.unwrap_or_default().0;
+            budget.bytes(length, &at)?;
+            let at = format!("{at}.uri");
+            // Files may be longer than the part that is used.
+            let bytes =
+                uri::load(uri, &at, resources, budget.rest().decoded_bytes.saturating_add(length))?;
+            Cow::Owned(bytes)
+        }
+        (None, Some(bin)) if index == 0 => Cow::Borrowed(bin),
+        (None, _) => return Ok(None),
+    };
+    let wanted = buffer.byte_length.unwrap_or_default();
+    if (bytes.len() as u64) < wanted.0 {
+        let message = format!("byteLength is {} but there are {} bytes", wanted.0, bytes.len());
+        return Err(Error::path(at, message));
+    }
+    Ok(Some(match bytes {
+        Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[..wanted.index()]),
+        Cow::Owned(mut bytes) => {
+            bytes.truncate(wanted.index());
+            Cow::Owned(bytes)
+        }
+    }))
+}

@@ -1,0 +1,235 @@
+//! glTF 2.0, text and binary (Khronos, 2017; ISO/IEC 12113:2022).
+//!
+//! What is read: meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and
+//! one instance per node and primitive; the nodes of the default scene depth first; sparse,
+//! interleaved, normalized and quantized accessors; buffer views compressed by meshopt; primitives
+//! compressed by Draco (feature `draco`); materials with their textures; cameras; lights; skins and
+//! morph targets, posed at one moment of an animation. What is known of extensions stands in
+//! `extension.rs`.
+//!
+//! Every reference and size of a file is checked before any data are read, also in parts that are
+//! not drawn; what is wrong is told with its path. Nothing recurses, and memory is charged to
+//! [`crate::Limits`] before it is taken.
+
+mod accessor;
+mod animation;
+mod buffer;
+mod check;
+mod container;
+mod deform;
+mod draco;
+mod extension;
+mod eye;
+mod json;
+mod material;
+mod meshopt;
+mod node;
+mod normals;
+mod primitive;
+mod uri;
+
+use crate::{Error, Model, Place, ReadOptions, Resources, Result};
+use animation::Override;
+use buffer::{Budget, Source};
+use durer::math::DMat4;
+use durer::scene::{Instance, Mesh, Part, Scene, UpAxis};
+use json::{Node, Root, Whole};
+use primitive::Geometry;
+use std::collections::BTreeMap;
+
+/// Whether the bytes look like glTF: the mark of a binary file, or JSON with an `asset`.
+pub fn sniff(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let holds = |key: &[u8]| text.windows(key.len()).any(|w| w == key);
+    bytes.starts_with(container::MAGIC) || (text.starts_with(b"{") && holds(b"\"asset\""))
+}
+
+/// Reads a model, `.gltf` or `.glb`, posed as `options.pose` says.
+///
+/// Buffers and images that the file refers to come from `resources`; a reference that is absolute,
+/// leads out of the model's folder or has a scheme is refused without asking.
+///
+/// # Errors
+/// [`Error::Decode`] with the byte of the container, the line of the JSON or the path in it;
+/// [`Error::Unsupported`] for a required extension or a version that is not known;
+/// [`Error::Resource`] for a buffer that cannot be had; [`Error::Limit`].
+pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
+    let mut model = Model::default();
+    let container = container::split(bytes, &mut model.warnings)?;
+    let kind = if container.binary { "binary" } else { "text" };
+    model.format = format!("glTF 2.0 {kind}");
+    let root = json::parse(container.json)?;
+    check_version(&root)?;
+    extension::check(&root, &mut model)?;
+    check::references(&root)?;
+    let tree = node::Tree::of(&root, options.limits.depth)?;
+    let budget = Budget::new(options.limits);
+    let source = Source::load(&root, &container, resources, &budget)?;
+    model.animations = animation::names(&root);
+    let pose = animation::pose(&source, options.pose.as_ref())?;
+    if options.pose.is_some() && root.animations.is_empty() {
+        model.warn(Place::Path("animations".into()), "there is none; the rest pose is taken");
+    }
+    let world = tree.world_matrices(&root, &pose);
+    let warnings = &mut model.warnings;
+    let nodes = tree.scene_nodes(&root, |n| {
+        let message =
+            "stands in the scene but has a parent; drawn once, below its parent".to_owned();
+        warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
+    });
+    let mut builder =
+        Builder { source: &source, world: &world, pose: &pose, made: BTreeMap::new() };
+    for &n in &nodes {
+        builder.place(n, &mut model)?;
+    }
+    model.scene.up_axis = UpAxis::Y;
+    material::read(&source, resources, &mut model.scene, &mut model.warnings)?;
+    model.scene.lights = eye::lights(&source, &nodes, &world, &mut model.warnings);
+    eye::cameras(&source, &nodes, &world, &mut model.scene, &mut model.warnings);
+    model.scene.check()?;
+    Ok(model)
+}
+
+/// Only version 2 is read, and of it 2.0.
+fn check_version(root: &Root) -> Result<()> {
+    let asset = root.asset.clone().unwrap_or_default();
+    let version = asset.version.ok_or_else(|| Error::path("asset", "`version` is missing"))?;
+    let wanted = asset.min_version.as_deref().unwrap_or(&version);
+    let known = match asset.min_version {
+        Some(_) => wanted == "2.0",
+        None => version.split('.').next() == Some("2"),
+    };
+    if known {
+        return Ok(());
+    }
+    Err(Error::Unsupported {
+        place: Place::Path("asset.version".to_owned()),
+        what: format!("glTF {wanted}"),
+        hint: "glTF 2.0 is read".to_owned(),
+    })
+}
+
+/// Makes the meshes and instances of nodes.
+struct Builder<'a> {
+    source: &'a Source<'a>,
+    world: &'a [DMat4],
+    pose: &'a [Override],
+    /// Scene meshes of a file's mesh and primitive as it stands in the file, neither morphed nor
+    /// skinned; `None` for a primitive that draws nothing.
+    made: BTreeMap<(usize, usize), Option<usize>>,
+}
+
+impl Builder<'_> {
+    /// Adds the instances of a node's mesh.
+    fn place(&mut self, n: usize, model: &mut Model) -> Result<()> {
+        let node = &self.source.root.nodes[n];
+        let Some(mesh) = node.mesh.map(Whole::index) else { return Ok(()) };
+        let weights = self.weights(n, mesh);
+        let joints = match node.skin {
+            Some(skin) => Some(deform::joint_matrices(self.source, skin, self.world)?),
+            None => None,
+        };
+        let primitives = self.source.root.meshes[mesh].primitives.len();
+        self.source.budget.instances(primitives as u64, &format!("nodes[{n}]"))?;
+        for p in 0..primitives {
+            let (made, skinned) = match &joints {
+                None if weights.iter().all(|w| *w == 0.0) => (self.unposed(mesh, p, model)?, false),
+                joints => self.posed(mesh, p, &weights, joints.as_deref(), model)?,
+            };
+            // Skins bring vertices to the world themselves; their node's place means nothing.
+            let world_from_mesh = if skinned { DMat4::IDENTITY } else { self.world[n] };
+            if let Some(mesh) = made {
+                model.scene.instances.push(Instance { mesh, world_from_mesh, name: name(node) });
+            }
+        }
+        Ok(())
+    }
+
+    /// The weights of a node's morph targets: of the animation, else the node's, else the mesh's.
+    fn weights(&self, n: usize, mesh: usize) -> Vec<f32> {
+        let node = &self.source.root.nodes[n];
+        let rest = node.weights.as_ref().unwrap_or(&self.source.root.meshes[mesh].weights);
+        self.pose[n].weights.as_ref().unwrap_or(rest).clone()
+    }
+
+    /// The scene mesh of a primitive as it stands, made once.
+    fn unposed(&mut self, mesh: usize, p: usize, model: &mut Model) -> Result<Option<usize>> {
+        if let Some(made) = self.made.get(&(mesh, p)) {
+            return Ok(*made);
+        }
+        let geometry = self.geometry(mesh, p, model)?;
+        let made = geometry.map(|g| self.add(g, mesh, p, &mut model.scene));
+        self.made.insert((mesh, p), made);
+        Ok(made)
+    }
+
+    /// A scene mesh of a primitive, morphed and skinned, and whether it was skinned.
+    fn posed(
+        &self,
+        mesh: usize,
+        p: usize,
+        weights: &[f32],
+        joints: Option<&[DMat4]>,
+        model: &mut Model,
+    ) -> Result<(Option<usize>, bool)> {
+        let at = path(mesh, p);
+        let primitive = &self.source.root.meshes[mesh].primitives[p];
+        let Some(mut g) = self.geometry(mesh, p, model)? else { return Ok((None, false)) };
+        deform::morph(self.source, &mut g, primitive, weights, &at)?;
+        let joints = joints.filter(|_| !g.influences.is_empty());
+        if let Some(joints) = joints {
+            deform::skin(&mut g, joints, &at)?;
+        }
+        normals::repair(&mut g);
+        Ok((Some(self.add(g, mesh, p, &mut model.scene)), joints.is_some()))
+    }
+
+    /// Reads a primitive; each thing that had to be repaired is warned about once.
+    fn geometry(&self, mesh: usize, p: usize, model: &mut Model) -> Result<Option<Geometry>> {
+        let at = path(mesh, p);
+        let primitive = &self.source.root.meshes[mesh].primitives[p];
+        let mut geometry = primitive::read(self.source, primitive, &at)?;
+        let notes = match &mut geometry {
+            Some(g) => std::mem::take(&mut g.notes),
+            None => vec!["has no positions; left out".to_owned()],
+        };
+        for message in notes {
+            let warning = crate::Warning { place: Place::Path(at.clone()), message };
+            if !model.warnings.contains(&warning) {
+                model.warnings.push(warning);
+            }
+        }
+        Ok(geometry)
+    }
+
+    /// Adds a mesh to the scene.
+    fn add(&self, g: Geometry, mesh: usize, p: usize, scene: &mut Scene) -> usize {
+        let file_mesh = &self.source.root.meshes[mesh];
+        let material = file_mesh.primitives[p].material.map(Whole::index);
+        let mut made = Mesh {
+            name: file_mesh.name.clone().unwrap_or_default(),
+            topology: g.topology,
+            positions: g.positions,
+            normals: g.normals,
+            tangents: g.tangents,
+            tex_coords: g.tex_coords,
+            colors: g.colors,
+            indices: g.indices,
+            parts: Vec::new(),
+            faces: Vec::new(),
+        };
+        // Below 2³²: the limit on primitives and the width of indices see to it.
+        let range = 0..u32::try_from(made.primitive_count()).unwrap_or(u32::MAX);
+        made.parts = vec![Part { range, material, name: String::new() }];
+        scene.meshes.push(made);
+        scene.meshes.len() - 1
+    }
+}
+
+fn path(mesh: usize, primitive: usize) -> String {
+    format!("meshes[{mesh}].primitives[{primitive}]")
+}
+
+fn name(node: &Node) -> String {
+    node.name.clone().unwrap_or_default()
+}

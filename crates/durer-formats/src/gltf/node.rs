@@ -1,0 +1,122 @@
+//! The tree of nodes: checked once, then walked without recursion.
+
+use super::animation::Override;
+use super::json::{Node, Root, Whole};
+use crate::{Error, Place, Result};
+use durer::math::{DMat4, DQuat, DVec3};
+
+/// The nodes' forest.
+#[derive(Debug)]
+pub struct Tree {
+    /// Each node's parent.
+    pub parents: Vec<Option<usize>>,
+    /// All nodes, each after its parent.
+    order: Vec<usize>,
+}
+
+impl Tree {
+    /// Checks that the nodes are a forest of bounded depth.
+    ///
+    /// # Errors
+    /// Where a node has two parents or is its own ancestor, or the depth is above `max_depth`.
+    pub fn of(root: &Root, max_depth: u32) -> Result<Self> {
+        let parents = parents(root)?;
+        let roots = (0..parents.len()).filter(|&n| parents[n].is_none());
+        let order: Vec<usize> = walk(root, roots).collect();
+        if order.len() < parents.len() {
+            let mut reached = vec![false; parents.len()];
+            order.iter().for_each(|&n| reached[n] = true);
+            let first = reached.iter().position(|r| !r).unwrap_or_default();
+            return Err(Error::path(format!("nodes[{first}]"), "is its own ancestor"));
+        }
+        let mut depths = vec![1u32; parents.len()];
+        for &node in &order {
+            depths[node] = parents[node].map_or(1, |p| depths[p].saturating_add(1));
+            if depths[node] > max_depth {
+                return Err(Error::Limit {
+                    place: Place::Path(format!("nodes[{node}]")),
+                    what: "depth of the tree of nodes",
+                    value: u64::from(depths[node]),
+                    limit: u64::from(max_depth),
+                });
+            }
+        }
+        Ok(Self { parents, order })
+    }
+
+    /// Each node's matrix to the world.
+    pub fn world_matrices(&self, root: &Root, pose: &[Override]) -> Vec<DMat4> {
+        let mut world = vec![DMat4::IDENTITY; self.parents.len()];
+        for &n in &self.order {
+            let local = local_matrix(&root.nodes[n], &pose[n]);
+            world[n] = self.parents[n].map_or(local, |p| world[p] * local);
+        }
+        world
+    }
+
+    /// The nodes of the default scene (else of the first one; of a file without scenes, all), in
+    /// drawing order: depth first, as in the file. A node that stands under another one of the scene
+    /// comes once; the nodes of the scene that are no roots are told to `odd`.
+    pub fn scene_nodes(&self, root: &Root, mut odd: impl FnMut(usize)) -> Vec<usize> {
+        let scene = root.scenes.get(root.scene.map_or(0, Whole::index));
+        let roots: Vec<usize> = match scene {
+            Some(scene) => scene.nodes.iter().map(|n| n.index()).collect(),
+            None => (0..self.parents.len()).filter(|&n| self.parents[n].is_none()).collect(),
+        };
+        roots.iter().copied().filter(|&n| self.parents[n].is_some()).for_each(&mut odd);
+        let mut listed = vec![false; self.parents.len()];
+        roots.iter().for_each(|&n| listed[n] = true);
+        let under = |n: usize| self.ancestors(n).any(|a| listed[a]);
+        let tops: Vec<usize> = roots.into_iter().filter(|&n| !under(n)).collect();
+        let first_time = |n: &usize| std::mem::replace(&mut listed[*n], false);
+        let tops: Vec<usize> = tops.into_iter().filter(first_time).collect();
+        walk(root, tops.into_iter()).collect()
+    }
+
+    fn ancestors(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(self.parents[node], |&n| self.parents[n])
+    }
+}
+
+/// Each node's parent.
+fn parents(root: &Root) -> Result<Vec<Option<usize>>> {
+    let mut parents = vec![None; root.nodes.len()];
+    for (n, node) in root.nodes.iter().enumerate() {
+        for child in &node.children {
+            if let Some(first) = parents[child.index()].replace(n) {
+                let message = format!("has two parents, nodes {first} and {n}");
+                return Err(Error::path(format!("nodes[{}]", child.0), message));
+            }
+        }
+    }
+    Ok(parents)
+}
+
+/// Nodes depth first, as in the file. Ends, because no node has two parents and a walk that starts
+/// at a root can come to no cycle.
+fn walk(root: &Root, roots: impl DoubleEndedIterator<Item = usize>) -> impl Iterator<Item = usize> {
+    let mut stack: Vec<usize> = roots.rev().collect();
+    std::iter::from_fn(move || {
+        let node = stack.pop()?;
+        stack.extend(root.nodes[node].children.iter().rev().map(|c| c.index()));
+        Some(node)
+    })
+}
+
+/// A node's matrix to its parent.
+fn local_matrix(node: &Node, pose: &Override) -> DMat4 {
+    if let (Some(matrix), false) = (&node.matrix, pose.moves()) {
+        return DMat4::from_cols_array(matrix);
+    }
+    let translation = pose.translation.unwrap_or(node.translation.map_or(DVec3::ZERO, DVec3::from));
+    let scale = pose.scale.unwrap_or(node.scale.map_or(DVec3::ONE, DVec3::from));
+    let rotation =
+        pose.rotation.unwrap_or(node.rotation.map_or(DQuat::IDENTITY, DQuat::from_array));
+    DMat4::from_scale_rotation_translation(scale, unit(rotation), translation)
+}
+
+/// The quaternion at unit length; what has no direction turns nothing.
+pub fn unit(q: DQuat) -> DQuat {
+    let length = q.length();
+    if length.is_finite() && length > 1e-12 { q * (1.0 / length) } else { DQuat::IDENTITY }
+}

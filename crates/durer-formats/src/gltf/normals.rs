@@ -1,0 +1,86 @@
+//! Normals and tangents brought to unit length; those that cannot are replaced.
+
+use super::primitive::Geometry;
+use durer::math::{Vec3, Vec4};
+use durer::scene::Topology;
+
+/// Gives normals and tangents unit length. A normal without a direction becomes the mean of the
+/// normals of the triangles around its vertex, by area; where these have none either, +z.
+pub fn repair(g: &mut Geometry) {
+    let positions = g.positions.iter().filter(|p| !p.is_finite()).count();
+    if positions > 0 {
+        g.notes.push(format!("{positions} vertices are not finite"));
+    }
+    let mut bad = Vec::new();
+    for (i, normal) in g.normals.iter_mut().enumerate() {
+        match unit(*normal) {
+            Some(n) => *normal = n,
+            None => bad.push(i),
+        }
+    }
+    if !bad.is_empty() {
+        g.notes.push(format!("{} normals without a direction are made anew", bad.len()));
+        let sums = area_normals(g);
+        bad.into_iter().for_each(|i| g.normals[i] = unit(sums[i]).unwrap_or(Vec3::Z));
+    }
+    for tangent in &mut g.tangents {
+        let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };
+        *tangent = unit(tangent.truncate()).unwrap_or(Vec3::X).extend(sign);
+    }
+    let colors = g.colors.iter_mut().filter(|c| !c.is_finite());
+    colors.for_each(|c| *c = Vec4::ONE);
+}
+
+/// The vector at unit length; vectors that already have it to the last bits stay as they are, and
+/// what is too short or not finite has none.
+fn unit(v: Vec3) -> Option<Vec3> {
+    // In double precision, where squares of tiny and huge numbers are still there.
+    let (d, length) = (v.as_dvec3(), v.as_dvec3().length());
+    if !length.is_finite() || length < 1e-12 {
+        return None;
+    }
+    Some(if (length - 1.0).abs() < 1e-7 { v } else { (d / length).as_vec3() })
+}
+
+/// The sum of the area-weighted normals around each vertex.
+fn area_normals(g: &Geometry) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; g.positions.len()];
+    if g.topology != Topology::Triangles {
+        return sums;
+    }
+    let whole: Vec<u32>;
+    let indices = match &g.indices {
+        Some(indices) => indices,
+        None => {
+            whole = (0..g.positions.len() as u32).collect();
+            &whole
+        }
+    };
+    for triangle in indices.as_chunks::<3>().0 {
+        let [a, b, c] = triangle.map(|i| g.positions[i as usize]);
+        let normal = (b - a).cross(c - a);
+        if normal.is_finite() {
+            triangle.iter().for_each(|&i| sums[i as usize] += normal);
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_normals_are_made_from_triangles() {
+        let mut g = Geometry {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            normals: vec![Vec3::ZERO, Vec3::NAN, Vec3::new(0.0, 3.0, 0.0)],
+            tangents: vec![Vec4::new(2.0, 0.0, 0.0, -0.5); 3],
+            ..Geometry::default()
+        };
+        repair(&mut g);
+        assert_eq!(g.normals, [Vec3::Z, Vec3::Z, Vec3::Y]);
+        assert_eq!(g.tangents[0], Vec4::new(1.0, 0.0, 0.0, -1.0));
+        assert_eq!(g.notes.len(), 1);
+    }
+}

@@ -1,0 +1,296 @@
+//! A primitive's vertices and indices, as lists of points, lines or triangles.
+
+use super::buffer::Source;
+use super::json::{Primitive, Whole};
+use super::{draco, normals};
+use crate::{Error, Result};
+use durer::math::{Vec2, Vec3, Vec4};
+use durer::scene::Topology;
+
+/// What a primitive becomes, before it is posed.
+#[derive(Debug, Clone, Default)]
+pub struct Geometry {
+    /// What the indices are joined to.
+    pub topology: Topology,
+    /// Mesh space.
+    pub positions: Vec<Vec3>,
+    /// Of unit length, or empty.
+    pub normals: Vec<Vec3>,
+    /// Unit vectors with the sign of the bitangent, or empty.
+    pub tangents: Vec<Vec4>,
+    /// Set by set.
+    pub tex_coords: Vec<Vec<Vec2>>,
+    /// Linear RGBA, or empty.
+    pub colors: Vec<Vec4>,
+    /// `None` where vertex i is index i.
+    pub indices: Option<Vec<u32>>,
+    /// Joints and their weights, four and four.
+    pub influences: Vec<(Vec<[u32; 4]>, Vec<[f32; 4]>)>,
+    /// What was repaired.
+    pub notes: Vec<String>,
+}
+
+/// Reads a primitive; `None` where it has no positions.
+///
+/// # Errors
+/// Where an accessor does not fit its use, or an index refers to no vertex.
+pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Option<Geometry>> {
+    let attributes = Attributes::of(source, primitive, at)?;
+    let Some(positions) = attributes.floats::<3>("POSITION")? else { return Ok(None) };
+    let mut g = Geometry { positions: vectors(positions), ..Geometry::default() };
+    let count = g.positions.len();
+    if u32::try_from(count).is_err() {
+        return Err(Error::path(at, format!("{count} vertices are more than 32 bits can number")));
+    }
+    g.normals = vectors(attributes.floats::<3>("NORMAL")?.unwrap_or_default());
+    g.tangents = vectors(attributes.floats::<4>("TANGENT")?.unwrap_or_default());
+    g.colors = attributes.colors()?;
+    while let Some(set) = attributes.floats::<2>(&format!("TEXCOORD_{}", g.tex_coords.len()))? {
+        g.tex_coords.push(vectors(set));
+    }
+    attributes.influences(&mut g)?;
+    g.check_counts(at)?;
+    let indices = match &attributes.packed {
+        Some(packed) => Some(packed.indices()),
+        None => read_indices(source, primitive, count, at)?,
+    };
+    let mode = if attributes.packed.is_some() { Mode::Triangles } else { Mode::of(primitive, at)? };
+    g.join(mode, indices, source, at)?;
+    normals::repair(&mut g);
+    Ok(Some(g))
+}
+
+/// Arrays of floats as vectors.
+fn vectors<T: From<[f32; N]>, const N: usize>(values: Vec<[f32; N]>) -> Vec<T> {
+    values.into_iter().map(T::from).collect()
+}
+
+/// Where attributes come from: accessors, or a Draco mesh.
+struct Attributes<'a> {
+    source: &'a Source<'a>,
+    primitive: &'a Primitive,
+    packed: Option<draco::Packed>,
+    at: &'a str,
+}
+
+impl<'a> Attributes<'a> {
+    fn of(source: &'a Source<'a>, primitive: &'a Primitive, at: &'a str) -> Result<Self> {
+        let packed = match &primitive.extensions.draco {
+            Some(draco) => draco::Packed::read(source, draco, at)?,
+            None => None,
+        };
+        Ok(Self { source, primitive, packed, at })
+    }
+
+    fn accessor(&self, name: &str) -> Option<Whole> {
+        self.primitive.attributes.get(name).copied()
+    }
+
+    /// An attribute of N floats; `None` where the primitive has it not.
+    fn floats<const N: usize>(&self, name: &str) -> Result<Option<Vec<[f32; N]>>> {
+        let Some(accessor) = self.accessor(name) else { return Ok(None) };
+        let at = format!("{}.attributes.{name}", self.at);
+        if let Some(packed) = self.packed_attribute(name) {
+            let normalized = self.source.root.accessors.get(accessor.index());
+            return packed
+                .floats(normalized.is_some_and(|a| a.normalized), self.source, &at)
+                .map(Some);
+        }
+        self.source.floats(accessor, &at).map(Some)
+    }
+
+    fn packed_attribute(&self, name: &str) -> Option<draco::Attribute<'_>> {
+        let id = self.primitive.extensions.draco.as_ref()?.attributes.get(name)?;
+        self.packed.as_ref()?.attribute(*id)
+    }
+
+    /// The first set of vertex colours; without alpha, opaque.
+    fn colors(&self) -> Result<Vec<Vec4>> {
+        let Some(accessor) = self.accessor("COLOR_0") else { return Ok(Vec::new()) };
+        let shape = self.source.root.accessors.get(accessor.index()).map(|a| a.shape.as_str());
+        if shape == Some("VEC4") {
+            return Ok(vectors(self.floats::<4>("COLOR_0")?.unwrap_or_default()));
+        }
+        let rgb = self.floats::<3>("COLOR_0")?.unwrap_or_default();
+        Ok(rgb.into_iter().map(|rgb| Vec3::from(rgb).extend(1.0)).collect())
+    }
+
+    /// All sets of joints that have weights.
+    fn influences(&self, g: &mut Geometry) -> Result<()> {
+        for set in 0.. {
+            let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
+            let Some(accessor) = self.accessor(&joints) else { break };
+            let Some(weights) = self.floats::<4>(&weights)? else {
+                g.notes.push(format!("{joints} without {weights} is passed over"));
+                break;
+            };
+            let at = format!("{}.attributes.{joints}", self.at);
+            let joints = match self.packed_attribute(&joints) {
+                Some(packed) => {
+                    let floats = packed.floats::<4>(false, self.source, &at)?;
+                    floats.into_iter().map(|j| j.map(|j| j as u32)).collect()
+                }
+                None => self.source.integers::<4>(accessor, &at)?,
+            };
+            g.influences.push((joints, weights));
+        }
+        Ok(())
+    }
+}
+
+/// How the file joins vertices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Mode {
+    Points,
+    Lines,
+    LineLoop,
+    LineStrip,
+    Triangles,
+    TriangleStrip,
+    TriangleFan,
+}
+
+impl Mode {
+    fn of(primitive: &Primitive, at: &str) -> Result<Self> {
+        use Mode::*;
+        let modes = [Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan];
+        let number = primitive.mode.unwrap_or(Whole(4));
+        let wrong =
+            || Error::path(format!("{at}.mode"), format!("{} is not one of 0 … 6", number.0));
+        modes.get(number.index()).copied().ok_or_else(wrong)
+    }
+
+    fn topology(self) -> Topology {
+        match self {
+            Self::Points => Topology::Points,
+            Self::Lines | Self::LineLoop | Self::LineStrip => Topology::Lines,
+            Self::Triangles | Self::TriangleStrip | Self::TriangleFan => Topology::Triangles,
+        }
+    }
+
+    /// The number of primitives that `count` indices make, and of indices per primitive.
+    fn primitives(self, count: usize) -> (usize, usize) {
+        match self {
+            Self::Points => (count, 1),
+            Self::Lines => (count / 2, 2),
+            Self::LineLoop => (if count < 2 { 0 } else { count }, 2),
+            Self::LineStrip => (count.saturating_sub(1), 2),
+            Self::Triangles => (count / 3, 3),
+            Self::TriangleStrip | Self::TriangleFan => (count.saturating_sub(2), 3),
+        }
+    }
+
+    /// Which of `count` indices the corner `corner` of primitive `i` is (glTF 2.0, §3.7.2.1).
+    fn corner(self, i: usize, corner: usize, count: usize) -> usize {
+        match self {
+            Self::Points => i,
+            Self::Lines => 2 * i + corner,
+            Self::LineLoop => (i + corner) % count,
+            Self::LineStrip => i + corner,
+            Self::Triangles => 3 * i + corner,
+            // Every second triangle of a strip has its last two corners swapped.
+            Self::TriangleStrip => i + [0, 1 + i % 2, 2 - i % 2][corner],
+            Self::TriangleFan => [i + 1, i + 2, 0][corner],
+        }
+    }
+}
+
+impl Geometry {
+    /// Checks that each attribute has as many elements as there are positions.
+    fn check_counts(&self, at: &str) -> Result<()> {
+        let count = self.positions.len();
+        let optional = [
+            ("NORMAL".to_owned(), self.normals.len()),
+            ("TANGENT".to_owned(), self.tangents.len()),
+            ("COLOR_0".to_owned(), self.colors.len()),
+        ];
+        let sets = self.tex_coords.iter().map(Vec::len).enumerate();
+        let sets = sets.map(|(i, n)| (format!("TEXCOORD_{i}"), n));
+        let skin = self.influences.iter().enumerate().flat_map(|(i, (joints, weights))| {
+            [(format!("JOINTS_{i}"), joints.len()), (format!("WEIGHTS_{i}"), weights.len())]
+        });
+        let present = optional.into_iter().filter(|(_, n)| *n != 0).chain(sets).chain(skin);
+        for (name, n) in present {
+            if n != count {
+                let message = format!("has {n} elements where POSITION has {count}");
+                return Err(Error::path(format!("{at}.attributes.{name}"), message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets topology and indices from the file's way to join vertices.
+    fn join(
+        &mut self,
+        mode: Mode,
+        indices: Option<Vec<u32>>,
+        source: &Source<'_>,
+        at: &str,
+    ) -> Result<()> {
+        let count = indices.as_ref().map_or(self.positions.len(), Vec::len);
+        let (primitives, corners) = mode.primitives(count);
+        source.budget.primitives(primitives as u64, at)?;
+        self.topology = mode.topology();
+        let list = matches!(mode, Mode::Points | Mode::Lines | Mode::Triangles);
+        if list && primitives * corners != count {
+            let rest = count - primitives * corners;
+            self.notes.push(format!("{rest} indices at the end make no primitive; left out"));
+        }
+        self.indices = match indices {
+            None if list && primitives * corners == count => None,
+            Some(mut indices) if list => {
+                indices.truncate(primitives * corners);
+                Some(indices)
+            }
+            indices => {
+                source.budget.bytes((primitives * corners * 4) as u64, at)?;
+                let index = |i: usize| indices.as_ref().map_or(i as u32, |list| list[i]);
+                let all = (0..primitives).flat_map(|i| (0..corners).map(move |c| (i, c)));
+                Some(all.map(|(i, c)| index(mode.corner(i, c, count))).collect())
+            }
+        };
+        Ok(())
+    }
+}
+
+fn read_indices(
+    source: &Source<'_>,
+    primitive: &Primitive,
+    vertices: usize,
+    at: &str,
+) -> Result<Option<Vec<u32>>> {
+    let Some(accessor) = primitive.indices else { return Ok(None) };
+    let at = format!("{at}.indices");
+    let indices = source.integers::<1>(accessor, &at)?.into_flattened();
+    match indices.iter().position(|&i| i as usize >= vertices) {
+        Some(place) => {
+            let message = format!("index {place} is vertex {} of {vertices}", indices[place]);
+            Err(Error::path(at, message))
+        }
+        None => Ok(Some(indices)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The corners of all primitives of `count` vertices without indices.
+    fn list(mode: Mode, count: usize) -> Vec<usize> {
+        let (primitives, corners) = mode.primitives(count);
+        (0..primitives * corners).map(|k| mode.corner(k / corners, k % corners, count)).collect()
+    }
+
+    #[test]
+    fn modes_become_lists() {
+        assert_eq!(list(Mode::Points, 2), [0, 1]);
+        assert_eq!(list(Mode::Lines, 5), [0, 1, 2, 3]);
+        assert_eq!(list(Mode::LineStrip, 3), [0, 1, 1, 2]);
+        assert_eq!(list(Mode::LineLoop, 3), [0, 1, 1, 2, 2, 0]);
+        assert_eq!(list(Mode::TriangleStrip, 5), [0, 1, 2, 1, 3, 2, 2, 3, 4]);
+        assert_eq!(list(Mode::TriangleFan, 5), [1, 2, 0, 2, 3, 0, 3, 4, 0]);
+        for mode in [Mode::LineLoop, Mode::LineStrip, Mode::TriangleFan, Mode::TriangleStrip] {
+            assert!(list(mode, 0).is_empty() && list(mode, 1).is_empty());
+        }
+    }
+}

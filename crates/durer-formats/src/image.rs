@@ -1,0 +1,223 @@
+//! Pictures that models wear: PNG and JPEG to 8-bit RGBA.
+//!
+//! What a file is, is told by its first bytes. Sizes are checked before anything is allocated, also
+//! against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
+
+use crate::{Error, Limits, Place, Result};
+use durer::scene::Image;
+use std::io::Cursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
+
+/// The first bytes of a PNG file.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// The first bytes of a JPEG file: start of image, and the start of the next marker.
+const JPEG: &[u8] = b"\xff\xd8\xff";
+
+/// Deflate's best ratio: a byte of a zlib stream holds at most so many bytes (RFC 1951: 258 bytes
+/// per two bits).
+const DEFLATE_RATIO: u64 = 1032;
+/// Each 8 × 8 block of a JPEG costs one bit at least, so a byte holds at most so many pixels.
+const JPEG_PIXELS_PER_BYTE: u64 = 8 * 64;
+
+/// Decodes a PNG or JPEG file.
+///
+/// Palettes, greys, CMYK (inverted, as Adobe writes it) and transparency become RGBA with straight
+/// alpha; 16-bit samples are rounded to 8. Of an animation the first picture is taken. Colour
+/// profiles are not applied. `name` names the picture in the result and in messages.
+///
+/// # Errors
+/// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above
+/// `limits.decoded_bytes`, [`Error::Unsupported`] for other known picture formats,
+/// [`Error::Decode`] for what is broken. `Place` is the whole: the caller knows the rest.
+pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
+    let (width, height, data) = if bytes.starts_with(PNG) {
+        decode_png(bytes, name, limits)?
+    } else if bytes.starts_with(JPEG) {
+        decode_jpeg(bytes, name, limits)?
+    } else if let Some(format) = other_format(bytes) {
+        return Err(Error::Unsupported {
+            place: Place::Whole,
+            what: format!("image `{name}`: the format {format}"),
+            hint: "use PNG or JPEG".to_owned(),
+        });
+    } else {
+        return Err(broken(name, "is neither PNG nor JPEG"));
+    };
+    Ok(Image { name: name.to_owned(), width, height, data })
+}
+
+/// The name of a picture format that is known but not read.
+fn other_format(bytes: &[u8]) -> Option<&'static str> {
+    let starts = |magic: &[u8]| bytes.starts_with(magic);
+    match () {
+        () if starts(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") => Some("WebP"),
+        () if starts(b"\xabKTX 20\xbb\r\n\x1a\n") => Some("KTX 2"),
+        () if starts(b"DDS ") => Some("DDS"),
+        () if starts(b"GIF8") => Some("GIF"),
+        () if starts(b"BM") => Some("BMP"),
+        () if starts(b"II*\0") || starts(b"MM\0*") => Some("TIFF"),
+        () => None,
+    }
+}
+
+/// A decode error that names the picture.
+fn broken(name: &str, message: impl std::fmt::Display) -> Error {
+    Error::whole(format!("image `{name}`: {message}"))
+}
+
+/// Checks a size against the limits and against what the file's bytes can hold.
+fn check_size(size: (u32, u32), holds: u64, name: &str, limits: &Limits) -> Result<()> {
+    let limit = |what, value, limit| Err(Error::Limit { place: Place::Whole, what, value, limit });
+    let side = size.0.max(size.1);
+    if side > limits.image_side {
+        return limit("side of an image", u64::from(side), u64::from(limits.image_side));
+    }
+    let pixels = u64::from(size.0) * u64::from(size.1);
+    if pixels * 4 > limits.decoded_bytes {
+        return limit("decoded size of an image", pixels * 4, limits.decoded_bytes);
+    }
+    if pixels == 0 {
+        return Err(broken(name, "has no pixels"));
+    }
+    if pixels > holds {
+        let (w, h) = size;
+        return Err(broken(name, format!("is too short for its {w} × {h} pixels")));
+    }
+    Ok(())
+}
+
+fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
+    let wrong = |e: png::DecodingError| broken(name, e);
+    let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
+    let mut decoder =
+        png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: memory });
+    decoder.set_transformations(png::Transformations::EXPAND);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let info = decoder.read_header_info().map_err(wrong)?;
+    let size = (info.width, info.height);
+    let bits = info.bits_per_pixel().max(1) as u64;
+    check_size(size, (bytes.len() as u64).saturating_mul(DEFLATE_RATIO * 8) / bits, name, limits)?;
+    let mut reader = decoder.read_info().map_err(wrong)?;
+    let length = reader.output_buffer_size().ok_or_else(|| broken(name, "is too large"))?;
+    let mut samples = vec![0; length];
+    let frame = reader.next_frame(&mut samples).map_err(wrong)?;
+    if (frame.width, frame.height) != size {
+        return Err(broken(name, "has a first frame of another size"));
+    }
+    if frame.bit_depth == png::BitDepth::Sixteen {
+        samples =
+            samples.chunks_exact(2).map(|s| to_8_bit(u16::from_be_bytes([s[0], s[1]]))).collect();
+    }
+    let pixels = match frame.color_type {
+        png::ColorType::Grayscale => samples.iter().map(|&g| [g, g, g, 255]).collect(),
+        png::ColorType::GrayscaleAlpha => pixels_of(&samples, |[g, a]| [g, g, g, a]),
+        png::ColorType::Rgb => pixels_of(&samples, |[r, g, b]| [r, g, b, 255]),
+        png::ColorType::Rgba => pixels_of(&samples, |rgba| rgba),
+        png::ColorType::Indexed => return Err(broken(name, "has no palette")),
+    };
+    Ok((size.0, size.1, pixels))
+}
+
+/// The nearest of 256 levels.
+fn to_8_bit(sample: u16) -> u8 {
+    ((u32::from(sample) * 255 + 32_767) / 65_535) as u8
+}
+
+/// Pixels of N samples each to RGBA.
+fn pixels_of<const N: usize>(samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) -> Vec<[u8; 4]> {
+    samples.as_chunks::<N>().0.iter().map(|&pixel| rgba(pixel)).collect()
+}
+
+fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
+    let wrong = |e: zune_jpeg::errors::DecodeErrors| broken(name, e);
+    // Always RGB: the decoder turns grey, YCbCr, CMYK and YCCK into it.
+    let options = DecoderOptions::new_safe()
+        .set_max_width(limits.image_side as usize)
+        .set_max_height(limits.image_side as usize)
+        .jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
+    decoder.decode_headers().map_err(wrong)?;
+    let (width, height) = decoder.dimensions().ok_or_else(|| broken(name, "has no size"))?;
+    let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    let size = (side(width), side(height));
+    let holds = (bytes.len() as u64).saturating_mul(JPEG_PIXELS_PER_BYTE);
+    check_size(size, holds, name, limits)?;
+    let mut samples = vec![0; width * height * 3];
+    decoder.decode_into(&mut samples).map_err(wrong)?;
+    Ok((size.0, size.1, pixels_of(&samples, |[r, g, b]| [r, g, b, 255])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A PNG of one row.
+    fn png_row(width: u32, color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, width, 1);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        if color == png::ColorType::Indexed {
+            encoder.set_palette(vec![1, 2, 3, 9, 8, 7]);
+            encoder.set_trns(vec![255, 10]);
+        }
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(data).unwrap();
+        writer.finish().unwrap();
+        bytes
+    }
+
+    fn decoded(bytes: &[u8]) -> Vec<[u8; 4]> {
+        decode(bytes, "test", &Limits::default()).unwrap().data
+    }
+
+    #[test]
+    fn every_png_layout_becomes_rgba() {
+        use png::{BitDepth::*, ColorType::*};
+        assert_eq!(decoded(&png_row(1, Rgb, Eight, &[5, 6, 7])), [[5, 6, 7, 255]]);
+        assert_eq!(decoded(&png_row(1, Rgba, Eight, &[5, 6, 7, 8])), [[5, 6, 7, 8]]);
+        assert_eq!(decoded(&png_row(1, GrayscaleAlpha, Eight, &[5, 6])), [[5, 5, 5, 6]]);
+        let bits = decoded(&png_row(2, Grayscale, One, &[0b0100_0000]));
+        assert_eq!(bits, [[0, 0, 0, 255], [255, 255, 255, 255]]);
+        let palette = decoded(&png_row(2, Indexed, Eight, &[1, 0]));
+        assert_eq!(palette, [[9, 8, 7, 10], [1, 2, 3, 255]]);
+        // 0x807f / 257 = 127.99…: rounded up, where taking the high byte gives 128 as well, while
+        // 0x00ff rounds to 1 and its high byte is 0.
+        let deep = decoded(&png_row(2, Grayscale, Sixteen, &[0x80, 0x7f, 0x00, 0xff]));
+        assert_eq!(deep, [[128, 128, 128, 255], [1, 1, 1, 255]]);
+    }
+
+    #[test]
+    fn a_size_is_refused_before_memory_is_taken() {
+        let mut bytes = png_row(1, png::ColorType::Rgb, png::BitDepth::Eight, &[5, 6, 7]);
+        for (width, limit) in [(1_000_000_000_u32, true), (16_000, false)] {
+            bytes[16..20].copy_from_slice(&width.to_be_bytes());
+            bytes[20..24].copy_from_slice(&width.to_be_bytes());
+            let crc = crc(&bytes[12..29]);
+            bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+            let error = decode(&bytes, "huge", &Limits::default()).unwrap_err();
+            assert_eq!(matches!(error, Error::Limit { .. }), limit, "{error}");
+            assert_eq!(error.to_string().contains("too short"), !limit, "{error}");
+        }
+    }
+
+    /// The checksum of a PNG chunk (ISO 3309).
+    fn crc(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(u32::MAX, |crc, &byte| {
+            (0..8).fold(crc ^ u32::from(byte), |c, _| {
+                (c >> 1) ^ (0xedb8_8320 & (c & 1).wrapping_neg())
+            })
+        })
+    }
+
+    #[test]
+    fn what_is_no_picture_is_named() {
+        let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
+        assert!(error(b"").contains("neither PNG nor JPEG"));
+        assert!(error(b"RIFF\0\0\0\0WEBPVP8 ").contains("WebP"));
+        assert!(error(&[PNG, b"rubbish"].concat()).starts_with("image `x`"));
+        assert!(error(&[JPEG, b"rubbish"].concat()).starts_with("image `x`"));
+    }
+}
