@@ -2,5 +2,6 @@
 
 pub mod line;
 pub mod outcode;
+pub mod place;
 pub mod polygon;
 pub mod volume;

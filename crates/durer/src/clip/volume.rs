@@ -1,1 +1,359 @@
 //! Clipping in homogeneous coordinates against −w ≤ x, y, z ≤ w.
+//!
+//! James Blinn and Martin Newell, *Clipping Using Homogeneous Coordinates*, SIGGRAPH 1978; polygons
+//! border by border as in Ivan Sutherland and Gary Hodgman, *Reentrant Polygon Clipping*, CACM 1974.
+//! Object space. A point has six boundary coordinates d₁ … d₆, each ≥ 0 inside one border; between an
+//! inside and an outside point the border is met at (d_in · p_out − d_out · p_in) / (d_in − d_out).
+//! Nothing is divided by w, so w may be anything: points behind, in and before the eye plane.
+//!
+//! That form is monotonic in floating point: a new vertex satisfies exactly what both ends satisfy.
+//! So results lie in the volume without tolerance, clipping twice changes nothing, and as the inside
+//! point always comes first, either direction of an edge gives the same bits.
+
+use super::outcode::{DepthRange, Outcode};
+use crate::info::{Class, Info};
+use crate::math::{DMat4, DVec2, DVec3, DVec4, Plane};
+use crate::trace::Tracer;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "homogeneous",
+    title: "Homogeneous clipping",
+    authors: "James Blinn, Martin Newell",
+    year: 1978,
+    source: "Clipping Using Homogeneous Coordinates, SIGGRAPH",
+    class: Class::ObjectSpace,
+    cost: "O(vertices × borders crossed) time, O(vertices) memory",
+    limits: "convex polygons; a concave one may get bridging edges along the border. Polygons with a \
+             coordinate that is not finite or beyond 10^150 are left out",
+};
+
+/// Coordinates beyond this are left out: products of two must stay finite.
+const COORDINATE_LIMIT: f64 = 1e150;
+
+/// Which borders are cut, and where the near plane is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Options {
+    /// −w … w or 0 … w.
+    pub depth: DepthRange,
+    /// All six borders, or only the near plane.
+    pub borders: Borders,
+}
+
+/// The borders that are cut.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Borders {
+    /// All six.
+    #[default]
+    All,
+    /// The near plane; and the four sides only for what reaches beyond the guard band
+    /// −g·w ≤ x, y ≤ g·w, as graphics hardware does. The rasterizer's own clip does the rest, and
+    /// the depth test must discard what lies beyond the far plane.
+    NearOnly {
+        /// g, above 1; a power of two keeps results exactly inside. Half the rasterizer's range
+        /// divided by half the viewport's width is right; more overflows its coordinates, less
+        /// cuts more polygons than need be.
+        guard_band: f64,
+    },
+}
+
+/// Anything that can be interpolated along an edge: attributes of vertices.
+pub trait Blend: Clone {
+    /// (a · wa + b · wb) / total, component by component; the weights are not negative.
+    fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self;
+}
+
+impl Blend for () {
+    fn blend((): &Self, _: f64, (): &Self, _: f64, _: f64) -> Self {}
+}
+
+macro_rules! blend_arithmetic {
+    ($($type:ty),+) => {
+        $(impl Blend for $type {
+            #[inline]
+            fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
+                (*a * wa + *b * wb) / total
+            }
+        })+
+    };
+}
+blend_arithmetic!(f64, DVec2, DVec3, DVec4);
+
+impl<T: Blend, const N: usize> Blend for [T; N] {
+    fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
+        std::array::from_fn(|k| T::blend(&a[k], wa, &b[k], wb, total))
+    }
+}
+
+impl<A: Blend, B: Blend> Blend for (A, B) {
+    fn blend(a: &Self, wa: f64, b: &Self, wb: f64, total: f64) -> Self {
+        (A::blend(&a.0, wa, &b.0, wb, total), B::blend(&a.1, wa, &b.1, wb, total))
+    }
+}
+
+/// A vertex before the division, with what is to be interpolated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipVertex<A = ()> {
+    /// Clip space, homogeneous.
+    pub position: DVec4,
+    /// Linear in space.
+    pub attributes: A,
+}
+
+/// What there is to see. Vertex numbers count in the ring as it is when a border's turn comes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A vertex got its outcode.
+    Code {
+        /// Its number in the input.
+        vertex: usize,
+        /// Beyond which borders it lies.
+        code: Outcode,
+    },
+    /// All vertices lie beyond one border, or one is not finite, or fewer than three are left:
+    /// the result is empty.
+    Rejected,
+    /// Nothing has to be cut: the input is the output.
+    Accepted,
+    /// A border's turn; the next steps list the new ring.
+    Border(Outcode),
+    /// An inside vertex is kept.
+    Keep {
+        /// Its number.
+        vertex: usize,
+    },
+    /// An edge meets the border.
+    Cut {
+        /// The number of its inside end.
+        inside: usize,
+        /// The number of its outside end.
+        outside: usize,
+        /// The new vertex.
+        position: DVec4,
+    },
+    /// Vertices without a place, w ≤ 0, were dropped from the result.
+    Dropped,
+}
+
+/// The six distances from the borders in the order of [`Outcode::BORDERS`]; ≥ 0 is inside. Their
+/// signs are exact, and no positive factor of p changes them.
+pub fn boundary_coordinates(p: DVec4, depth: DepthRange) -> [f64; 6] {
+    Options { depth, ..Options::default() }.distances(p)
+}
+
+/// The six borders as planes of the space that `clip_from_source` starts from, normals inward, in
+/// the order of [`Outcode::BORDERS`].
+///
+/// The matrix may hold a perspective; its source space is affine (w = 1).
+pub fn planes_in_source(clip_from_source: &DMat4, depth: DepthRange) -> [Plane; 6] {
+    let rows = clip_from_source.transpose();
+    let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
+    let near = match depth {
+        DepthRange::NegativeOneToOne => w + z,
+        DepthRange::ZeroToOne => z,
+    };
+    [w + x, w - x, w + y, w - y, near, w - z]
+        .map(|row| Plane { normal: row.truncate(), distance: row.w })
+}
+
+impl Options {
+    /// The extent of the four sides in units of w.
+    fn side(&self) -> f64 {
+        match self.borders {
+            Borders::All => 1.0,
+            Borders::NearOnly { guard_band } => guard_band.max(1.0),
+        }
+    }
+
+    fn distances(&self, p: DVec4) -> [f64; 6] {
+        let side = self.side() * p.w;
+        let near = match self.depth {
+            DepthRange::NegativeOneToOne => p.w + p.z,
+            DepthRange::ZeroToOne => p.z,
+        };
+        [side + p.x, side - p.x, side + p.y, side - p.y, near, p.w - p.z]
+    }
+
+    /// The borders to be cut that p lies beyond.
+    fn code(&self, p: DVec4) -> Outcode {
+        let code = Outcode::from_inside(self.distances(p).map(|d| d >= 0.0));
+        match self.borders {
+            Borders::All => code,
+            Borders::NearOnly { .. } => code & Outcode(!Outcode::FAR.0),
+        }
+    }
+
+    /// Puts a new vertex exactly on its border, where rounding left it beside.
+    fn place(&self, border: usize, p: &mut DVec4) {
+        let side = self.side() * p.w;
+        match border {
+            0 => p.x = -side,
+            1 => p.x = side,
+            2 => p.y = -side,
+            3 => p.y = side,
+            4 if self.depth == DepthRange::ZeroToOne => p.z = 0.0,
+            4 => p.z = -p.w,
+            _ => p.z = p.w,
+        }
+    }
+
+    /// Where an edge meets a border; `d_in ≥ 0 > d_out`.
+    fn cut<A: Blend>(
+        &self,
+        border: usize,
+        [inside, outside]: [&ClipVertex<A>; 2],
+        [d_in, d_out]: [f64; 2],
+    ) -> ClipVertex<A> {
+        if d_in == 0.0 {
+            return inside.clone();
+        }
+        let total = d_in - d_out;
+        let (i, o) = (&inside.position, &outside.position);
+        let mut position = Blend::blend(i, -d_out, o, d_in, total);
+        self.place(border, &mut position);
+        let attributes = A::blend(&inside.attributes, -d_out, &outside.attributes, d_in, total);
+        ClipVertex { position, attributes }
+    }
+}
+
+/// Which borders have to be cut: none that no vertex lies beyond. `None` rejects all.
+fn needed<A>(
+    vertices: &[ClipVertex<A>],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Option<Outcode> {
+    let (mut any, mut all) = (Outcode::INSIDE, Outcode(u8::MAX));
+    let mut sound = !vertices.is_empty();
+    for (vertex, p) in vertices.iter().map(|v| v.position).enumerate() {
+        let code = Outcode::of_homogeneous(p, options.depth);
+        t.step(|| Step::Code { vertex, code });
+        all &= code;
+        any |= options.code(p);
+        sound &= p.abs().cmple(DVec4::splat(COORDINATE_LIMIT)).all();
+    }
+    if !sound || !all.is_inside() {
+        t.step(|| Step::Rejected);
+        return None;
+    }
+    if any.is_inside() {
+        t.step(|| Step::Accepted);
+    }
+    Some(any)
+}
+
+/// Clips a segment; both ends are returned in their order, those inside bit for bit.
+///
+/// A segment that touches the volume in one point is returned with two equal ends.
+pub fn clip_segment<A: Blend>(
+    segment: [ClipVertex<A>; 2],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Option<[ClipVertex<A>; 2]> {
+    let borders = needed(&segment, options, t)?;
+    let mut ends = segment;
+    for (k, &border) in Outcode::BORDERS.iter().enumerate() {
+        if !borders.contains(border) {
+            continue;
+        }
+        t.step(|| Step::Border(border));
+        let d = [0, 1].map(|i: usize| options.distances(ends[i].position)[k]);
+        if d[0] < 0.0 && d[1] < 0.0 {
+            t.step(|| Step::Rejected);
+            return None;
+        }
+        let outside = (0..2).find(|&i| d[i] < 0.0);
+        let new = outside.map(|o| options.cut(k, [&ends[1 - o], &ends[o]], [d[1 - o], d[o]]));
+        for vertex in 0..2 {
+            t.step(|| match &new {
+                Some(v) if outside == Some(vertex) => {
+                    Step::Cut { inside: 1 - vertex, outside: vertex, position: v.position }
+                }
+                _ => Step::Keep { vertex },
+            });
+        }
+        if let (Some(o), Some(new)) = (outside, new) {
+            ends[o] = new;
+        }
+    }
+    if unseen(&ends, options) || ends.iter().any(|v| v.position.w <= 0.0) {
+        t.step(|| Step::Rejected);
+        return None;
+    }
+    Some(ends)
+}
+
+/// Clips a convex polygon, given as a ring of vertices of either winding, which is kept.
+///
+/// Returns at least three vertices, or none. All have w > 0 and lie in the volume exactly.
+///
+/// ```
+/// use durer::clip::volume::{ClipVertex, Options, clip_polygon};
+/// use durer::math::DVec4;
+/// use durer::trace::NoTrace;
+/// // One corner lies behind the eye.
+/// let corners = [(0.0, 0.0, 0.0, 1.0), (0.5, 0.0, 0.0, 1.0), (0.0, 3.0, -3.0, -2.0)];
+/// let ring = corners.map(|p| ClipVertex { position: DVec4::from(p), attributes: () });
+/// assert_eq!(clip_polygon(&ring, &Options::default(), &mut NoTrace).len(), 4);
+/// ```
+pub fn clip_polygon<A: Blend>(
+    ring: &[ClipVertex<A>],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Vec<ClipVertex<A>> {
+    let Some(borders) = needed(ring, options, t) else { return Vec::new() };
+    let mut ring = ring.to_vec();
+    for (k, &border) in Outcode::BORDERS.iter().enumerate() {
+        if borders.contains(border) {
+            let distance = |v: &ClipVertex<A>| options.distances(v.position)[k];
+            let cut = |ends: [&ClipVertex<A>; 2], d: [f64; 2]| options.cut(k, ends, d);
+            ring = cut_ring(&ring, border, distance, cut, |v| v.position, t);
+        }
+    }
+    if ring.iter().any(|v| v.position.w <= 0.0) {
+        // Only a polygon through the eye itself has such points: they have no place on a screen.
+        t.step(|| Step::Dropped);
+        ring.retain(|v| v.position.w > 0.0);
+    }
+    if ring.len() < 3 || unseen(&ring, options) {
+        t.step(|| Step::Rejected);
+        return Vec::new();
+    }
+    ring
+}
+
+/// Whether all that was left lies in the guard band beyond one border.
+fn unseen<A>(vertices: &[ClipVertex<A>], options: &Options) -> bool {
+    let codes = vertices.iter().map(|v| Outcode::of_homogeneous(v.position, options.depth));
+    !codes.fold(Outcode(u8::MAX), |all, code| all & code).is_inside()
+}
+
+/// One border of the Sutherland–Hodgman method: the part of a ring with `distance ≥ 0`.
+///
+/// `cut` gets the inside end and the outside end of an edge with their distances.
+pub(super) fn cut_ring<V: Clone>(
+    ring: &[V],
+    border: Outcode,
+    distance: impl Fn(&V) -> f64,
+    cut: impl Fn([&V; 2], [f64; 2]) -> V,
+    position: impl Fn(&V) -> DVec4,
+    t: &mut impl Tracer<Step>,
+) -> Vec<V> {
+    t.step(|| Step::Border(border));
+    let d: Vec<f64> = ring.iter().map(distance).collect();
+    let mut kept = Vec::with_capacity(ring.len() + 1);
+    for (i, vertex) in ring.iter().enumerate() {
+        if d[i] >= 0.0 {
+            t.step(|| Step::Keep { vertex: i });
+            kept.push(vertex.clone());
+        }
+        let next = if i + 1 == ring.len() { 0 } else { i + 1 };
+        let (inside, outside) = if d[i] >= 0.0 { (i, next) } else { (next, i) };
+        // An inside end on the border is kept as it is: a cut there would double it.
+        if d[inside] > 0.0 && d[outside] < 0.0 {
+            let new = cut([&ring[inside], &ring[outside]], [d[inside], d[outside]]);
+            t.step(|| Step::Cut { inside, outside, position: position(&new) });
+            kept.push(new);
+        }
+    }
+    kept
+}

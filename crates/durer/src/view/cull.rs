@@ -1,1 +1,157 @@
 //! What cannot be seen: boxes and spheres outside a volume, faces turned away.
+//!
+//! Bounding volumes against planes: James Clark, *Hierarchical Geometric Models for Visible Surface
+//! Algorithms*, CACM 1976. Normals of polygons: Martin Newell, in Sutherland, Sproull and Schumacker,
+//! *A Characterization of Ten Hidden-Surface Algorithms*, ACM Computing Surveys 1974.
+
+use crate::clip::outcode::DepthRange;
+use crate::clip::volume::planes_in_source;
+use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
+use crate::scene::{Aabb, BoundingSphere};
+
+/// How a thing lies to a volume.
+///
+/// Conservative: `Outside` and `Inside` are certain, also with respect to rounding; `Crossing` may be
+/// said of a thing that lies outside near a corner of the volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Containment {
+    /// Nothing of it lies in the volume.
+    Outside,
+    /// All of it lies in the volume.
+    Inside,
+    /// Neither is certain.
+    Crossing,
+}
+
+impl Containment {
+    fn of(outside: bool, inside: bool) -> Self {
+        match (outside, inside) {
+            (true, _) => Self::Outside,
+            (false, true) => Self::Inside,
+            (false, false) => Self::Crossing,
+        }
+    }
+}
+
+/// A box of the plane against a window; exact, as nothing is computed.
+pub fn rect_in_window(window: &Rect, thing: &Rect) -> Containment {
+    let inside = window.contains(thing.min()) && window.contains(thing.max());
+    Containment::of(!window.overlaps(thing), inside)
+}
+
+/// A disk of the plane against a window.
+pub fn disk_in_window(window: &Rect, center: DVec2, radius: f64) -> Containment {
+    let nearest = center.clamp(window.min(), window.max());
+    let distance2 = (center - nearest).length_squared();
+    // Each of the few operations errs by half an ulp of its result.
+    let outside = distance2 > radius * radius * (1.0 + 16.0 * f64::EPSILON);
+    let reach = radius + 2.0 * f64::EPSILON * (center.abs() + radius);
+    let (lo, hi) = (center - reach, center + reach);
+    Containment::of(outside, lo.cmpge(window.min()).all() && hi.cmple(window.max()).all())
+}
+
+/// A convex region of space: the common inside of planes.
+///
+/// ```
+/// use durer::math::{DMat4, DVec3};
+/// use durer::scene::Aabb;
+/// use durer::view::cull::{Containment, ConvexVolume};
+/// let frustum = ConvexVolume::frustum(&DMat4::IDENTITY, Default::default());
+/// let cube = Aabb { min: DVec3::splat(2.0), max: DVec3::splat(3.0) };
+/// assert_eq!(frustum.contains_box(&cube), Containment::Outside);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexVolume {
+    planes: Vec<Plane>,
+}
+
+impl ConvexVolume {
+    /// The region inside all planes, normals inward; without planes all of space.
+    pub fn new(planes: Vec<Plane>) -> Self {
+        Self { planes }
+    }
+
+    /// The view volume of a matrix that takes world space to clip space.
+    pub fn frustum(clip_from_world: &DMat4, depth: DepthRange) -> Self {
+        Self::new(planes_in_source(clip_from_world, depth).into())
+    }
+
+    /// Its planes, normals inward.
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// A box against the region; two corners a plane are looked at, whatever its size.
+    pub fn contains_box(&self, b: &Aabb) -> Containment {
+        let (center, half) = (b.min * 0.5 + b.max * 0.5, b.max * 0.5 - b.min * 0.5);
+        self.contains(center, |normal| normal.abs().dot(half))
+    }
+
+    /// A sphere against the region.
+    pub fn contains_sphere(&self, s: &BoundingSphere) -> Containment {
+        self.contains(s.center, |normal| normal.length() * s.radius)
+    }
+
+    /// `reach` is how far the thing extends from its centre along a normal.
+    fn contains(&self, center: DVec3, reach: impl Fn(DVec3) -> f64) -> Containment {
+        let mut inside = true;
+        for plane in &self.planes {
+            let (distance, reach) = (plane.evaluate(center), reach(plane.normal));
+            // A dozen roundings, each at most half an ulp of the largest term.
+            let terms = plane.normal.abs().dot(center.abs()) + plane.distance.abs() + reach;
+            let slack = 16.0 * f64::EPSILON * terms;
+            if distance + reach < -slack {
+                return Containment::Outside;
+            }
+            inside &= distance - reach >= slack;
+        }
+        Containment::of(false, inside)
+    }
+}
+
+/// Which side of a face is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Face {
+    /// The side from which its corners run counter-clockwise.
+    Front,
+    /// The other side.
+    Back,
+    /// Neither: the eye lies in its plane, or it has no area.
+    Edge,
+}
+
+/// The vector area of a closed polygon in space by Newell's method: along its normal, on the side
+/// from which the corners run counter-clockwise, as long as its area.
+///
+/// Right for concave polygons too, and the best plane's where the corners are not quite in one.
+pub fn newell_area(ring: &[DVec3]) -> DVec3 {
+    let Some(&origin) = ring.first() else { return DVec3::ZERO };
+    let next = ring.iter().cycle().skip(1);
+    // Newell's sums of (yᵢ − yⱼ)(zᵢ + zⱼ) are these cross products, taken from the first corner.
+    ring.iter().zip(next).map(|(&a, &b)| (a - origin).cross(b - origin)).sum::<DVec3>() * 0.5
+}
+
+/// The vector area of a triangle by the cross product; see [`newell_area`].
+pub fn triangle_area([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a) * 0.5
+}
+
+/// The side of a face that an eye at a point sees. `point` is any point of the face's plane.
+pub fn face_from_point(normal: DVec3, point: DVec3, eye: DVec3) -> Face {
+    side(normal.dot(eye - point))
+}
+
+/// The side of a face seen along a direction, as by an orthographic camera.
+pub fn face_along(normal: DVec3, direction: DVec3) -> Face {
+    side(-normal.dot(direction))
+}
+
+fn side(toward_eye: f64) -> Face {
+    if toward_eye > 0.0 {
+        Face::Front
+    } else if toward_eye < 0.0 {
+        Face::Back
+    } else {
+        Face::Edge
+    }
+}

@@ -3,6 +3,7 @@
 pub mod cull;
 pub mod layout;
 pub mod projection;
+pub mod topology;
 pub mod window;
 
 use crate::math::{DMat4, DVec4};

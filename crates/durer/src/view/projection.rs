@@ -1,1 +1,352 @@
 //! Cameras chosen by name, by angles, and fitted to a scene.
+//!
+//! Azimuth turns the eye around the up axis, counter-clockwise seen from above, from the front;
+//! elevation lifts it. `right` is azimuth 90°, so the eye is on the model's right as the viewer in
+//! front sees it.
+//!
+//! | up axis | front: the eye is on | right | top |
+//! |---|---|---|---|
+//! | y | +z, looking down −z | +x | +y, −z is up in the picture |
+//! | z | −y, looking along +y | +x | +z, +y is up in the picture |
+
+use crate::math::DVec3;
+use crate::scene::{Aabb, BoundingSphere, Camera, Projection, UpAxis};
+use crate::{Error, Result};
+use std::str::FromStr;
+
+/// The usual views of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum NamedView {
+    /// From the front, the right and above, all three axes shortened alike: azimuth 45°, elevation
+    /// atan(1/√2) = 35.264…°.
+    #[default]
+    Iso,
+    /// From the front.
+    Front,
+    /// From behind.
+    Back,
+    /// From the model's left, as seen from the front.
+    Left,
+    /// From the right.
+    Right,
+    /// From above; the front is at the bottom of the picture.
+    Top,
+    /// From below; the front is at the top of the picture.
+    Bottom,
+}
+
+/// atan(1/√2) in degrees.
+const ISOMETRIC_ELEVATION: f64 = 35.264_389_682_754_654;
+
+impl NamedView {
+    /// All of them.
+    pub const ALL: &'static [Self] =
+        &[Self::Iso, Self::Front, Self::Back, Self::Left, Self::Right, Self::Top, Self::Bottom];
+
+    /// The name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Iso => "iso",
+            Self::Front => "front",
+            Self::Back => "back",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Top => "top",
+            Self::Bottom => "bottom",
+        }
+    }
+
+    /// Azimuth and elevation in degrees.
+    pub const fn angles(self) -> (f64, f64) {
+        match self {
+            Self::Iso => (45.0, ISOMETRIC_ELEVATION),
+            Self::Front => (0.0, 0.0),
+            Self::Back => (180.0, 0.0),
+            Self::Left => (-90.0, 0.0),
+            Self::Right => (90.0, 0.0),
+            Self::Top => (0.0, 90.0),
+            Self::Bottom => (0.0, -90.0),
+        }
+    }
+
+    /// The direction of this view.
+    pub fn direction(self, up_axis: UpAxis) -> ViewDirection {
+        let (azimuth, elevation) = self.angles();
+        ViewDirection::turned(azimuth, elevation, up_axis)
+    }
+}
+
+impl std::fmt::Display for NamedView {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for NamedView {
+    type Err = Error;
+
+    /// Also takes `side` for `right`.
+    fn from_str(s: &str) -> Result<Self> {
+        let name = if s == "side" { "right" } else { s };
+        Self::ALL.iter().copied().find(|v| v.name() == name).ok_or_else(|| {
+            Error::parameter("view", s, "one of iso, front, back, left, right, top, bottom")
+        })
+    }
+}
+
+/// From which side a model is seen.
+///
+/// # Guarantees
+/// Two unit vectors at right angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewDirection {
+    to_eye: DVec3,
+    up: DVec3,
+}
+
+impl ViewDirection {
+    /// From azimuth and elevation in degrees, any size.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an angle that is not finite.
+    pub fn from_angles(azimuth: f64, elevation: f64, up_axis: UpAxis) -> Result<Self> {
+        for (name, angle) in [("azimuth", azimuth), ("elevation", elevation)] {
+            if !angle.is_finite() {
+                return Err(Error::parameter(name, angle, "a finite number of degrees"));
+            }
+        }
+        Ok(Self::turned(azimuth, elevation, up_axis))
+    }
+
+    fn turned(azimuth: f64, elevation: f64, up_axis: UpAxis) -> Self {
+        let (front, above) = match up_axis {
+            UpAxis::Y => (DVec3::Z, DVec3::Y),
+            UpAxis::Z => (DVec3::NEG_Y, DVec3::Z),
+        };
+        let ((sa, ca), (se, ce)) = (sin_cos_degrees(azimuth), sin_cos_degrees(elevation));
+        let level = front * ca + DVec3::X * sa;
+        // Up is where the eye would go next: it has a direction in the top view, too.
+        Self { to_eye: level * ce + above * se, up: above * ce - level * se }
+    }
+
+    /// From the model to the eye; unit length.
+    pub fn to_eye(&self) -> DVec3 {
+        self.to_eye
+    }
+
+    /// Up in the picture; unit length, at a right angle to [`Self::to_eye`].
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
+    /// To the right in the picture; unit length.
+    pub fn right(&self) -> DVec3 {
+        self.up.cross(self.to_eye)
+    }
+}
+
+/// Sine and cosine, exact for multiples of 90°, the same bits on every machine.
+fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let turned = degrees % 360.0;
+    let quarters = (turned / 90.0).round();
+    let rest = (turned - quarters * 90.0).to_radians();
+    let (s, c) = (libm::sin(rest), libm::cos(rest));
+    match (quarters as i64).rem_euclid(4) {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+/// Perspective or parallel, without the numbers that fitting finds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Lens {
+    /// Vertical angle of view in radians, between 0 and π.
+    Perspective {
+        /// The angle.
+        fov_y: f64,
+    },
+    /// Parallel lines.
+    Orthographic,
+}
+
+/// How the frame is drawn around the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitOptions {
+    /// Perspective or parallel.
+    pub lens: Lens,
+    /// Width / height of the picture.
+    pub aspect: f64,
+    /// Part of the picture's width and height left free at each border, in 0 ≤ margin < 0.5.
+    pub margin: f64,
+}
+
+impl Default for FitOptions {
+    /// 30 degrees, a square picture, 4 % free at each border.
+    fn default() -> Self {
+        let lens = Lens::Perspective { fov_y: std::f64::consts::PI / 6.0 };
+        Self { lens, aspect: 1.0, margin: 0.04 }
+    }
+}
+
+/// The nearest point of the model is no nearer to the eye than this part of its radius: a needle that
+/// points at the eye is not looked at from within.
+const CLOSEST: f64 = 0.02;
+
+/// Near and far plane keep this part of the radius from the model.
+const DEPTH_PAD: f64 = 0.01;
+
+/// The camera whose picture holds the box as large as it can be, in the middle.
+///
+/// The box's own corners are projected: at least two opposite borders of the frame (less the margin)
+/// are touched. `None` (an empty scene), a point, and a line are seen too: what has no extent is
+/// taken for a cube of side 1, or as much as the digits at its place can tell apart.
+///
+/// # Errors
+/// [`Error::Parameter`] for an option out of range or bounds that are not finite.
+pub fn fit_box(
+    bounds: Option<&Aabb>,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> Result<Camera> {
+    let bounds = visible_extent(bounds);
+    let center = bounds.center();
+    let radius = (bounds.size() * 0.5).length();
+    let axes = [direction.right(), direction.up(), direction.to_eye()];
+    let corners = bounds.corners().map(|c| DVec3::from(axes.map(|a| a.dot(c - center))));
+    let frame = Frame::new(options)?;
+    let eye = frame.eye_for(corners, radius);
+    let depths = corners.map(|c| eye.z - c.z);
+    let nearest = depths.into_iter().fold(f64::INFINITY, f64::min);
+    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let world = |v: DVec3| center + axes[0] * v.x + axes[1] * v.y + axes[2] * v.z;
+    // A line seen end-on has no extent in the picture, but a neighbourhood.
+    let height = frame.height_for(corners).max(radius * 1e-3);
+    let target = DVec3::new(eye.x, eye.y, 0.0);
+    finished(world(eye), world(target), direction, options, height, nearest..farthest, radius)
+}
+
+/// The camera whose picture holds the sphere, centred: the frame stays the same from all directions,
+/// as a turntable needs it.
+///
+/// # Errors
+/// [`Error::Parameter`] for an option out of range or a sphere that is not finite.
+pub fn fit_sphere(
+    bounds: Option<&BoundingSphere>,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> Result<Camera> {
+    let frame = Frame::new(options)?;
+    let center = bounds.map_or(DVec3::ZERO, |s| s.center);
+    let radius = bounds.map_or(0.0, |s| s.radius);
+    let radius = radius + smallest_extent(center, 2.0 * radius) * 0.5;
+    // A cone of slope t touches a sphere of radius r from the distance r √(1 + t²) / t.
+    let slope = frame.slope.x.min(frame.slope.y);
+    let touching = match options.lens {
+        Lens::Perspective { .. } => radius * (1.0 + slope * slope).sqrt() / slope,
+        Lens::Orthographic => 2.0 * radius,
+    };
+    let distance = touching.max(radius * (1.0 + CLOSEST));
+    let height = 2.0 * radius / slope;
+    let eye = center + direction.to_eye() * distance;
+    finished(eye, center, direction, options, height, distance - radius..distance + radius, radius)
+}
+
+fn finished(
+    eye: DVec3,
+    target: DVec3,
+    direction: &ViewDirection,
+    options: &FitOptions,
+    height: f64,
+    depths: std::ops::Range<f64>,
+    radius: f64,
+) -> Result<Camera> {
+    let projection = match options.lens {
+        Lens::Perspective { fov_y } => Projection::Perspective { fov_y },
+        Lens::Orthographic => Projection::Orthographic { height },
+    };
+    let pad = DEPTH_PAD * radius;
+    let (near, far) = (depths.start - pad, depths.end + pad);
+    let camera = Camera { eye, target, up: direction.up(), projection, near, far };
+    camera.check()?;
+    Ok(camera)
+}
+
+/// What to add to an extent so that it can be seen: nothing, unless it is none, or lost in the digits
+/// of its place.
+fn smallest_extent(center: DVec3, size: f64) -> f64 {
+    let place = center.abs().max_element();
+    if size > place * 1e-9 { 0.0 } else { (place * 1e-6).max(if size > 0.0 { 0.0 } else { 1.0 }) }
+}
+
+/// The box itself, or a cube where it has no extent at all.
+fn visible_extent(bounds: Option<&Aabb>) -> Aabb {
+    let bounds = bounds.copied().unwrap_or(Aabb { min: DVec3::ZERO, max: DVec3::ZERO });
+    let center = bounds.center();
+    let half = DVec3::splat(smallest_extent(center, bounds.size().max_element()) * 0.5);
+    Aabb { min: bounds.min - half, max: bounds.max + half }
+}
+
+/// The part of the picture to be filled.
+struct Frame {
+    lens: Lens,
+    /// Perspective: half the frame's width and height at distance 1. Orthographic: half the frame's
+    /// width and height where the whole picture's height is 2.
+    slope: DVec3,
+}
+
+impl Frame {
+    fn new(options: &FitOptions) -> Result<Self> {
+        let FitOptions { lens, aspect, margin } = *options;
+        if !(aspect > 0.0 && aspect.is_finite()) {
+            return Err(Error::parameter("aspect", aspect, "finite and above 0"));
+        }
+        if !(0.0..0.5).contains(&margin) {
+            return Err(Error::parameter("margin", margin, "at least 0 and below 0.5"));
+        }
+        let half_height = match lens {
+            Lens::Perspective { fov_y } if !(fov_y > 0.0 && fov_y < std::f64::consts::PI) => {
+                let degrees = fov_y.to_degrees();
+                return Err(Error::parameter("fov", degrees, "between 0 and 180 degrees"));
+            }
+            Lens::Perspective { fov_y } => libm::tan(fov_y * 0.5),
+            Lens::Orthographic => 1.0,
+        };
+        let free = 1.0 - 2.0 * margin;
+        Ok(Self { lens, slope: DVec3::new(half_height * aspect, half_height, 0.0) * free })
+    }
+
+    /// Where the eye must be for the frame to hold the points; x right, y up, z toward the eye.
+    fn eye_for(&self, points: [DVec3; 8], radius: f64) -> DVec3 {
+        let largest =
+            |f: &dyn Fn(&DVec3) -> f64| points.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
+        let closest = largest(&|p| p.z) + CLOSEST * radius;
+        match self.lens {
+            Lens::Orthographic => {
+                let middle = |k: usize| (largest(&|p| p[k]) - largest(&|p| -p[k])) * 0.5;
+                DVec3::new(middle(0), middle(1), closest + radius)
+            }
+            Lens::Perspective { .. } => {
+                // On each axis two sides of the frame, each through its outermost point, meet in
+                // the nearest eye that sees both.
+                let [x, y] = [0, 1].map(|k| {
+                    let s = self.slope[k];
+                    let (a, b) = (largest(&|p| p[k] + s * p.z), largest(&|p| s * p.z - p[k]));
+                    ((a - b) * 0.5, (a + b) * 0.5 / s)
+                });
+                DVec3::new(x.0, y.0, x.1.max(y.1).max(closest))
+            }
+        }
+    }
+
+    /// The height of an orthographic picture whose frame holds the points.
+    fn height_for(&self, points: [DVec3; 8]) -> f64 {
+        let extent = |k: usize| {
+            let c = points.map(|p| p[k]);
+            let hi = c.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            hi - c.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        (extent(0) / self.slope.x).max(extent(1) / self.slope.y)
+    }
+}

@@ -1,8 +1,12 @@
 //! The one test binary of the library.
 
+mod clip_place;
+mod clip_volume;
 mod raster_interpolate;
 mod raster_triangle;
 mod conformance_visible_surface;
 mod data;
 mod tidy;
+mod view_cull;
+mod view_projection;
 mod view_window;

@@ -1,0 +1,210 @@
+//! Where in the pipeline triangles are clipped: before the camera transform, in clip space, or after
+//! the division. All three give the same picture.
+//!
+//! In the world each border is a plane, one dot product a vertex, and what is rejected is never
+//! transformed. In clip space the borders are the same for all cameras, additions suffice, and w may
+//! have any sign. After the division borders are constants, but a triangle through the eye plane has
+//! no image: what lies in and behind that plane must be cut off first, and attributes are no longer
+//! linear.
+
+use super::outcode::{DepthRange, Outcode};
+use super::volume::{self, Blend, ClipVertex, Step, cut_ring, planes_in_source};
+use crate::info::{Class, Info};
+use crate::math::{DMat4, DVec3, DVec4, Plane};
+use crate::trace::Tracer;
+
+/// The facts of clipping in the world.
+pub const WORLD: Info = Info {
+    name: "world",
+    title: "Against six planes before the camera transform",
+    authors: "Ivan Sutherland, Gary Hodgman",
+    year: 1974,
+    source: "Reentrant Polygon Clipping, Communications of the ACM",
+    class: Class::ObjectSpace,
+    cost: "O(vertices × planes): a dot product each",
+    limits: "an affine world; convex polygons",
+};
+
+/// The facts of clipping in clip space.
+pub const CLIP_SPACE: Info = Info {
+    name: "clip-space",
+    title: "In clip space",
+    authors: "James Blinn, Martin Newell",
+    year: 1978,
+    source: "Clipping Using Homogeneous Coordinates, SIGGRAPH",
+    class: Class::ObjectSpace,
+    cost: "O(vertices × borders crossed): an addition each",
+    limits: "convex polygons",
+};
+
+/// The facts of clipping after the division.
+pub const AFTER_DIVISION: Info = Info {
+    name: "after-division",
+    title: "After the division, the eye plane removed first",
+    authors: "William Newman, Robert Sproull",
+    year: 1973,
+    source: "Principles of Interactive Computer Graphics",
+    class: Class::ObjectSpace,
+    cost: "O(vertices × borders): a comparison each, and one more border for the eye plane",
+    limits: "convex polygons; loses digits for triangles that reach behind the eye",
+};
+
+crate::info::family! {
+    /// Where to clip.
+    pub enum ClipPlace {
+        /// Before the camera transform, against six planes.
+        World => WORLD,
+        /// In clip space.
+        ClipSpace => CLIP_SPACE,
+        /// After the division; points in and behind the eye plane are removed before it.
+        AfterDivision => AFTER_DIVISION,
+    }
+}
+
+/// A vertex after the division.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NdcVertex<A = ()> {
+    /// Normalized device coordinates: −1 … 1 on each axis, or z in 0 … 1.
+    pub position: DVec3,
+    /// 1/w, positive; linear on the screen.
+    pub inv_w: f64,
+    /// Linear in space.
+    pub attributes: A,
+}
+
+/// The border of [`ClipPlace::AfterDivision`] before the others: w ≥ a little.
+pub const EYE: Outcode = Outcode(64);
+
+/// Clips a convex polygon of world-space points with attributes and takes it to normalized device
+/// coordinates; winding is kept. Returns at least three vertices, or none.
+///
+/// ```
+/// use durer::clip::outcode::DepthRange;
+/// use durer::clip::place::{ClipPlace, clip};
+/// use durer::math::{DMat4, DVec3};
+/// use durer::trace::NoTrace;
+/// let triangle = [DVec3::ZERO, DVec3::X * 3.0, DVec3::Y].map(|p| (p, ()));
+/// for &place in ClipPlace::ALL {
+///     let depth = DepthRange::NegativeOneToOne;
+///     assert_eq!(clip(place, &triangle, &DMat4::IDENTITY, depth, &mut NoTrace).len(), 4);
+/// }
+/// ```
+pub fn clip<A: Blend>(
+    place: ClipPlace,
+    polygon: &[(DVec3, A)],
+    clip_from_world: &DMat4,
+    depth: DepthRange,
+    t: &mut impl Tracer<Step>,
+) -> Vec<NdcVertex<A>> {
+    let transformed = |(p, a): &(DVec3, A)| ClipVertex {
+        position: *clip_from_world * p.extend(1.0),
+        attributes: a.clone(),
+    };
+    match place {
+        ClipPlace::World => {
+            let inside = in_world(polygon, &planes_in_source(clip_from_world, depth), t);
+            divided(inside.iter().map(transformed))
+        }
+        ClipPlace::ClipSpace => {
+            let ring: Vec<_> = polygon.iter().map(transformed).collect();
+            let options = volume::Options { depth, ..Default::default() };
+            divided(volume::clip_polygon(&ring, &options, t).into_iter())
+        }
+        ClipPlace::AfterDivision => {
+            let ring: Vec<_> = polygon.iter().map(transformed).collect();
+            let before = before_eye(&ring, nearest_w(clip_from_world, depth) * 0.5, t);
+            in_ndc(divided(before.into_iter()), depth, t)
+        }
+    }
+}
+
+/// Divides by w; a ring with a vertex that has no place is left out.
+fn divided<A: Blend>(ring: impl Iterator<Item = ClipVertex<A>>) -> Vec<NdcVertex<A>> {
+    let mut divided = Vec::new();
+    for v in ring {
+        let inv_w = v.position.w.recip();
+        let position = v.position.truncate() / v.position.w;
+        if !(inv_w > 0.0 && inv_w.is_finite() && position.is_finite()) {
+            return Vec::new();
+        }
+        divided.push(NdcVertex { position, inv_w, attributes: v.attributes });
+    }
+    if divided.len() < 3 { Vec::new() } else { divided }
+}
+
+fn in_world<A: Blend>(
+    polygon: &[(DVec3, A)],
+    planes: &[Plane; 6],
+    t: &mut impl Tracer<Step>,
+) -> Vec<(DVec3, A)> {
+    if polygon.iter().any(|(p, _)| !p.is_finite()) {
+        t.step(|| Step::Rejected);
+        return Vec::new();
+    }
+    let mut ring = polygon.to_vec();
+    for (plane, border) in planes.iter().zip(Outcode::BORDERS) {
+        let distance = |v: &(DVec3, A)| plane.evaluate(v.0);
+        let cut = |[i, o]: [&(DVec3, A); 2], [d_in, d_out]: [f64; 2]| {
+            Blend::blend(i, -d_out, o, d_in, d_in - d_out)
+        };
+        ring = cut_ring(&ring, border, distance, cut, |v| v.0.extend(1.0), t);
+    }
+    ring
+}
+
+/// The smallest w of a point in the view volume: half of it is a safe place for the eye plane, and
+/// not so near to the eye that the division loses the digits of what is visible.
+fn nearest_w(clip_from_world: &DMat4, depth: DepthRange) -> f64 {
+    let world_from_clip = clip_from_world.inverse();
+    let near = if depth == DepthRange::ZeroToOne { 0.0 } else { -1.0 };
+    let corners = (0..8).map(|i| {
+        let pick = |bit: i32, lo: f64| if i >> bit & 1 == 1 { 1.0 } else { lo };
+        // The world point of a corner has w = 1; its w in clip space is that of the corner inverted.
+        (world_from_clip * DVec4::new(pick(0, -1.0), pick(1, -1.0), pick(2, near), 1.0)).w.recip()
+    });
+    let smallest = corners.filter(|w| w.is_finite() && *w > 0.0).fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() { smallest } else { f64::MIN_POSITIVE }
+}
+
+fn before_eye<A: Blend>(
+    ring: &[ClipVertex<A>],
+    smallest_w: f64,
+    t: &mut impl Tracer<Step>,
+) -> Vec<ClipVertex<A>> {
+    if ring.iter().any(|v| !v.position.is_finite()) {
+        t.step(|| Step::Rejected);
+        return Vec::new();
+    }
+    let cut = |[i, o]: [&ClipVertex<A>; 2], [d_in, d_out]: [f64; 2]| {
+        let total = d_in - d_out;
+        let mut position = Blend::blend(&i.position, -d_out, &o.position, d_in, total);
+        position.w = smallest_w;
+        let attributes = A::blend(&i.attributes, -d_out, &o.attributes, d_in, total);
+        ClipVertex { position, attributes }
+    };
+    cut_ring(ring, EYE, |v| v.position.w - smallest_w, cut, |v| v.position, t)
+}
+
+fn in_ndc<A: Blend>(
+    mut ring: Vec<NdcVertex<A>>,
+    depth: DepthRange,
+    t: &mut impl Tracer<Step>,
+) -> Vec<NdcVertex<A>> {
+    for (k, border) in Outcode::BORDERS.into_iter().enumerate() {
+        let distance =
+            |v: &NdcVertex<A>| volume::boundary_coordinates(v.position.extend(1.0), depth)[k];
+        ring = cut_ring(&ring, border, distance, cut_ndc, |v| v.position.extend(1.0), t);
+    }
+    if ring.len() < 3 { Vec::new() } else { ring }
+}
+
+/// Position and 1/w are linear after the division; an attribute counts as much as its end is near.
+fn cut_ndc<A: Blend>([i, o]: [&NdcVertex<A>; 2], [d_in, d_out]: [f64; 2]) -> NdcVertex<A> {
+    let total = d_in - d_out;
+    let (wi, wo) = (-d_out * i.inv_w, d_in * o.inv_w);
+    NdcVertex {
+        position: Blend::blend(&i.position, -d_out, &o.position, d_in, total),
+        inv_w: Blend::blend(&i.inv_w, -d_out, &o.inv_w, d_in, total),
+        attributes: A::blend(&i.attributes, wi, &o.attributes, wo, wi + wo),
+    }
+}
