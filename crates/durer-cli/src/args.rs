@@ -1,6 +1,5 @@
 //! What can be said on the command line.
 
-use crate::camera::NamedView;
 use crate::values::{self, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -9,6 +8,7 @@ use durer::math::DVec3;
 use durer::pipeline::{self, Background};
 use durer::scene::{self, Light};
 use durer::view::layout::Layout;
+use durer::view::projection::NamedView;
 use std::path::PathBuf;
 
 const ABOUT: &str = "Renders 3D models to pictures, on the CPU";

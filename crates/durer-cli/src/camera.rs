@@ -2,12 +2,12 @@
 
 use crate::args::{PictureArgs, ViewArgs};
 use crate::failure::Failure;
-use crate::fit::{Basis, Fit};
+use crate::fit::{self, Fit};
 use crate::values::{Size, positive};
 use durer::math::{DQuat, DVec3};
 use durer::scene::{Camera, Projection, Scene};
 use durer::view::layout::Layout;
-use std::str::FromStr;
+use durer::view::projection::{NamedView, ViewDirection};
 
 /// Angle of view of a fitted camera, degrees: like a lens of 70 mm on a full frame.
 const FOV: f64 = 30.0;
@@ -29,67 +29,21 @@ pub fn ortho(text: &str) -> Result<Ortho, String> {
     }
 }
 
-/// A view by its name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NamedView {
-    name: &'static str,
-    azimuth: i16,
-    /// In degrees, or `None` for the angle at which a cube's three faces look alike, 35.26°.
-    elevation: Option<i16>,
-}
-
-impl NamedView {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::new("iso", 45, None),
-        Self::new("front", 0, Some(0)),
-        Self::new("back", 180, Some(0)),
-        Self::new("right", 90, Some(0)),
-        Self::new("side", 90, Some(0)),
-        Self::new("left", -90, Some(0)),
-        Self::new("top", 0, Some(90)),
-        Self::new("bottom", 0, Some(-90)),
-    ];
-
-    const fn new(name: &'static str, azimuth: i16, elevation: Option<i16>) -> Self {
-        Self { name, azimuth, elevation }
-    }
-
-    /// Degrees around the up axis, and above the horizon.
-    fn angles(self) -> Angles {
-        let elevation = match self.elevation {
-            Some(degrees) => f64::from(degrees),
-            None => libm::atan(std::f64::consts::FRAC_1_SQRT_2).to_degrees(),
-        };
-        Angles { azimuth: f64::from(self.azimuth), elevation }
-    }
-}
-
-impl FromStr for NamedView {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL.iter().copied().find(|v| v.name == text).ok_or_else(|| {
-            let names = Self::ALL.map(|v| v.name).join(", ");
-            format!("`{text}` is no view; there are {names}")
-        })
-    }
+/// `--view`'s names.
+pub fn view(text: &str) -> Result<NamedView, String> {
+    text.parse().map_err(|_| {
+        let names: Vec<&str> = NamedView::ALL.iter().map(|v| v.name()).collect();
+        format!("`{text}` is no view; there are {}", names.join(", "))
+    })
 }
 
 /// A layout whose cells are named views.
 pub fn layout(text: &str) -> Result<Layout, String> {
     let layout: Layout = text.parse().map_err(|e: durer::Error| e.to_string())?;
     for name in layout.names() {
-        NamedView::from_str(name)?;
+        view(name)?;
     }
     Ok(layout)
-}
-
-/// Where a fitted camera looks from, in degrees.
-#[derive(Debug, Clone, Copy)]
-struct Angles {
-    azimuth: f64,
-    elevation: f64,
 }
 
 /// Which picture of those that the options ask for.
@@ -151,7 +105,7 @@ pub fn camera(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Fai
     } else if let Some(eye) = args.eye {
         at(eye, args, scene, shot)
     } else {
-        fitted(args, scene, shot)
+        fitted(args, scene, shot)?
     };
     camera.near = args.near.unwrap_or(camera.near);
     camera.far = args.far.unwrap_or(camera.far);
@@ -189,13 +143,14 @@ fn of_file(name: &str, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
 
 /// A camera in a given place, turned around its target.
 fn at(eye: DVec3, args: &ViewArgs, scene: &Scene, shot: &Shot) -> Camera {
-    let basis = Basis::of(scene.up_axis);
+    let front = NamedView::Front.direction(scene.up_axis);
     let center = scene.bounds().map_or(DVec3::ZERO, |b| b.center());
-    let target = args.target.unwrap_or(if center == eye { eye - basis.front } else { center });
-    let up = args.up.unwrap_or_else(|| basis.up_for(target - eye));
+    let ahead = if center == eye { eye - front.to_eye() } else { center };
+    let target = args.target.unwrap_or(ahead);
+    let up = args.up.unwrap_or_else(|| fit::up_for(target - eye, scene.up_axis));
     let camera = Camera { eye, target, up, projection: projection(args), near: 1.0, far: 2.0 };
     let camera = turned(camera, target, scene, shot);
-    let (near, far) = crate::fit::depth_range(&camera, scene);
+    let (near, far) = fit::depth_range(&camera, scene);
     Camera { near, far, ..camera }
 }
 
@@ -213,7 +168,7 @@ fn turned(camera: Camera, pivot: DVec3, scene: &Scene, shot: &Shot) -> Camera {
         return camera;
     }
     let (sin, cos) = libm::sincos(half);
-    let axis = Basis::of(scene.up_axis).up * sin;
+    let axis = NamedView::Front.direction(scene.up_axis).up() * sin;
     let turn = DQuat::from_xyzw(axis.x, axis.y, axis.z, cos);
     let around = |p: DVec3| pivot + turn * (p - pivot);
     let (eye, target) = (around(camera.eye), around(camera.target));
@@ -221,31 +176,20 @@ fn turned(camera: Camera, pivot: DVec3, scene: &Scene, shot: &Shot) -> Camera {
 }
 
 /// A camera that sees the whole model; the same distance for all frames of a turntable.
-fn fitted(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Camera {
-    let mut angles = match shot.view {
-        Some(view) => view.angles(),
-        None => chosen_angles(args),
+fn fitted(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+    let (azimuth, elevation) = match (shot.view, args.azimuth, args.elevation) {
+        (Some(view), ..) => view.angles(),
+        (None, None, None) => args.view.angles(),
+        (None, azimuth, elevation) => (azimuth.unwrap_or(0.0), elevation.unwrap_or(0.0)),
     };
-    angles.azimuth += shot.turned();
-    let fit = Fit {
-        axes: Basis::of(scene.up_axis).axes(angles.azimuth, angles.elevation),
-        elevation: angles.elevation,
-        turning: shot.turn.is_some(),
-        aspect: shot.aspect(),
-    };
-    match args.ortho {
+    let azimuth = azimuth + shot.turned();
+    let direction = ViewDirection::from_angles(azimuth, elevation, scene.up_axis)
+        .map_err(|e| Failure::Usage(format!("--{e}")))?;
+    let around = shot.turn.map(|_| NamedView::Front.direction(scene.up_axis).up());
+    let fit = Fit { direction, around, aspect: shot.aspect() };
+    Ok(match args.ortho {
         Some(Ortho::Height(height)) => fit.orthographic(scene, Some(height)),
         Some(Ortho::Fit) => fit.orthographic(scene, None),
         None => fit.perspective(scene, args.fov.unwrap_or(FOV).to_radians()),
-    }
-}
-
-/// `--azimuth` and `--elevation`, 0 where only the other is given; else `--view`.
-fn chosen_angles(args: &ViewArgs) -> Angles {
-    match (args.azimuth, args.elevation) {
-        (None, None) => args.view.angles(),
-        (azimuth, elevation) => {
-            Angles { azimuth: azimuth.unwrap_or(0.0), elevation: elevation.unwrap_or(0.0) }
-        }
-    }
+    })
 }

@@ -2,6 +2,7 @@
 
 use durer::math::DVec3;
 use durer::scene::{Camera, Projection, Scene, UpAxis};
+use durer::view::projection::{NamedView, ViewDirection};
 
 /// The part of the picture's width and height that the model may fill.
 const FILL: f64 = 0.94;
@@ -9,61 +10,21 @@ const FILL: f64 = 0.94;
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
 const NEAREST: f64 = 1e-4;
 
-/// Directions of the world, by its up axis.
-#[derive(Debug, Clone, Copy)]
-pub struct Basis {
-    /// Up.
-    pub up: DVec3,
-    /// From the model to whoever sees its front: +z where y is up, −y where z is up.
-    pub front: DVec3,
-}
-
-impl Basis {
-    /// By the axis that is up.
-    pub fn of(up: UpAxis) -> Self {
-        match up {
-            UpAxis::Y => Self { up: DVec3::Y, front: DVec3::Z },
-            UpAxis::Z => Self { up: DVec3::Z, front: DVec3::NEG_Y },
-        }
-    }
-
-    /// The axes of a camera at these angles in degrees: right, up, and backward.
-    pub fn axes(&self, azimuth: f64, elevation: f64) -> [DVec3; 3] {
-        let (sin_a, cos_a) = sin_cos_degrees(azimuth);
-        let (sin_e, cos_e) = sin_cos_degrees(elevation);
-        let side = self.up.cross(self.front);
-        let outward = self.front * cos_a + side * sin_a;
-        let right = side * cos_a - self.front * sin_a;
-        [right, self.up * cos_e - outward * sin_e, outward * cos_e + self.up * sin_e]
-    }
-
-    /// What is up for a line of sight; the front's opposite where that looks along the up axis.
-    pub fn up_for(&self, sight: DVec3) -> DVec3 {
-        let sideways = sight.normalize_or_zero().cross(self.up).length();
-        if sideways < 1e-6 { -self.front } else { self.up }
-    }
-}
-
-/// Sine and cosine, exact at multiples of 90°.
-fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
-    match degrees.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        other => libm::sincos(other.to_radians()),
-    }
+/// What is up for a line of sight; the back's direction where that looks along the up axis.
+pub fn up_for(sight: DVec3, up_axis: UpAxis) -> DVec3 {
+    let front = NamedView::Front.direction(up_axis);
+    let sideways = sight.normalize_or_zero().cross(front.up()).length();
+    if sideways < 1e-6 { -front.to_eye() } else { front.up() }
 }
 
 /// What a fitted camera has to see, and from where.
 #[derive(Debug, Clone, Copy)]
 pub struct Fit {
-    /// Right, up and backward of the camera, unit vectors.
-    pub axes: [DVec3; 3],
-    /// Of the eye above the horizon, degrees.
-    pub elevation: f64,
-    /// Whether the model must stay in the picture while it turns around the up axis.
-    pub turning: bool,
+    /// From where.
+    pub direction: ViewDirection,
+    /// The axis around which the model turns while it must stay in the picture: world space, unit
+    /// length, in one plane with the line of sight and the picture's up.
+    pub around: Option<DVec3>,
     /// Width / height of the picture.
     pub aspect: f64,
 }
@@ -109,7 +70,7 @@ impl Fit {
     }
 
     fn place(&self, center: DVec3, reach: &Reach, distance: f64, projection: Projection) -> Camera {
-        let [right, up, back] = self.axes;
+        let [right, up, back] = self.axes();
         let target = center
             + right * ((reach.right - reach.left) * 0.5)
             + up * ((reach.up - reach.down) * 0.5);
@@ -131,10 +92,9 @@ impl Fit {
             back: nothing,
         };
         for_each_point(scene, |p| {
-            let point = if self.turning {
-                self.swept(p - center, slope_x, slope_y)
-            } else {
-                self.seen(p - center, slope_x, slope_y)
+            let point = match self.around {
+                Some(axis) => self.swept(p - center, axis, slope_x, slope_y),
+                None => self.seen(p - center, slope_x, slope_y),
             };
             reach.join(&point);
         });
@@ -155,9 +115,14 @@ impl Fit {
         (center, reach)
     }
 
+    /// Right, up and backward of the camera, unit vectors.
+    fn axes(&self) -> [DVec3; 3] {
+        [self.direction.right(), self.direction.up(), self.direction.to_eye()]
+    }
+
     /// The reach of one point.
     fn seen(&self, p: DVec3, slope_x: f64, slope_y: f64) -> Reach {
-        let [x, y, z] = self.axes.map(|axis| axis.dot(p));
+        let [x, y, z] = self.axes().map(|axis| axis.dot(p));
         Reach {
             right: x + slope_x * z,
             left: slope_x * z - x,
@@ -169,9 +134,9 @@ impl Fit {
     }
 
     /// The reach of the circle that a point runs through on a turntable.
-    fn swept(&self, p: DVec3, slope_x: f64, slope_y: f64) -> Reach {
-        let (sin, cos) = sin_cos_degrees(self.elevation);
-        let axis = self.axes[1] * cos + self.axes[2] * sin;
+    fn swept(&self, p: DVec3, axis: DVec3, slope_x: f64, slope_y: f64) -> Reach {
+        // Sine and cosine of the eye's elevation.
+        let (sin, cos) = (axis.dot(self.direction.to_eye()), axis.dot(self.direction.up()));
         let height = axis.dot(p);
         let radius = (p - axis * height).length();
         let aside = height * sin * slope_x + radius * (1.0 + (cos * slope_x).powi(2)).sqrt();
@@ -272,8 +237,8 @@ mod tests {
     }
 
     fn fit(azimuth: f64, elevation: f64, turning: bool, aspect: f64) -> Fit {
-        let axes = Basis::of(UpAxis::Z).axes(azimuth, elevation);
-        Fit { axes, elevation, turning, aspect }
+        let direction = ViewDirection::from_angles(azimuth, elevation, UpAxis::Z).unwrap();
+        Fit { direction, around: turning.then_some(DVec3::Z), aspect }
     }
 
     #[test]
@@ -322,13 +287,5 @@ mod tests {
             fit(45.0, 35.0, false, 1.0).perspective(&scene, 0.6).check().unwrap();
             fit(45.0, 35.0, false, 1.0).orthographic(&scene, None).check().unwrap();
         }
-    }
-
-    #[test]
-    fn axes_are_exact_where_angles_are_right() {
-        let axes = Basis::of(UpAxis::Y).axes(0.0, 90.0);
-        assert_eq!(axes, [DVec3::X, DVec3::NEG_Z, DVec3::Y]);
-        let axes = Basis::of(UpAxis::Z).axes(90.0, 0.0);
-        assert_eq!(axes, [DVec3::Y, DVec3::Z, DVec3::X]);
     }
 }

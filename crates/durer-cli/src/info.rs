@@ -6,6 +6,7 @@ use crate::input;
 use crate::messages::Messages;
 use crate::report;
 use durer::scene::{LightKind, Material, Scene, ShadingModel, UpAxis};
+use durer::view::topology::mesh_topology;
 use durer_formats::Model;
 use serde::Serialize;
 use std::fmt::Write;
@@ -23,6 +24,8 @@ struct Info {
     meshes: usize,
     instances: usize,
     bounds: Option<Bounds>,
+    /// Whether the triangles bound a body; `null` where there are none.
+    closed: Option<bool>,
     up_axis: &'static str,
     materials: Vec<MaterialInfo>,
     textures: Vec<TextureInfo>,
@@ -96,6 +99,7 @@ fn of_model(name: String, model: &Model) -> Info {
         meshes: scene.meshes.len(),
         instances: scene.instances.len(),
         bounds: bounds(scene),
+        closed: closed(scene),
         up_axis: if scene.up_axis == UpAxis::Y { "y" } else { "z" },
         materials: scene.materials.iter().map(material).collect(),
         textures: textures(scene),
@@ -110,6 +114,14 @@ fn of_model(name: String, model: &Model) -> Info {
 fn bounds(scene: &Scene) -> Option<Bounds> {
     let b = scene.bounds()?;
     Some(Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() })
+}
+
+/// Whether all meshes of triangles that are shown are closed.
+fn closed(scene: &Scene) -> Option<bool> {
+    let shown = |i: usize| scene.instances.iter().any(|instance| instance.mesh == i);
+    let meshes = scene.meshes.iter().enumerate();
+    let solid = meshes.filter(|(i, mesh)| mesh.triangle_count() > 0 && shown(*i));
+    solid.map(|(_, mesh)| mesh_topology(mesh).closed).reduce(|a, b| a && b)
 }
 
 fn material(material: &Material) -> MaterialInfo {
@@ -155,6 +167,9 @@ impl Info {
         if let Some(Bounds { min, max, size }) = &self.bounds {
             lines.push(("bounds", format!("{} … {}", triple(min), triple(max))));
             lines.push(("size", triple(size)));
+        }
+        if let Some(closed) = self.closed {
+            lines.push(("closed", if closed { "yes" } else { "no" }.to_owned()));
         }
         lines.push(("up axis", self.up_axis.to_owned()));
         let mut list = |name, items: Vec<String>| {

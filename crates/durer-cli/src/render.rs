@@ -1,7 +1,7 @@
 //! `durer render`.
 
 use crate::args::RenderArgs;
-use crate::camera::{self, NamedView, Shot};
+use crate::camera::{self, Shot};
 use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
@@ -214,7 +214,7 @@ fn shots(args: &RenderArgs, frame: Option<u32>) -> Result<Vec<Cell>, Failure> {
 fn viewports(layout: &Layout, size: Size) -> Result<Vec<Cell>, String> {
     let viewports = layout.viewports(size.width, size.height).map_err(|e| e.to_string())?;
     let cell = |(name, viewport): (&str, durer::view::window::Viewport)| {
-        let view: NamedView = name.parse()?;
+        let view = camera::view(name)?;
         let pixels = viewport.pixels();
         let size = Size { width: pixels.width(), height: pixels.height() };
         let (x, y) = (pixels.x0().unsigned_abs(), pixels.y0().unsigned_abs());

@@ -59,7 +59,13 @@ fn every_model_has_the_triangles_of_the_index() {
         let model = read(&path, &ReadOptions::default())
             .unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         model.scene.check().unwrap();
-        println!("{}: {:?} {:?} {:#?}", path.display(), model.format, model.scene.bounds(), model.warnings);
+        println!(
+            "{}: {:?} {:?} {:#?}",
+            path.display(),
+            model.format,
+            model.scene.bounds(),
+            model.warnings
+        );
         let row = format!("| {} |", path.strip_prefix(&data).unwrap().display());
         let Some(row) = index.lines().find(|l| l.starts_with(&row)) else { continue };
         let triangles = row.split(" v / ").nth(1).and_then(|r| r.split(" t").next()).unwrap();
@@ -80,7 +86,10 @@ fn broken_files_are_refused_or_warned_about() {
             assert!(took < Duration::from_secs(2), "{}: {took:?}", path.display());
             let name = path.strip_prefix(data.join("malformed")).unwrap().display().to_string();
             match &result {
-                Ok(m) => println!("OK   {name} {:?}", m.warnings.iter().map(|w| w.to_string()).collect::<Vec<_>>()),
+                Ok(m) => println!(
+                    "OK   {name} {:?}",
+                    m.warnings.iter().map(|w| w.to_string()).collect::<Vec<_>>()
+                ),
                 Err(e) => println!("ERR  {name} {e}"),
             }
         }

@@ -2,10 +2,10 @@
 
 mod clip_place;
 mod clip_volume;
-mod raster_interpolate;
-mod raster_triangle;
 mod conformance_visible_surface;
 mod data;
+mod raster_interpolate;
+mod raster_triangle;
 mod tidy;
 mod view_cull;
 mod view_projection;
