@@ -109,6 +109,9 @@ pub struct Report {
 
 /// Renders a scene by the production path, the z-buffer.
 ///
+/// Meshes without normals are shown with flat faces, unless Gouraud or Phong shading is asked for:
+/// then they get smooth normals first ([`crate::scene::Mesh::with_smooth_normals`]).
+///
 /// The same input gives the same bytes on every CPU and number of threads. Runs on the current
 /// rayon pool where the feature `parallel` is on.
 ///
@@ -139,6 +142,8 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
         background: options.background,
         level: options.level,
     };
+    let smoothed = with_needed_normals(scene, options.shading);
+    let scene = smoothed.as_ref().unwrap_or(scene);
     let report = z_buffer::render(scene, &view, &lights, &z_options, &mut framebuffer)?;
     let report = Report {
         triangles_in: scene.triangle_count(),
@@ -150,4 +155,18 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
         raster_seconds: report.raster_seconds,
     };
     Ok((framebuffer, report))
+}
+
+/// Interpolating shadings need normals at the vertices: the scene with those that are missing, where
+/// such a shading is asked for and some are.
+fn with_needed_normals(scene: &Scene, shading: Option<Shading>) -> Option<Scene> {
+    let interpolates = matches!(shading, Some(Shading::Gouraud | Shading::Phong));
+    if !interpolates || scene.meshes.iter().all(|m| !m.normals.is_empty()) {
+        return None;
+    }
+    let mut scene = scene.clone();
+    for mesh in &mut scene.meshes {
+        *mesh = mesh.with_smooth_normals();
+    }
+    Some(scene)
 }

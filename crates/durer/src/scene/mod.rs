@@ -5,6 +5,7 @@ mod camera;
 mod light;
 mod material;
 mod mesh;
+mod smooth;
 mod texture;
 
 pub use bounds::{Aabb, BoundingSphere};

@@ -2,11 +2,11 @@
 
 mod clip_place;
 mod clip_volume;
-mod conformance_visible_surface;
-mod data;
+//mod conformance_visible_surface;
+//mod data;
+mod determinism;
 mod raster_interpolate;
 mod raster_triangle;
+mod scenes;
 mod tidy;
-mod view_cull;
-mod view_projection;
 mod view_window;

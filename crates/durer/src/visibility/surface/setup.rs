@@ -7,10 +7,12 @@
 //! Source: near-plane-only clipping after Blinn & Newell, *Clipping using homogeneous coordinates*
 //! (1978); the guard band as in graphics hardware. Cost: O(vertices + triangles).
 
-use crate::math::{DMat4, DVec2, DVec4, Vec3};
+use crate::clip::volume::{self, Borders, ClipVertex, clip_polygon, clip_segment};
+use crate::math::{DMat4, DVec2, Vec3};
 use crate::raster::fixed::{GUARD_BAND, HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS, first_center, snap};
 use crate::scene::{AlphaMode, Mesh, Scene, Topology};
 use crate::simd::Level;
+use crate::trace::NoTrace;
 use crate::view::View;
 use fearless_simd::prelude::*;
 use fearless_simd::{dispatch, f64x4};
@@ -170,6 +172,7 @@ struct ScreenVertex {
 /// Takes mesh space to homogeneous screen space, and says what is outside.
 #[derive(Debug, Clone, Copy)]
 struct Transform {
+    clip_from_mesh: DMat4,
     screen_from_mesh: DMat4,
     width: f64,
     height: f64,
@@ -178,8 +181,22 @@ struct Transform {
 }
 
 impl Transform {
-    fn homogeneous(&self, p: Vec3) -> DVec4 {
-        self.screen_from_mesh * p.as_dvec3().extend(1.0)
+    fn clip_vertex(&self, p: Vec3) -> ClipVertex {
+        ClipVertex { position: self.clip_from_mesh * p.as_dvec3().extend(1.0), attributes: () }
+    }
+
+    /// Cuts at the near plane, and at the guard band that the rasterizer's numbers have room for.
+    fn clip_options(&self) -> volume::Options {
+        let guard_band = GUARD_BAND / self.width.max(self.height);
+        volume::Options { borders: Borders::NearOnly { guard_band }, ..Default::default() }
+    }
+
+    /// x and y in pixels and the depth of a vertex with w > 0.
+    fn to_screen(self, v: &ClipVertex) -> (DVec2, f32) {
+        let p = v.position;
+        let (x, y, z) = (p.x / p.w, p.y / p.w, p.z / p.w);
+        let pixels = DVec2::new((0.5 + 0.5 * x) * self.width, (0.5 - 0.5 * y) * self.height);
+        (pixels, (0.5 + 0.5 * z) as f32)
     }
 
     /// Transforms positions in order; `vertices` is replaced.
@@ -254,34 +271,6 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     }
 }
 
-/// Cuts a polygon in homogeneous screen space at the near plane and the guard band.
-fn clip_near_and_guard(polygon: &[DVec4], guard: f64) -> Vec<DVec4> {
-    let planes = [
-        DVec4::Z,
-        DVec4::new(1.0, 0.0, 0.0, guard),
-        DVec4::new(-1.0, 0.0, 0.0, guard),
-        DVec4::new(0.0, 1.0, 0.0, guard),
-        DVec4::new(0.0, -1.0, 0.0, guard),
-    ];
-    planes.iter().fold(polygon.to_vec(), |polygon, plane| clip_by_plane(&polygon, *plane))
-}
-
-fn clip_by_plane(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (i, &p) in polygon.iter().enumerate() {
-        let q = polygon[(i + 1) % polygon.len()];
-        let (dp, dq) = (plane.dot(p), plane.dot(q));
-        if dp >= 0.0 {
-            kept.push(p);
-        }
-        if (dp >= 0.0) != (dq >= 0.0) {
-            // Symmetric in p and q, so neighbours that share the edge get the same point.
-            kept.push((p * dq - q * dp) / (dq - dp));
-        }
-    }
-    kept
-}
-
 /// Counts of what happened to triangles.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -348,6 +337,7 @@ impl<'a> Assembler<'a> {
         let mesh = &self.scene.meshes[run.mesh];
         let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
         let transform = Transform {
+            clip_from_mesh: self.view.clip_from_world() * world_from_mesh,
             screen_from_mesh: self.view.screen_from_world() * world_from_mesh,
             width: f64::from(self.view.width()),
             height: f64::from(self.view.height()),
@@ -359,8 +349,8 @@ impl<'a> Assembler<'a> {
                 for primitive in range {
                     let item = run.first_item + (primitive - run.range.start);
                     let ends = mesh.line_or_point(primitive as usize);
-                    let ends = ends.map(|c| transform.homogeneous(mesh.positions[c as usize]));
-                    self.strip(ends, item, &mut emit);
+                    let ends = ends.map(|c| transform.clip_vertex(mesh.positions[c as usize]));
+                    self.strip(&transform, ends, item, &mut emit);
                 }
             }
         }
@@ -464,12 +454,13 @@ impl<'a> Assembler<'a> {
         emit: &mut impl FnMut(ScreenTriangle),
     ) {
         self.counts.clipped += 1;
-        let points = corners.map(|c| transform.homogeneous(mesh.positions[c as usize]));
-        let polygon = clip_near_and_guard(&points, GUARD_BAND);
-        let projected: Vec<(i32, i32, f32)> = polygon
-            .iter()
-            .map(|p| (snap(p.x / p.w), snap(p.y / p.w), (p.z / p.w) as f32))
-            .collect();
+        let points = corners.map(|c| transform.clip_vertex(mesh.positions[c as usize]));
+        let polygon = clip_polygon(&points, &transform.clip_options(), &mut NoTrace);
+        let snapped = |v: &ClipVertex| {
+            let (p, depth) = transform.to_screen(v);
+            (snap(p.x), snap(p.y), depth)
+        };
+        let projected: Vec<(i32, i32, f32)> = polygon.iter().map(snapped).collect();
         let (mut drawn, mirrored) = (0, transform.mirrored);
         for i in 2..projected.len() {
             let [a, b, c] = [projected[0], projected[i - 1], projected[i]];
@@ -485,20 +476,22 @@ impl<'a> Assembler<'a> {
     }
 
     /// The strip around a line, or the square around a point (whose ends are the same).
-    fn strip(&mut self, ends: [DVec4; 2], item: u32, emit: &mut impl FnMut(ScreenTriangle)) {
-        if !ends.iter().all(|p| p.is_finite()) {
+    fn strip(
+        &mut self,
+        transform: &Transform,
+        ends: [ClipVertex; 2],
+        item: u32,
+        emit: &mut impl FnMut(ScreenTriangle),
+    ) {
+        if !ends.iter().all(|v| v.position.is_finite()) {
             self.counts.non_finite += 1;
             return;
         }
-        let inside = clip_near_and_guard(&ends, GUARD_BAND);
-        let (Some(a), Some(b)) =
-            (inside.first(), inside.iter().rfind(|p| **p != inside[0]).or(inside.first()))
-        else {
+        let Some(inside) = clip_segment(ends, &transform.clip_options(), &mut NoTrace) else {
             self.counts.culled += 1;
             return;
         };
-        let [pa, pb] = [a, b].map(|p| DVec2::new(p.x / p.w, p.y / p.w));
-        let [za, zb] = [a, b].map(|p| (p.z / p.w) as f32);
+        let [(pa, za), (pb, zb)] = inside.map(|v| transform.to_screen(&v));
         let along = (pb - pa).normalize_or_zero();
         let (back, side) = match along == DVec2::ZERO {
             true => (DVec2::X * (0.5 * POINT_SIZE), DVec2::Y * (0.5 * POINT_SIZE)),

@@ -46,10 +46,6 @@ impl SamplePlane {
     pub fn depth(&self, index: usize) -> f32 {
         f32::from_bits(self.depth[index] as u32)
     }
-
-    pub fn offset(&self) -> SampleOffset {
-        self.offset
-    }
 }
 
 /// Is asked for each fragment that passes the depth test, with its tile-local pixel; a fragment is
