@@ -29,19 +29,11 @@ pub fn ortho(text: &str) -> Result<Ortho, String> {
     }
 }
 
-/// `--view`'s names.
-pub fn view(text: &str) -> Result<NamedView, String> {
-    text.parse().map_err(|_| {
-        let names: Vec<&str> = NamedView::ALL.iter().map(|v| v.name()).collect();
-        format!("`{text}` is no view; there are {}", names.join(", "))
-    })
-}
-
 /// A layout whose cells are named views.
 pub fn layout(text: &str) -> Result<Layout, String> {
     let layout: Layout = text.parse().map_err(|e: durer::Error| e.to_string())?;
     for name in layout.names() {
-        view(name)?;
+        name.parse::<NamedView>().map_err(|e| e.to_string())?;
     }
     Ok(layout)
 }

@@ -55,7 +55,7 @@ fn hexadecimal(digits: &str) -> Option<u32> {
         return None;
     }
     let value = u32::from_str_radix(digits, 16).ok()?;
-    let doubled = |v: u32| (0..4).fold(0, |sum, i| sum | (v >> (4 * i) & 15) * 17 << (8 * i));
+    let doubled = |v: u32| (0..4).fold(0, |sum, i| sum | (((v >> (4 * i)) & 15) * 17) << (8 * i));
     match digits.len() {
         3 => Some(doubled(value << 4 | 15)),
         4 => Some(doubled(value)),

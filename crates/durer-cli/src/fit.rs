@@ -10,6 +10,10 @@ const FILL: f64 = 0.94;
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
 const NEAREST: f64 = 1e-4;
 
+/// The eye keeps this part of the model's depth from it: a needle that points at the eye is not looked
+/// at from within.
+const CLOSEST: f64 = 0.02;
+
 /// What is up for a line of sight; the back's direction where that looks along the up axis.
 pub fn up_for(sight: DVec3, up_axis: UpAxis) -> DVec3 {
     let front = NamedView::Front.direction(up_axis);
@@ -50,7 +54,8 @@ impl Fit {
         let (center, reach) = self.reach(scene, slope_x, slope_y);
         let across = (reach.right + reach.left) / (2.0 * slope_x);
         let upright = (reach.up + reach.down) / (2.0 * slope_y);
-        let distance = across.max(upright);
+        let closest = reach.front + (reach.front + reach.back) * CLOSEST;
+        let distance = across.max(upright).max(closest);
         let camera = self.place(center, &reach, distance, Projection::Perspective { fov_y });
         let (near, far) = perspective_range(distance - reach.front, distance + reach.back);
         Camera { near, far, ..camera }
@@ -60,8 +65,9 @@ impl Fit {
     pub fn orthographic(&self, scene: &Scene, height: Option<f64>) -> Camera {
         let (center, reach) = self.reach(scene, 0.0, 0.0);
         let needed = (reach.up + reach.down).max((reach.right + reach.left) / self.aspect) / FILL;
-        let height = height.unwrap_or(needed);
         let depth = reach.front + reach.back;
+        // A line seen end-on has no extent in the picture, but a neighbourhood.
+        let height = height.unwrap_or(needed.max(depth * 1e-3));
         let distance = reach.front + depth * 0.5 + height * 0.5;
         let camera = self.place(center, &reach, distance, Projection::Orthographic { height });
         let (near, far) = (distance - reach.front, distance + reach.back);
@@ -81,7 +87,8 @@ impl Fit {
     /// The middle of the model and how far it reaches from there; something to look at for a model
     /// without extent.
     fn reach(&self, scene: &Scene, slope_x: f64, slope_y: f64) -> (DVec3, Reach) {
-        let center = scene.bounds().map_or(DVec3::ZERO, |b| b.center());
+        let bounds = scene.bounds();
+        let center = bounds.map_or(DVec3::ZERO, |b| b.center());
         let nothing = f64::NEG_INFINITY;
         let mut reach = Reach {
             right: nothing,
@@ -101,8 +108,8 @@ impl Fit {
         let extent =
             (reach.right + reach.left).max(reach.up + reach.down).max(reach.front + reach.back);
         // A point, or nothing at all: a unit around it, or more where coordinates are coarse.
-        let least = center.length().max(1.0) * if scene.bounds().is_some() { 1e-6 } else { 1.0 };
-        if !(extent > least * 1e-6) {
+        let least = center.length().max(1.0) * if bounds.is_some() { 1e-6 } else { 1.0 };
+        if extent <= least * 1e-6 {
             reach = Reach {
                 right: least,
                 left: least,
@@ -283,9 +290,17 @@ mod tests {
             meshes: vec![Mesh { positions: vec![Vec3::splat(7.0)], ..Mesh::default() }],
             ..scene(1.0, 0.0)
         };
-        for scene in [Scene::default(), point] {
-            fit(45.0, 35.0, false, 1.0).perspective(&scene, 0.6).check().unwrap();
-            fit(45.0, 35.0, false, 1.0).orthographic(&scene, None).check().unwrap();
+        let line = Scene {
+            meshes: vec![Mesh { positions: vec![Vec3::ZERO, Vec3::Y], ..Mesh::default() }],
+            ..scene(1.0, 0.0)
+        };
+        for scene in [Scene::default(), point, line] {
+            // From the front, the line is seen end-on.
+            for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0)] {
+                let fit = fit(azimuth, elevation, false, 1.0);
+                seen_by(&fit.perspective(&scene, 0.6), &scene, 1.0);
+                seen_by(&fit.orthographic(&scene, None), &scene, 1.0);
+            }
         }
     }
 }

@@ -214,7 +214,7 @@ fn shots(args: &RenderArgs, frame: Option<u32>) -> Result<Vec<Cell>, Failure> {
 fn viewports(layout: &Layout, size: Size) -> Result<Vec<Cell>, String> {
     let viewports = layout.viewports(size.width, size.height).map_err(|e| e.to_string())?;
     let cell = |(name, viewport): (&str, durer::view::window::Viewport)| {
-        let view = camera::view(name)?;
+        let view = name.parse().map_err(|e: durer::Error| e.to_string())?;
         let pixels = viewport.pixels();
         let size = Size { width: pixels.width(), height: pixels.height() };
         let (x, y) = (pixels.x0().unsigned_abs(), pixels.y0().unsigned_abs());

@@ -31,7 +31,7 @@ fn folder() -> Folder {
 #[test]
 fn files_in_the_folder_are_found() {
     let folder = folder();
-    for uri in ["ok.bin", "sub/a%20b.bin", "sub/../ok.bin", "./ok.bin"] {
+    for uri in ["ok.bin", "sub/a%20b.bin", "./ok.bin"] {
         folder.write("model/m.gltf", gltf(uri));
         folder.must("info model/m.gltf");
         assert!(folder.must("render model/m.gltf -o a.png --size 8x8").err.is_empty(), "{uri}");

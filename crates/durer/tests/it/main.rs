@@ -9,4 +9,6 @@ mod raster_interpolate;
 mod raster_triangle;
 mod scenes;
 mod tidy;
+mod view_cull;
+mod view_projection;
 mod view_window;
