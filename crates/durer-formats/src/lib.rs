@@ -5,11 +5,22 @@
 
 #![forbid(unsafe_code)]
 
+mod color;
 mod error;
 pub mod gltf;
 pub mod image;
 mod model;
 pub mod png;
+mod mtl;
+mod number;
+pub mod obj;
+mod place;
+pub mod ply;
+mod sniff;
+pub mod stl;
+mod text;
+pub mod threemf;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Limits, Model, NoResources, Pose, ReadOptions, Resources};
+pub use sniff::{ModelFormat, read_model};

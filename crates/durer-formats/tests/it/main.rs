@@ -1,3 +1,5 @@
 //! One test binary for the formats.
 
 mod conformance_gltf;
+mod conformance_meshes;
+mod shared;

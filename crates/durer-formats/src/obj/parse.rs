@@ -1,0 +1,436 @@
+//! The statements of an OBJ file.
+
+use super::corners::{Corner, Corners, NONE};
+use super::count::Counts;
+use crate::text::{Cursor, Tally, quote};
+use crate::{Error, Limits, Place, Result};
+use durer::math::{DVec3, Vec2, Vec3};
+use durer::scene::Topology;
+use std::collections::HashMap;
+
+/// From so many parts on, a change of name alone starts no new one: a name per face would take
+/// more memory than the file.
+const MAX_NAMED_PARTS: usize = 1 << 16;
+
+/// Primitives from `start` on have this material and name, until the next run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Run {
+    pub start: usize,
+    pub material: Option<usize>,
+    pub name: String,
+}
+
+/// Things that were left out or repaired.
+#[derive(Debug, Default)]
+pub(super) struct Repairs {
+    pub unknown: Tally,
+    pub unknown_word: String,
+    pub short_faces: Tally,
+    pub non_finite: Tally,
+    pub sloppy: Tally,
+    pub unnamed_parts: Tally,
+    pub byte_colors: bool,
+}
+
+/// What the statements say.
+#[derive(Debug, Default)]
+pub(super) struct Parsed {
+    pub positions: Vec<DVec3>,
+    /// sRGB; empty or as long as `positions`.
+    pub colors: Vec<Vec3>,
+    pub tex_coords: Vec<Vec2>,
+    pub normals: Vec<Vec3>,
+    pub triangles: Corners,
+    pub triangle_runs: Vec<Run>,
+    /// First triangle of each face; empty while all faces are triangles.
+    pub faces: Vec<u32>,
+    /// Positions, two per line.
+    pub lines: Vec<u32>,
+    pub line_runs: Vec<Run>,
+    pub points: Vec<u32>,
+    pub point_runs: Vec<Run>,
+    /// Names in `usemtl`, by first use.
+    pub materials: Vec<String>,
+    /// Operands of `mtllib`, with their lines.
+    pub libraries: Vec<(u64, String)>,
+    pub repairs: Repairs,
+}
+
+/// Reads all statements.
+///
+/// # Errors
+/// See [`super::read`].
+pub(super) fn parse(text: &[u8], counts: &Counts, limits: &Limits) -> Result<Parsed> {
+    let mut parser = Parser::new(text, counts, limits);
+    while !parser.cursor.at_end() {
+        parser.statement()?;
+        parser.cursor.next_line();
+    }
+    parser.finish()
+}
+
+struct Parser<'a> {
+    cursor: Cursor<'a>,
+    counts: &'a Counts,
+    limit: u64,
+    out: Parsed,
+    material_numbers: HashMap<&'a [u8], usize>,
+    material: Option<usize>,
+    object: &'a [u8],
+    group: &'a [u8],
+    /// What the last run of triangles, lines and points was begun for.
+    open: [Option<Part<'a>>; 3],
+    /// The largest color value, to tell 0…1 from 0…255.
+    brightest: f32,
+    /// Faces with three or more corners so far.
+    faces: usize,
+}
+
+/// The three kinds of things that corners refer to.
+#[derive(Clone, Copy)]
+enum Kind {
+    Position,
+    TexCoord,
+    Normal,
+}
+
+impl<'a> Parser<'a> {
+    fn new(text: &'a [u8], counts: &'a Counts, limits: &Limits) -> Self {
+        let mut out = Parsed::default();
+        out.positions.reserve_exact(counts.positions);
+        out.tex_coords.reserve_exact(counts.tex_coords);
+        out.normals.reserve_exact(counts.normals);
+        out.triangles.indices.reserve_exact(3 * counts.triangles);
+        out.lines.reserve_exact(2 * counts.lines);
+        out.points.reserve_exact(counts.points);
+        Self {
+            cursor: Cursor::new(text),
+            counts,
+            limit: limits.primitives,
+            out,
+            material_numbers: HashMap::new(),
+            material: None,
+            object: b"",
+            group: b"",
+            open: [None; 3],
+            brightest: 0.0,
+            faces: 0,
+        }
+    }
+
+    fn statement(&mut self) -> Result<()> {
+        let Some(word) = self.cursor.word() else { return Ok(()) };
+        match word {
+            b"v" => self.position(),
+            b"vt" => self.tex_coord(),
+            b"vn" => self.normal(),
+            b"f" | b"fo" => self.face(),
+            b"l" => self.line(),
+            b"p" => self.points(),
+            _ => {
+                self.naming(word);
+                Ok(())
+            }
+        }
+    }
+
+    /// Statements that name things, and those that are not known.
+    fn naming(&mut self, word: &[u8]) {
+        match word {
+            b"usemtl" => {
+                let name = self.cursor.rest();
+                let next = self.material_numbers.len();
+                let number = *self.material_numbers.entry(name).or_insert(next);
+                if number == next {
+                    self.out.materials.push(String::from_utf8_lossy(name).into_owned());
+                }
+                self.material = Some(number);
+            }
+            b"mtllib" => {
+                let name = String::from_utf8_lossy(self.cursor.rest()).into_owned();
+                self.out.libraries.push((self.cursor.line(), name));
+            }
+            b"o" => self.object = self.cursor.rest(),
+            b"g" => self.group = self.cursor.rest(),
+            b"s" => {}
+            _ => {
+                let place = self.cursor.place();
+                if self.out.repairs.unknown.count == 0 {
+                    self.out.repairs.unknown_word = quote(word);
+                }
+                self.out.repairs.unknown.add(|| place);
+            }
+        }
+    }
+
+    /// Numbers of a statement that needs `least` of them.
+    fn numbers<const N: usize>(&mut self, what: &str, least: usize) -> Result<([f64; N], usize)> {
+        let line = self.cursor.line();
+        let mut values = [0.0; N];
+        let count = self.cursor.floats(&mut values)?;
+        if count < least {
+            let message = format!("`{what}` has {count} numbers; it needs {least}");
+            return Err(Error::line(line, 0, message));
+        }
+        Ok((values, count))
+    }
+
+    fn position(&mut self) -> Result<()> {
+        let ([x, y, z, a, b, c, ..], count) = self.numbers::<7>("v", 3)?;
+        let p = DVec3::new(x, y, z);
+        if !p.is_finite() {
+            let line = self.cursor.line();
+            self.out.repairs.non_finite.add(|| Place::Line(line, 0));
+        }
+        self.out.positions.push(p);
+        if count >= 6 || !self.out.colors.is_empty() {
+            self.color((count >= 6).then(|| Vec3::new(a as f32, b as f32, c as f32)));
+        }
+        Ok(())
+    }
+
+    /// The color of the last position; white before the first and where there is none.
+    fn color(&mut self, color: Option<Vec3>) {
+        let colors = &mut self.out.colors;
+        if colors.is_empty() {
+            colors.reserve_exact(self.counts.positions);
+        }
+        colors.resize(self.out.positions.len() - 1, Vec3::ONE);
+        colors.push(color.unwrap_or(Vec3::ONE));
+        self.brightest = self.brightest.max(color.map_or(0.0, Vec3::max_element));
+    }
+
+    fn tex_coord(&mut self) -> Result<()> {
+        let ([u, v, _], _) = self.numbers::<3>("vt", 1)?;
+        self.out.tex_coords.push(Vec2::new(u as f32, (1.0 - v) as f32));
+        Ok(())
+    }
+
+    fn normal(&mut self) -> Result<()> {
+        let ([x, y, z], _) = self.numbers::<3>("vn", 3)?;
+        let n = DVec3::new(x, y, z);
+        let n = if n.is_finite() { n.normalize_or_zero() } else { DVec3::ZERO };
+        self.out.normals.push(n.as_vec3());
+        Ok(())
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` where the line is over.
+    fn corner(&mut self) -> Result<Option<Corner>> {
+        if self.cursor.line_is_over() {
+            return Ok(None);
+        }
+        let Some(position) = self.cursor.integer_here() else { return Err(self.not_a_corner()) };
+        let (mut tex_coord, mut normal) = (None, None);
+        if self.cursor.take(b'/') {
+            tex_coord = self.cursor.integer_here();
+            if self.cursor.take(b'/') {
+                normal = self.cursor.integer_here();
+            }
+        }
+        if !self.cursor.word_is_over() {
+            return Err(self.not_a_corner());
+        }
+        let position = self.resolve(position, Kind::Position)?;
+        let tex_coord = tex_coord.map(|i| self.resolve(i, Kind::TexCoord)).transpose()?;
+        let normal = normal.map(|i| self.resolve(i, Kind::Normal)).transpose()?;
+        Ok(Some(Corner {
+            position,
+            tex_coord: tex_coord.unwrap_or(NONE),
+            normal: normal.unwrap_or(NONE),
+        }))
+    }
+
+    fn not_a_corner(&mut self) -> Error {
+        let word = self.cursor.current_word();
+        let message = format!("`{word}` is not a corner; it should be v, v/vt, v//vn or v/vt/vn");
+        self.cursor.error(message)
+    }
+
+    /// The number of a thing from the file's index: from 1, or back from −1.
+    fn resolve(&self, index: i64, kind: Kind) -> Result<u32> {
+        let (total, so_far) = match kind {
+            Kind::Position => (self.counts.positions, self.out.positions.len()),
+            Kind::TexCoord => (self.counts.tex_coords, self.out.tex_coords.len()),
+            Kind::Normal => (self.counts.normals, self.out.normals.len()),
+        };
+        let from_zero = if index < 0 { so_far as i64 + index } else { index - 1 };
+        if from_zero >= 0 && (from_zero as u64) < total as u64 {
+            return Ok(from_zero as u32);
+        }
+        let what = match kind {
+            Kind::Position => "vertex",
+            Kind::TexCoord => "texture coordinate",
+            Kind::Normal => "normal",
+        };
+        let there = if index < 0 { format!("{so_far} so far") } else { format!("{total}") };
+        Err(self.cursor.error(format!(
+            "{what} {index} does not exist: there are {there}, counted from 1, or back from -1"
+        )))
+    }
+
+    fn face(&mut self) -> Result<()> {
+        let place = self.cursor.line();
+        let (Some(first), Some(second)) = (self.corner()?, self.corner()?) else {
+            return self.short_face(place);
+        };
+        let Some(third) = self.corner()? else { return self.short_face(place) };
+        let start = self.out.triangles.indices.len();
+        self.begin(start / 3, Topology::Triangles);
+        for corner in [first, second, third] {
+            self.out.triangles.push(corner);
+        }
+        while let Some(next) = self.corner()? {
+            let last = self.out.triangles.indices.len() - 1;
+            self.out.triangles.repeat(start);
+            self.out.triangles.repeat(last);
+            self.out.triangles.push(next);
+        }
+        self.note_face(start / 3);
+        self.check_limit()
+    }
+
+    fn short_face(&mut self, line: u64) -> Result<()> {
+        self.out.repairs.short_faces.add(|| Place::Line(line, 0));
+        Ok(())
+    }
+
+    /// Keeps the first triangle of each face once a face has several.
+    fn note_face(&mut self, first: usize) {
+        let several = self.out.triangles.indices.len() / 3 > first + 1;
+        let faces = &mut self.out.faces;
+        if several && faces.is_empty() {
+            faces.extend(0..self.faces as u32);
+        }
+        if several || !faces.is_empty() {
+            faces.push(first as u32);
+        }
+        self.faces += 1;
+    }
+
+    fn line(&mut self) -> Result<()> {
+        let start = self.out.lines.len() / 2;
+        let mut last = None;
+        while let Some(Corner { position, .. }) = self.corner()? {
+            if let Some(from) = last.replace(position) {
+                self.begin(start, Topology::Lines);
+                self.out.lines.extend([from, position]);
+            }
+        }
+        if start == self.out.lines.len() / 2 {
+            let line = self.cursor.line();
+            self.out.repairs.short_faces.add(|| Place::Line(line, 0));
+        }
+        self.check_limit()
+    }
+
+    fn points(&mut self) -> Result<()> {
+        while let Some(Corner { position, .. }) = self.corner()? {
+            self.begin(self.out.points.len(), Topology::Points);
+            self.out.points.push(position);
+        }
+        self.check_limit()
+    }
+
+    /// Starts a run at primitive `start` where material or name change.
+    fn begin(&mut self, start: usize, topology: Topology) {
+        let part = Part { material: self.material, object: self.object, group: self.group };
+        let (slot, runs) = match topology {
+            Topology::Triangles => (&mut self.open[0], &mut self.out.triangle_runs),
+            Topology::Lines => (&mut self.open[1], &mut self.out.line_runs),
+            Topology::Points => (&mut self.open[2], &mut self.out.point_runs),
+        };
+        if slot.is_some_and(|open| open == part) {
+            return;
+        }
+        let same_material = slot.replace(part).is_some_and(|open| open.material == part.material);
+        if same_material && runs.len() >= MAX_NAMED_PARTS {
+            self.out.repairs.unnamed_parts.add(|| Place::Line(self.cursor.line(), 0));
+        } else {
+            runs.push(Run { start, material: part.material, name: part.name() });
+        }
+    }
+
+    /// # Errors
+    /// More primitives than allowed: only joined lines get here beyond what was counted before.
+    fn check_limit(&self) -> Result<()> {
+        let out = &self.out;
+        let value = out.triangles.indices.len() / 3 + out.lines.len() / 2 + out.points.len();
+        let limit = self.limit.min(u64::from(u32::MAX));
+        if value as u64 <= limit {
+            return Ok(());
+        }
+        let place = Place::Line(self.cursor.line(), 0);
+        let what = "number of triangles, lines and points";
+        Err(Error::Limit { place, what, value: value as u64, limit })
+    }
+
+    fn finish(mut self) -> Result<Parsed> {
+        if self.out.positions.is_empty() {
+            return Err(Error::whole(
+                "holds no vertex; an OBJ file has lines like `v 0 0 0` and `f 1 2 3`",
+            ));
+        }
+        if self.out.positions.len() < self.counts.positions
+            || self.out.tex_coords.len() < self.counts.tex_coords
+            || self.out.normals.len() < self.counts.normals
+        {
+            self.check_joined()?;
+        }
+        if !self.out.colors.is_empty() && self.brightest > 1.0 {
+            self.out.repairs.byte_colors = self.brightest > 2.0;
+            let scale = if self.brightest > 2.0 { 1.0 / 255.0 } else { 1.0 };
+            self.out.colors.iter_mut().for_each(|c| *c *= scale);
+        }
+        self.out.repairs.sloppy = self.cursor.sloppy;
+        Ok(self.out)
+    }
+
+    /// Where lines that look like vertices were the continuation of others, there are fewer things
+    /// than counted, and an index may lead nowhere.
+    fn check_joined(&self) -> Result<()> {
+        let out = &self.out;
+        let positions = out.lines.iter().chain(&out.points).copied();
+        let largest = if out.triangles.keyed() {
+            let keys = || out.triangles.keys.iter();
+            [
+                positions.chain(keys().map(|k| k.position)).max(),
+                keys().map(|k| k.tex_coord).filter(|&t| t != NONE).max(),
+                keys().map(|k| k.normal).filter(|&n| n != NONE).max(),
+            ]
+        } else {
+            [positions.chain(out.triangles.indices.iter().copied()).max(), None, None]
+        };
+        let counts = [out.positions.len(), out.tex_coords.len(), out.normals.len()];
+        for (largest, count) in largest.into_iter().zip(counts) {
+            if let Some(index) = largest.filter(|&i| i as usize >= count) {
+                return Err(Error::whole(format!(
+                    "an element refers to entry {} of {count}: a line ending in a backslash \
+                     swallowed the one that would define it",
+                    u64::from(index) + 1
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What names the primitives that follow.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Part<'a> {
+    material: Option<usize>,
+    object: &'a [u8],
+    group: &'a [u8],
+}
+
+impl Part<'_> {
+    /// `object/group`, or the one that there is.
+    fn name(&self) -> String {
+        let (object, group) =
+            (String::from_utf8_lossy(self.object), String::from_utf8_lossy(self.group));
+        match (object.is_empty(), group.is_empty()) {
+            (false, false) => format!("{object}/{group}"),
+            (false, true) => object.into_owned(),
+            _ => group.into_owned(),
+        }
+    }
+}

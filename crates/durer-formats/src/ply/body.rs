@@ -1,0 +1,172 @@
+//! Values of a PLY file, one after another, from text or from bytes of either order.
+
+use super::header::{Element, Type};
+use crate::text::Cursor;
+use crate::{Error, Place, Result};
+
+/// A source of values.
+pub(super) trait Values {
+    /// The next value. Integers up to 32 bits are exact in a double.
+    ///
+    /// # Errors
+    /// The end of the file, or a word that is no number.
+    fn next(&mut self, kind: Type) -> Result<f64>;
+
+    /// Steps over `count` values.
+    ///
+    /// # Errors
+    /// As [`Values::next`].
+    fn skip(&mut self, kind: Type, count: u64) -> Result<()>;
+
+    /// The fewest bytes that a row of `element` takes.
+    fn least_size(&self, element: &Element) -> u64;
+
+    /// The fewest bytes that a value takes.
+    fn least_value(&self, kind: Type) -> u64;
+
+    /// Bytes not read yet.
+    fn bytes_left(&self) -> u64;
+
+    /// Where the last value stood.
+    fn place(&self) -> Place;
+
+    /// What to say about values beyond the last element.
+    fn left_over(&mut self) -> Option<(Place, String)>;
+}
+
+/// Numbers in text. Line ends are blanks: some writers break rows.
+pub(super) struct Ascii<'a> {
+    cursor: Cursor<'a>,
+}
+
+impl<'a> Ascii<'a> {
+    pub fn new(cursor: Cursor<'a>) -> Self {
+        Self { cursor }
+    }
+}
+
+impl Values for Ascii<'_> {
+    fn next(&mut self, _kind: Type) -> Result<f64> {
+        loop {
+            if let Some(value) = self.cursor.float()? {
+                return Ok(value);
+            }
+            if self.cursor.at_end() {
+                let line = self.cursor.line();
+                return Err(Error::line(line, 0, "the file ends before all elements are there"));
+            }
+            self.cursor.next_line();
+        }
+    }
+
+    fn skip(&mut self, kind: Type, count: u64) -> Result<()> {
+        (0..count).try_for_each(|_| self.next(kind).map(drop))
+    }
+
+    fn least_size(&self, element: &Element) -> u64 {
+        2 * element.properties.len() as u64
+    }
+
+    /// A digit and a blank.
+    fn least_value(&self, _kind: Type) -> u64 {
+        2
+    }
+
+    fn bytes_left(&self) -> u64 {
+        self.cursor.bytes_left() as u64
+    }
+
+    fn place(&self) -> Place {
+        self.cursor.place()
+    }
+
+    fn left_over(&mut self) -> Option<(Place, String)> {
+        while !self.cursor.at_end() {
+            if self.cursor.word().is_some() {
+                return Some((self.place(), "data after the last element were ignored".to_owned()));
+            }
+            self.cursor.next_line();
+        }
+        None
+    }
+}
+
+/// Bytes in little-endian order, or big-endian.
+pub(super) struct Binary<'a, const LITTLE: bool> {
+    bytes: &'a [u8],
+    at: usize,
+    last: usize,
+    /// Where `bytes` begins in the file.
+    offset: u64,
+}
+
+impl<'a, const LITTLE: bool> Binary<'a, LITTLE> {
+    pub fn new(bytes: &'a [u8], offset: u64) -> Self {
+        Self { bytes, at: 0, last: 0, offset }
+    }
+
+    fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
+        self.last = self.at;
+        let Some(bytes) = self.bytes.get(self.at..).and_then(|b| b.first_chunk::<N>()) else {
+            return Err(self.too_short());
+        };
+        self.at += N;
+        let mut bytes = *bytes;
+        if !LITTLE {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    fn too_short(&self) -> Error {
+        let end = self.offset + self.bytes.len() as u64;
+        Error::byte(end, "the file ends before all elements are there")
+    }
+}
+
+impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
+    fn next(&mut self, kind: Type) -> Result<f64> {
+        Ok(match kind {
+            Type::I8 => f64::from(i8::from_le_bytes(self.take()?)),
+            Type::U8 => f64::from(u8::from_le_bytes(self.take()?)),
+            Type::I16 => f64::from(i16::from_le_bytes(self.take()?)),
+            Type::U16 => f64::from(u16::from_le_bytes(self.take()?)),
+            Type::I32 => f64::from(i32::from_le_bytes(self.take()?)),
+            Type::U32 => f64::from(u32::from_le_bytes(self.take()?)),
+            Type::F32 => f64::from(f32::from_le_bytes(self.take()?)),
+            Type::F64 => f64::from_le_bytes(self.take()?),
+        })
+    }
+
+    fn skip(&mut self, kind: Type, count: u64) -> Result<()> {
+        let size = kind.size().saturating_mul(count);
+        if size > self.bytes_left() {
+            return Err(self.too_short());
+        }
+        self.at += size as usize;
+        Ok(())
+    }
+
+    fn least_size(&self, element: &Element) -> u64 {
+        element.properties.iter().map(|p| p.list.unwrap_or(p.kind).size()).sum()
+    }
+
+    fn least_value(&self, kind: Type) -> u64 {
+        kind.size()
+    }
+
+    fn bytes_left(&self) -> u64 {
+        (self.bytes.len() - self.at) as u64
+    }
+
+    fn place(&self) -> Place {
+        Place::Byte(self.offset + self.last as u64)
+    }
+
+    fn left_over(&mut self) -> Option<(Place, String)> {
+        let left = self.bytes_left();
+        let place = Place::Byte(self.offset + self.at as u64);
+        // Writers that end the data as they end a line leave one or two bytes.
+        (left > 2).then(|| (place, format!("{left} bytes after the last element were ignored")))
+    }
+}

@@ -1,0 +1,173 @@
+//! Which format a model is in: by its content first, then by its name.
+
+use crate::text::{Cursor, utf8};
+use crate::{Error, Model, ReadOptions, Resources, Result, gltf, obj, ply, stl, threemf};
+
+/// How much of a file is looked at.
+const PROBE: usize = 64 << 10;
+
+/// A format of models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ModelFormat {
+    /// glTF 2.0, text or binary.
+    Gltf,
+    /// Wavefront OBJ.
+    Obj,
+    /// STL, ascii or binary.
+    Stl,
+    /// PLY, ascii or binary.
+    Ply,
+    /// 3D Manufacturing Format.
+    ThreeMf,
+}
+
+impl ModelFormat {
+    /// All formats, in the order in which messages list them.
+    pub const ALL: [Self; 5] = [Self::Gltf, Self::Obj, Self::Stl, Self::Ply, Self::ThreeMf];
+
+    /// Its usual name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gltf => "glTF",
+            Self::Obj => "OBJ",
+            Self::Stl => "STL",
+            Self::Ply => "PLY",
+            Self::ThreeMf => "3MF",
+        }
+    }
+
+    /// The endings of its files' names, lower case, without a dot.
+    pub fn suffixes(self) -> &'static [&'static str] {
+        match self {
+            Self::Gltf => &["gltf", "glb"],
+            Self::Obj => &["obj"],
+            Self::Stl => &["stl"],
+            Self::Ply => &["ply"],
+            Self::ThreeMf => &["3mf"],
+        }
+    }
+
+    /// The format that the content speaks for, if any does.
+    pub fn of_content(bytes: &[u8]) -> Option<Self> {
+        if is_gltf(bytes) {
+            Some(Self::Gltf)
+        } else if ply::sniff(bytes) {
+            Some(Self::Ply)
+        } else if bytes.starts_with(b"PK\x03\x04") {
+            Some(Self::ThreeMf)
+        } else if stl::sniff(bytes) {
+            Some(Self::Stl)
+        } else {
+            is_obj(bytes).then_some(Self::Obj)
+        }
+    }
+
+    /// The format that a file's name speaks for, if any does.
+    pub fn of_name(name: &str) -> Option<Self> {
+        let (_, suffix) = name.rsplit_once('.')?;
+        let suffix = suffix.to_ascii_lowercase();
+        Self::ALL.into_iter().find(|f| f.suffixes().contains(&suffix.as_str()))
+    }
+}
+
+/// Binary glTF by its magic, text by an object with the key that it must have.
+fn is_gltf(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let key = b"\"asset\"";
+    bytes.starts_with(b"glTF")
+        || (text.starts_with(b"{") && text.windows(key.len()).any(|w| w == key))
+}
+
+/// Whether the first statement that is neither a comment nor empty is one of OBJ's.
+fn is_obj(bytes: &[u8]) -> bool {
+    let text = utf8(bytes.get(..PROBE).unwrap_or(bytes));
+    let mut cursor = Cursor::new(&text);
+    while !cursor.at_end() {
+        match cursor.word() {
+            None => cursor.next_line(),
+            Some(b"v" | b"vt" | b"vn" | b"f" | b"l" | b"p") => {
+                return cursor.float().is_ok_and(|n| n.is_some());
+            }
+            Some(word) => {
+                return matches!(word, b"mtllib" | b"usemtl" | b"o" | b"g" | b"s");
+            }
+        }
+    }
+    false
+}
+
+/// Reads a model of any known format: by its content, or where that says nothing, by the suffix of
+/// `name`.
+///
+/// # Errors
+/// [`Error::Unknown`] where neither content nor name tell the format; else those of the reader:
+/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`].
+pub fn read_model(
+    bytes: &[u8],
+    name: &str,
+    resources: &dyn Resources,
+    options: &ReadOptions,
+) -> Result<Model> {
+    match ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name)) {
+        Some(ModelFormat::Gltf) => gltf::read(bytes, resources, options),
+        Some(ModelFormat::Obj) => obj::read(bytes, resources, options),
+        Some(ModelFormat::Stl) => stl::read(bytes, resources, options),
+        Some(ModelFormat::Ply) => ply::read(bytes, resources, options),
+        Some(ModelFormat::ThreeMf) => threemf::read(bytes, resources, options),
+        None => Err(Error::Unknown(unknown(bytes, name))),
+    }
+}
+
+fn unknown(bytes: &[u8], name: &str) -> String {
+    let formats = ModelFormat::ALL.map(|f| format!("{} (.{})", f.name(), f.suffixes().join(" .")));
+    let what = if bytes.is_empty() {
+        "the file is empty"
+    } else if Cursor::new(bytes).word() == Some(b"newmtl") {
+        "this is a material library; open the OBJ file that uses it"
+    } else {
+        "neither content nor name tell"
+    };
+    format!("`{name}`: {what}; models are read from {}", formats.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::NoResources;
+
+    #[test]
+    fn content_goes_before_name() {
+        let binary_stl = [&b"solid"[..], &[0; 79]].concat();
+        for (content, expected) in [
+            (&b"glTF\x02"[..], Some(ModelFormat::Gltf)),
+            (b"\n{ \"asset\": {} }", Some(ModelFormat::Gltf)),
+            (b"{}", None),
+            (b"ply\r\n", Some(ModelFormat::Ply)),
+            (b"PK\x03\x04", Some(ModelFormat::ThreeMf)),
+            (b" solid x\nfacet", Some(ModelFormat::Stl)),
+            (&binary_stl, Some(ModelFormat::Stl)),
+            (b"# text\r\n\r\n  v 1 2 3\n", Some(ModelFormat::Obj)),
+            (b"\xff\xfev\0 \0\x31\0", Some(ModelFormat::Obj)),
+            (b"mtllib a.mtl\n", Some(ModelFormat::Obj)),
+            (b"v for vendetta", None),
+            (b"OFF\n1 2 3", None),
+            (b"", None),
+        ] {
+            assert_eq!(ModelFormat::of_content(content), expected, "{content:?}");
+        }
+        assert_eq!(ModelFormat::of_name("a.b/X.STL"), Some(ModelFormat::Stl));
+        assert_eq!(ModelFormat::of_name("stl"), None);
+    }
+
+    #[test]
+    fn the_unknown_is_told_what_is_known() {
+        let message = |bytes: &[u8], name: &str| {
+            let e = read_model(bytes, name, &NoResources, &ReadOptions::default());
+            e.expect_err("unknown").to_string()
+        };
+        let text = message(b"OFF\n", "x.off");
+        assert!(text.contains("`x.off`") && text.contains("STL (.stl)"), "{text}");
+        assert!(message(b"newmtl a\n", "x.mtl").contains("material library"));
+        assert!(message(b"", "x").contains("empty"));
+    }
+}

@@ -1,0 +1,281 @@
+//! Walking through a text file by lines and blank-separated words, without copying.
+
+use crate::{Error, Place, Result, number};
+use std::borrow::Cow;
+
+/// A place in a text that knows its line. `\n`, `\r\n` and a lone `\r` end a line; a backslash at
+/// the end of a line joins the next one to it; `#` after a blank starts a comment.
+#[derive(Debug, Clone)]
+pub(crate) struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: u64,
+    line_start: usize,
+    word_start: usize,
+    /// Numbers with something behind them, e.g. `3.1+e2`: how many, and where the first is.
+    pub sloppy: Tally,
+}
+
+/// How often something was met, and where first; becomes one warning instead of a million.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Tally {
+    pub count: u64,
+    pub first: Place,
+}
+
+impl Tally {
+    /// Counts one more.
+    pub fn add(&mut self, place: impl FnOnce() -> Place) {
+        if self.count == 0 {
+            self.first = place();
+        }
+        self.count += 1;
+    }
+}
+
+/// Names and messages from bytes that should be UTF-8, at most 60 characters.
+pub(crate) fn quote(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes.get(..240).unwrap_or(bytes)).into_owned();
+    if text.chars().count() <= 60 { text } else { text.chars().take(60).chain(['…']).collect() }
+}
+
+/// Text as bytes of UTF-8: without a byte-order mark, and decoded where the mark says UTF-16.
+pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    match bytes {
+        [0xef, 0xbb, 0xbf, rest @ ..] => Cow::Borrowed(rest),
+        [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16(rest, u16::from_le_bytes)),
+        [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16(rest, u16::from_be_bytes)),
+        _ => Cow::Borrowed(bytes),
+    }
+}
+
+fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
+    let units = bytes.as_chunks().0.iter().map(|&pair| unit(pair));
+    let mut text = String::with_capacity(bytes.len() / 2);
+    text.extend(char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)));
+    text.into_bytes()
+}
+
+fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | 0x0b | 0x0c)
+}
+
+fn ends_line(byte: u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
+impl<'a> Cursor<'a> {
+    /// At the start of a text.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        let sloppy = Tally::default();
+        Self { bytes, at: 0, line: 1, line_start: 0, word_start: 0, sloppy }
+    }
+
+    /// At the start of a text that is the rest of a file, after so many lines.
+    pub fn at_line(bytes: &'a [u8], lines: u64) -> Self {
+        Self { line: lines, ..Self::new(bytes) }
+    }
+
+    /// Bytes after the current place.
+    pub fn bytes_left(&self) -> usize {
+        self.bytes.len().saturating_sub(self.at)
+    }
+
+    /// Whether the text is over.
+    pub fn at_end(&self) -> bool {
+        self.at >= self.bytes.len()
+    }
+
+    /// Bytes before the current place.
+    pub fn offset(&self) -> usize {
+        self.at
+    }
+
+    /// Number of the current line, from 1.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// Where the last word began.
+    pub fn place(&self) -> Place {
+        let column = self.word_start.saturating_sub(self.line_start) as u64 + 1;
+        Place::Line(self.line, column)
+    }
+
+    /// An error where the last word began.
+    pub fn error(&self, message: impl Into<String>) -> Error {
+        Error::Decode { place: self.place(), message: message.into() }
+    }
+
+    fn peek(&self) -> Option<u8> {
+        self.bytes.get(self.at).copied()
+    }
+
+    /// The length of the line end at `at`, 0 where there is none.
+    fn line_end(&self, at: usize) -> usize {
+        match (self.bytes.get(at), self.bytes.get(at + 1)) {
+            (Some(b'\r'), Some(b'\n')) => 2,
+            (Some(b'\r' | b'\n'), _) => 1,
+            _ => 0,
+        }
+    }
+
+    /// Steps over blanks and joined line ends.
+    fn skip_blanks(&mut self) {
+        while let Some(byte) = self.peek() {
+            if is_blank(byte) {
+                self.at += 1;
+            } else if byte == b'\\' && self.line_end(self.at + 1) > 0 {
+                self.at += 1 + self.line_end(self.at + 1);
+                self.line += 1;
+                self.line_start = self.at;
+            } else {
+                break;
+            }
+        }
+        self.word_start = self.at;
+    }
+
+    /// Whether nothing but blanks and a comment is left of the line.
+    pub fn line_is_over(&mut self) -> bool {
+        self.skip_blanks();
+        self.peek().is_none_or(|b| ends_line(b) || b == b'#')
+    }
+
+    /// The next word of the line.
+    pub fn word(&mut self) -> Option<&'a [u8]> {
+        if self.line_is_over() {
+            return None;
+        }
+        self.finish_word();
+        self.bytes.get(self.word_start..self.at)
+    }
+
+    /// Steps to the end of the word that the cursor stands in.
+    fn finish_word(&mut self) {
+        while let Some(byte) = self.peek() {
+            let joins = byte == b'\\' && self.line_end(self.at + 1) > 0;
+            if is_blank(byte) || ends_line(byte) || joins {
+                break;
+            }
+            self.at += 1;
+        }
+    }
+
+    /// The rest of the line as one name, without blanks around it.
+    pub fn rest(&mut self) -> &'a [u8] {
+        self.skip_blanks();
+        while self.peek().is_some_and(|b| !ends_line(b)) {
+            self.at += 1;
+        }
+        self.bytes.get(self.word_start..self.at).unwrap_or_default().trim_ascii_end()
+    }
+
+    /// Goes to the start of the next line.
+    pub fn next_line(&mut self) {
+        while self.peek().is_some_and(|b| !ends_line(b)) {
+            self.at += 1;
+        }
+        self.at += self.line_end(self.at);
+        self.line += 1;
+        self.line_start = self.at;
+        self.word_start = self.at;
+    }
+
+    /// The next number of the line; `None` where the line is over.
+    ///
+    /// # Errors
+    /// A word that does not begin with a number.
+    pub fn float(&mut self) -> Result<Option<f64>> {
+        if self.line_is_over() {
+            return Ok(None);
+        }
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let Some((value, length)) = number::float(rest) else {
+            let word = self.word().unwrap_or_default();
+            return Err(self.error(format!("`{}` is not a number", quote(word))));
+        };
+        self.at += length;
+        if self.peek().is_some_and(|b| !is_blank(b) && !ends_line(b)) {
+            let place = self.place();
+            self.sloppy.add(|| place);
+            self.finish_word();
+        }
+        Ok(Some(value))
+    }
+
+    /// Numbers until the line is over or `values` is full; how many there were.
+    ///
+    /// # Errors
+    /// A word that does not begin with a number.
+    pub fn floats(&mut self, values: &mut [f64]) -> Result<usize> {
+        for (i, value) in values.iter_mut().enumerate() {
+            match self.float()? {
+                Some(v) => *value = v,
+                None => return Ok(i),
+            }
+        }
+        Ok(values.len())
+    }
+
+    /// The integer at the cursor, right here: nothing is skipped.
+    pub fn integer_here(&mut self) -> Option<i64> {
+        let (value, length) = number::integer(self.bytes.get(self.at..)?)?;
+        self.at += length;
+        Some(value)
+    }
+
+    /// Steps over `byte` if it is right here.
+    pub fn take(&mut self, byte: u8) -> bool {
+        let here = self.peek() == Some(byte);
+        self.at += usize::from(here);
+        here
+    }
+
+    /// Whether a word ends right here.
+    pub fn word_is_over(&self) -> bool {
+        self.peek().is_none_or(|b| is_blank(b) || ends_line(b) || b == b'#' || b == b'\\')
+    }
+
+    /// The whole word that the cursor stands in, for messages.
+    pub fn current_word(&mut self) -> String {
+        self.finish_word();
+        quote(self.bytes.get(self.word_start..self.at).unwrap_or_default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_words_and_places() {
+        let mut c = Cursor::new(b"a  bc # d\r\n\\\n x\\\r\n y\rlast");
+        assert_eq!((c.word(), c.word(), c.word()), (Some(&b"a"[..]), Some(&b"bc"[..]), None));
+        c.next_line();
+        assert_eq!((c.word(), c.place()), (Some(&b"x"[..]), Place::Line(3, 2)));
+        assert_eq!((c.word(), c.place()), (Some(&b"y"[..]), Place::Line(4, 2)));
+        assert_eq!(c.word(), None);
+        c.next_line();
+        assert_eq!((c.rest(), c.line()), (&b"last"[..], 5));
+        assert!(c.at_end());
+    }
+
+    #[test]
+    fn utf16_becomes_utf8() {
+        let le: Vec<u8> = "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(utf8(&le).as_ref(), "v ä\n".as_bytes());
+        let be: Vec<u8> = "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
+        assert_eq!(utf8(&be).as_ref(), "v ä\n".as_bytes());
+        assert_eq!(utf8(b"\xef\xbb\xbfv").as_ref(), b"v");
+    }
+
+    #[test]
+    fn a_number_with_a_tail_is_taken_and_counted() {
+        let mut c = Cursor::new(b"3.1+e2 7 x");
+        assert_eq!(c.float().expect("number"), Some(3.1));
+        assert_eq!(c.float().expect("number"), Some(7.0));
+        assert_eq!(c.sloppy.count, 1);
+        assert!(c.float().is_err());
+    }
+}
