@@ -129,14 +129,14 @@ fn of_file(name: &str, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
         };
         Failure::Data(format!("--camera: no camera `{name}`; {there}"))
     })?;
-    let pivot = scene.bounds().map_or(DVec3::ZERO, |b| b.center());
+    let pivot = fit::center(scene).unwrap_or(DVec3::ZERO);
     Ok(turned(found.camera, pivot, scene, shot))
 }
 
 /// A camera in a given place, turned around its target.
 fn at(eye: DVec3, args: &ViewArgs, scene: &Scene, shot: &Shot) -> Camera {
     let front = NamedView::Front.direction(scene.up_axis);
-    let center = scene.bounds().map_or(DVec3::ZERO, |b| b.center());
+    let center = fit::center(scene).unwrap_or(DVec3::ZERO);
     let ahead = if center == eye { eye - front.to_eye() } else { center };
     let target = args.target.unwrap_or(ahead);
     let up = args.up.unwrap_or_else(|| fit::up_for(target - eye, scene.up_axis));

@@ -1,7 +1,7 @@
 //! Cameras that see the whole model.
 
 use durer::math::DVec3;
-use durer::scene::{Camera, Projection, Scene, UpAxis};
+use durer::scene::{Camera, Mesh, Projection, Scene, UpAxis};
 use durer::view::projection::{NamedView, ViewDirection};
 
 /// The part of the picture's width and height that the model may fill.
@@ -87,8 +87,8 @@ impl Fit {
     /// The middle of the model and how far it reaches from there; something to look at for a model
     /// without extent.
     fn reach(&self, scene: &Scene, slope_x: f64, slope_y: f64) -> (DVec3, Reach) {
-        let bounds = scene.bounds();
-        let center = bounds.map_or(DVec3::ZERO, |b| b.center());
+        let found = center(scene);
+        let center = found.unwrap_or(DVec3::ZERO);
         let nothing = f64::NEG_INFINITY;
         let mut reach = Reach {
             right: nothing,
@@ -108,7 +108,7 @@ impl Fit {
         let extent =
             (reach.right + reach.left).max(reach.up + reach.down).max(reach.front + reach.back);
         // A point, or nothing at all: a unit around it, or more where coordinates are coarse.
-        let least = center.length().max(1.0) * if bounds.is_some() { 1e-6 } else { 1.0 };
+        let least = center.length().max(1.0) * if found.is_some() { 1e-6 } else { 1.0 };
         if extent <= least * 1e-6 {
             reach = Reach {
                 right: least,
@@ -170,17 +170,40 @@ impl Reach {
     }
 }
 
-/// All finite vertices in world space.
+/// All finite vertices that something is drawn with, in world space.
 fn for_each_point(scene: &Scene, mut f: impl FnMut(DVec3)) {
+    let used: Vec<Option<Vec<bool>>> = scene.meshes.iter().map(used_vertices).collect();
     for instance in &scene.instances {
         let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
-        for p in &mesh.positions {
+        let used = used[instance.mesh].as_deref();
+        for (i, p) in mesh.positions.iter().enumerate() {
             let p = instance.world_from_mesh.transform_point3(p.as_dvec3());
-            if p.is_finite() {
+            if p.is_finite() && used.is_none_or(|used| used[i]) {
                 f(p);
             }
         }
     }
+}
+
+/// Which vertices have an index; `None` = all.
+fn used_vertices(mesh: &Mesh) -> Option<Vec<bool>> {
+    let mut used = vec![false; mesh.positions.len()];
+    for &i in mesh.indices.as_ref()? {
+        if let Some(used) = used.get_mut(i as usize) {
+            *used = true;
+        }
+    }
+    Some(used)
+}
+
+/// The middle of the box around what is drawn; `None` where that is nothing.
+pub fn center(scene: &Scene) -> Option<DVec3> {
+    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for_each_point(scene, |p| {
+        min = min.min(p);
+        max = max.max(p);
+    });
+    (min.x <= max.x).then(|| min + (max - min) * 0.5)
 }
 
 /// Near and far planes around what a camera in a given place can see of the model.
@@ -215,7 +238,7 @@ fn perspective_range(nearest: f64, farthest: f64) -> (f64, f64) {
 mod tests {
     use super::*;
     use durer::math::{DMat4, Vec3};
-    use durer::scene::{Instance, Mesh};
+    use durer::scene::Instance;
 
     /// Points of a skew, flat, off-centre box.
     fn scene(scale: f32, offset: f32) -> Scene {
@@ -282,6 +305,16 @@ mod tests {
             assert!(largest <= FILL + 1e-9 && largest > FILL - 0.02, "{largest} at {elevation}");
             assert!(distances.iter().all(|d| (d - distances[0]).abs() < 1e-9));
         }
+    }
+
+    #[test]
+    fn vertices_that_nothing_uses_do_not_count() {
+        let mut scene = scene(1.0, 0.0);
+        let expected = fit(45.0, 35.0, false, 1.0).perspective(&scene, 0.6);
+        scene.meshes[0].indices = Some((0..60).collect());
+        scene.meshes[0].positions.push(Vec3::splat(1e9));
+        scene.meshes[0].positions.push(Vec3::NAN);
+        assert_eq!(fit(45.0, 35.0, false, 1.0).perspective(&scene, 0.6), expected);
     }
 
     #[test]
