@@ -1,1 +1,302 @@
-//! What happens to a fragment between the rasterizer and the framebuffer, in this order.
+//! What happens to a fragment between the rasterizer and the framebuffer, in this order:
+//! scissor → alpha test → stencil → depth → blending → dithering → logic operation → write masks.
+//!
+//! Definitions: *The OpenGL Graphics System* 4.6 (2017), chapter 17, and 2.1 for the alpha test. Only
+//! [`apply`] knows the order.
+
+mod alpha_test;
+mod blend;
+mod compare;
+mod depth;
+mod dither;
+mod logic_op;
+mod scissor;
+mod stencil;
+mod write_mask;
+
+pub use alpha_test::AlphaTest;
+pub use blend::{Blend, Equation, Factor, Function, over_premultiplied, over_straight};
+pub use compare::Compare;
+pub use depth::{DepthRange, PolygonOffset};
+pub use dither::{BAYER8, Dither};
+pub use logic_op::LogicOp;
+pub use scissor::Scissor;
+pub use stencil::{Stencil, StencilFace, StencilOp};
+pub use write_mask::WriteMask;
+
+use crate::math::Vec4;
+use crate::shade::color::{decode_rgba8, encode_rgba8};
+use crate::target::{Framebuffer, Pixels};
+
+/// One candidate for a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fragment {
+    /// Column.
+    pub x: u32,
+    /// Row, in the framebuffer's own order.
+    pub y: u32,
+    /// Window depth at the sample, 0 (near) … 1 (far).
+    pub depth: f32,
+    /// Linear RGBA, straight alpha.
+    pub color: Vec4,
+    /// Whether the face is seen from its front; true for points and lines.
+    pub front_facing: bool,
+    /// What is drawn, for the item plane.
+    pub item: u32,
+    /// Unit normal in world space, for the normal plane.
+    pub normal: [f32; 3],
+}
+
+/// The state of all fragment operations.
+///
+/// The default draws everything that is nearer than what is there, unblended, and writes all planes.
+/// (OpenGL's own initial state has no depth test.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FragmentState {
+    /// `None` = the whole framebuffer.
+    pub scissor: Option<Scissor>,
+    /// `None` = no alpha test.
+    pub alpha_test: Option<AlphaTest>,
+    /// `None` = no stencil test; needs a stencil plane.
+    pub stencil: Option<Stencil>,
+    /// `None` = no depth test, and depth is not written; needs a depth plane.
+    pub depth: Option<Compare>,
+    /// `None` = the fragment replaces what is there.
+    pub blend: Option<Blend>,
+    /// `None` = colours are rounded.
+    pub dither: Option<Dither>,
+    /// `None` = no logic operation. With one, there is no blending.
+    pub logic_op: Option<LogicOp>,
+    /// What may be written.
+    pub write_mask: WriteMask,
+}
+
+impl Default for FragmentState {
+    fn default() -> Self {
+        Self {
+            scissor: None,
+            alpha_test: None,
+            stencil: None,
+            depth: Some(Compare::Less),
+            blend: None,
+            dither: None,
+            logic_op: None,
+            write_mask: WriteMask::default(),
+        }
+    }
+}
+
+/// Where a fragment's way ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Outcome {
+    /// Outside the framebuffer or the scissor rectangle.
+    Scissor,
+    /// Dropped by the alpha test.
+    AlphaTest,
+    /// Dropped by the stencil test.
+    Stencil,
+    /// Dropped by the depth test.
+    Depth,
+    /// Passed all tests; what was written is up to the write masks.
+    Drawn,
+}
+
+/// Takes one fragment through all operations. A plane that the framebuffer does not have passes its
+/// test. Cost: O(1).
+pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer) -> Outcome {
+    let (x, y) = (fragment.x, fragment.y);
+    let Some(stored) = target.color.get(x, y) else { return Outcome::Scissor };
+    if state.scissor.is_some_and(|s| !s.contains(x, y)) {
+        return Outcome::Scissor;
+    }
+    if state.alpha_test.is_some_and(|t| !t.passes(fragment.color.w)) {
+        return Outcome::AlphaTest;
+    }
+    let near = passes_depth(state, &fragment, target);
+    if !passes_stencil(state, &fragment, near, target) {
+        return Outcome::Stencil;
+    }
+    if !near {
+        return Outcome::Depth;
+    }
+    write_depth(state, &fragment, target);
+    let color = blended(state, fragment.color, stored);
+    let code = match state.dither {
+        Some(dither) => dither.apply(color, x, y),
+        None => encode_rgba8(color),
+    };
+    let code = match state.logic_op {
+        Some(op) => std::array::from_fn(|i| op.apply(code[i], stored[i])),
+        None => code,
+    };
+    target.color.set(x, y, state.write_mask.color(code, stored));
+    Outcome::Drawn
+}
+
+fn passes_depth(state: &FragmentState, fragment: &Fragment, target: &Framebuffer) -> bool {
+    let stored = target.depth.as_ref().and_then(|plane| plane.get(fragment.x, fragment.y));
+    match (state.depth, stored) {
+        (Some(compare), Some(stored)) => compare.passes(fragment.depth, stored),
+        _ => true,
+    }
+}
+
+/// The stencil test's answer; the stored value is updated by whichever operation applies.
+fn passes_stencil(
+    state: &FragmentState,
+    fragment: &Fragment,
+    near: bool,
+    target: &mut Framebuffer,
+) -> bool {
+    let (Some(stencil), Some(plane)) = (state.stencil, target.stencil.as_mut()) else {
+        return true;
+    };
+    let Some(stored) = plane.get(fragment.x, fragment.y) else { return true };
+    let face = stencil.face(fragment.front_facing);
+    let passes = face.passes(stored);
+    let new = face.operation(passes, near).apply(stored, face.reference);
+    let new = state.write_mask.stencil(fragment.front_facing, new, stored);
+    plane.set(fragment.x, fragment.y, new);
+    passes
+}
+
+/// Depth, item and normal of what is now nearest.
+fn write_depth(state: &FragmentState, fragment: &Fragment, target: &mut Framebuffer) {
+    fn put<T: Copy>(plane: &mut Option<Pixels<T>>, x: u32, y: u32, value: T) {
+        if let Some(plane) = plane {
+            plane.set(x, y, value);
+        }
+    }
+    if !state.write_mask.depth {
+        return;
+    }
+    if state.depth.is_some() {
+        put(&mut target.depth, fragment.x, fragment.y, fragment.depth);
+    }
+    put(&mut target.item, fragment.x, fragment.y, fragment.item);
+    put(&mut target.normal, fragment.x, fragment.y, fragment.normal);
+}
+
+fn blended(state: &FragmentState, source: Vec4, stored: [u8; 4]) -> Vec4 {
+    match state.blend {
+        Some(blend) if state.logic_op.is_none() => blend.apply(source, decode_rgba8(stored)),
+        _ => source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fragment(depth: f32) -> Fragment {
+        Fragment {
+            x: 1,
+            y: 1,
+            depth,
+            color: Vec4::new(1.0, 0.0, 0.0, 0.5),
+            front_facing: true,
+            item: 7,
+            normal: [0.0, 0.0, 1.0],
+        }
+    }
+
+    fn target() -> Framebuffer {
+        Framebuffer::new(3, 3).with_depth().with_items().with_normals().with_stencil()
+    }
+
+    fn stencil_at(target: &Framebuffer) -> Option<u8> {
+        target.stencil.as_ref().and_then(|s| s.get(1, 1))
+    }
+
+    #[test]
+    fn the_nearer_fragment_wins_and_the_first_of_equals() {
+        let mut t = target();
+        let state = FragmentState::default();
+        assert_eq!(apply(&state, fragment(0.5), &mut t), Outcome::Drawn);
+        assert_eq!(apply(&state, Fragment { item: 8, ..fragment(0.5) }, &mut t), Outcome::Depth);
+        assert_eq!(apply(&state, Fragment { item: 9, ..fragment(0.6) }, &mut t), Outcome::Depth);
+        assert_eq!(t.item.as_ref().and_then(|p| p.get(1, 1)), Some(7));
+        assert_eq!(t.depth.as_ref().and_then(|p| p.get(1, 1)), Some(0.5));
+        assert_eq!(t.normal.as_ref().and_then(|p| p.get(1, 1)), Some([0.0, 0.0, 1.0]));
+        assert_eq!(t.color.get(1, 1), Some([255, 0, 0, 128]));
+        assert_eq!(t.color.data().iter().filter(|c| **c != [0; 4]).count(), 1);
+    }
+
+    #[test]
+    fn tests_come_in_their_order() {
+        // Every test would drop the fragment: the first one in the order is the one that does.
+        let never = Compare::Never;
+        let face = StencilFace { compare: never, fail: StencilOp::Invert, ..Default::default() };
+        let mut state = FragmentState {
+            scissor: Some(Scissor { x0: 0, y0: 0, x1: 1, y1: 1 }),
+            alpha_test: Some(AlphaTest { compare: never, reference: 0.0 }),
+            stencil: Some(Stencil::both(face)),
+            depth: Some(never),
+            ..FragmentState::default()
+        };
+        let mut t = target();
+        assert_eq!(apply(&state, fragment(0.0), &mut t), Outcome::Scissor);
+        state.scissor = None;
+        assert_eq!(apply(&state, fragment(0.0), &mut t), Outcome::AlphaTest);
+        state.alpha_test = None;
+        assert_eq!(stencil_at(&t), Some(0));
+        assert_eq!(apply(&state, fragment(0.0), &mut t), Outcome::Stencil);
+        assert_eq!(stencil_at(&t), Some(255));
+        state.stencil = None;
+        assert_eq!(apply(&state, fragment(0.0), &mut t), Outcome::Depth);
+        assert_eq!(t.color, Framebuffer::new(3, 3).color);
+        state.depth = None;
+        assert_eq!(apply(&state, fragment(0.25), &mut t), Outcome::Drawn);
+        // Without a depth test no depth is written, whatever the mask says.
+        assert_eq!(t.depth.as_ref().and_then(|p| p.get(1, 1)), Some(1.0));
+        let outside = Fragment { x: 3, ..fragment(0.0) };
+        assert_eq!(apply(&state, outside, &mut t), Outcome::Scissor);
+    }
+
+    #[test]
+    fn the_stencil_counts_by_face_and_by_depth() {
+        let count = |pass, depth_fail| StencilFace { pass, depth_fail, ..Default::default() };
+        let state = FragmentState {
+            stencil: Some(Stencil {
+                front: count(StencilOp::IncrementWrap, StencilOp::Keep),
+                back: count(StencilOp::Keep, StencilOp::DecrementWrap),
+            }),
+            ..FragmentState::default()
+        };
+        let mut t = target();
+        apply(&state, fragment(0.5), &mut t);
+        assert_eq!(stencil_at(&t), Some(1));
+        apply(&state, Fragment { front_facing: false, ..fragment(0.9) }, &mut t);
+        apply(&state, Fragment { front_facing: false, ..fragment(0.9) }, &mut t);
+        assert_eq!(stencil_at(&t), Some(255));
+    }
+
+    #[test]
+    fn colours_are_blended_in_linear_light_then_written_through_the_mask() {
+        let mut t = target();
+        t.color.set(1, 1, [0, 0, 255, 255]);
+        let mut state = FragmentState { blend: Some(Blend::Over), ..FragmentState::default() };
+        state.write_mask.color[3] = false;
+        state.write_mask.depth = false;
+        assert_eq!(apply(&state, fragment(0.5), &mut t), Outcome::Drawn);
+        // Half the light of 255 is code 188.
+        assert_eq!(t.color.get(1, 1), Some([188, 0, 188, 255]));
+        assert_eq!(t.depth.as_ref().and_then(|p| p.get(1, 1)), Some(1.0));
+    }
+
+    #[test]
+    fn a_logic_operation_takes_the_place_of_blending() {
+        let mut t = target();
+        let state = FragmentState {
+            blend: Some(Blend::Over),
+            logic_op: Some(LogicOp::Xor),
+            depth: None,
+            ..FragmentState::default()
+        };
+        let before = t.color.clone();
+        apply(&state, fragment(0.5), &mut t);
+        assert_eq!(t.color.get(1, 1), Some([255, 0, 0, 128]));
+        apply(&state, fragment(0.5), &mut t);
+        assert_eq!(t.color, before);
+    }
+}

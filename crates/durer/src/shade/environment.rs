@@ -25,7 +25,7 @@ pub struct Environment {
 }
 
 /// Half the width of the horizon's step in a perfect mirror, as a sine.
-const SHARPEST: f32 = 0.06;
+const SHARPEST: f32 = 0.12;
 
 impl Environment {
     /// The same light from everywhere.

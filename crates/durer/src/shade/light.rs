@@ -77,7 +77,7 @@ impl PreparedLights {
         let environment = &mut prepared.environment;
         environment.ambient = ambient.unwrap_or(Vec3::splat(DEFAULT_AMBIENT));
         environment.radiance = environment.ambient + directional * 0.25;
-        (environment.gradient, environment.step) = (0.35, 0.3);
+        (environment.gradient, environment.step) = (0.4, 0.45);
         prepared
     }
 
@@ -87,7 +87,7 @@ impl PreparedLights {
         let mut prepared = Self::new(&auto_lights(camera), camera);
         let environment = &mut prepared.environment;
         environment.up = camera.axes()[1].normalize_or(DVec3::Y).as_vec3();
-        environment.slope = 0.35;
+        environment.slope = 0.4;
         prepared
     }
 
@@ -152,8 +152,8 @@ impl PointLight {
 /// The light that shows the form of any model: key light from the upper left, weaker fill light from
 /// the right, rim light from behind, ambient light; all of them go with the camera.
 ///
-/// Made so that white matte surfaces stay just below white and no side is black: a grey of 0.8 lies
-/// between 0.17 and 0.8 all round.
+/// Made so that white matte surfaces stay below white and no side is black: on a matte sphere of
+/// reflectance 0.8 the 8-bit colours lie between 76 and 220.
 pub fn auto_lights(camera: &Camera) -> Vec<Light> {
     let [right, up, back] = camera.axes();
     let from = |x: f64, y: f64, z: f64, intensity: f32| {
@@ -161,10 +161,10 @@ pub fn auto_lights(camera: &Camera) -> Vec<Light> {
         Light { kind: LightKind::Directional { direction }, color: Vec3::splat(intensity) }
     };
     vec![
-        from(-0.55, 0.75, 1.0, 0.68),
-        from(0.9, 0.1, 0.6, 0.2),
-        from(0.3, 0.6, -0.9, 0.35),
-        Light { kind: LightKind::Ambient, color: Vec3::splat(0.22) },
+        from(-0.55, 0.75, 1.0, 0.7),
+        from(0.9, 0.0, 0.6, 0.15),
+        from(0.5, 0.5, -1.0, 0.2),
+        Light { kind: LightKind::Ambient, color: Vec3::splat(0.15) },
     ]
 }
 

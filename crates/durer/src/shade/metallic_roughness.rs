@@ -13,7 +13,6 @@ use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::normal::Frame;
 use crate::info::{Class, Info};
-use crate::math::Vec3;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -185,7 +184,7 @@ fn environment_brdf<L: Lane>(roughness: L, nv: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::DVec3;
+    use crate::math::{DVec3, Vec3};
     use crate::shade::environment::Environment;
     use crate::shade::light::DirectionalLight;
     use crate::shade::normal::face_viewer;

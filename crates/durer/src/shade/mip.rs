@@ -88,7 +88,7 @@ fn weights(source: u32, destination: u32, i: u32) -> [f32; 3] {
     let (s, d, i) = (source as f32, destination as f32, i as f32);
     if source == 1 {
         [1.0, 0.0, 0.0]
-    } else if source % 2 == 0 {
+    } else if source.is_multiple_of(2) {
         [0.5, 0.5, 0.0]
     } else {
         [(d - i) / s, d / s, (i + 1.0) / s]
@@ -174,10 +174,10 @@ mod tests {
                 sum as f32 / noise.data.len() as f32
             };
             let last = chain.level(chain.last()).texels[0];
-            for c in 0..3 {
+            for (c, &code) in last.iter().enumerate().take(3) {
                 // Each level rounds once, by half a code at most.
                 let bound = 0.5 * chain.last() as f32 + 0.01;
-                assert!((f32::from(last[c]) - mean(c)).abs() <= bound, "{width}x{height}");
+                assert!((f32::from(code) - mean(c)).abs() <= bound, "{width}x{height}");
             }
         }
     }

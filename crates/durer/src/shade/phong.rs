@@ -52,7 +52,7 @@ impl Shininess {
     fn of_squared<L: Lane>(self, cos2: L) -> L {
         if self.whole == 0 {
             cos2.power_real(self.half)
-        } else if self.whole % 2 == 0 {
+        } else if self.whole.is_multiple_of(2) {
             cos2.power(self.whole / 2)
         } else {
             cos2.sqrt().power(self.whole)
@@ -142,7 +142,7 @@ pub(super) fn from_metallic_roughness(base: Vec3, metallic: f32, roughness: f32)
     let shininess = Shininess::new((2.0 / alpha2 - 2.0).clamp(1.0, LARGEST_WHOLE).round());
     let peak = (1.0 / (4.0 * alpha2)).min(8.0);
     let specular = (f0 * peak).min(Vec3::splat(0.6) * (f0 / f0.max_element().max(1e-6)));
-    Colors { diffuse: base * (1.0 - 0.6 * metallic), specular, shininess }
+    Colors { diffuse: base * (1.0 - 0.4 * metallic), specular, shininess }
 }
 
 #[cfg(test)]

@@ -168,6 +168,17 @@ fn half_log2(x: f32) -> f32 {
     0.5 * (exponent + m + 0.344 * m * (1.0 - m))
 }
 
+/// The nearest whole number below or equal; in registers, where `f32::floor` may be a call.
+#[inline(always)]
+fn floor(x: f32) -> f32 {
+    // From 2^23 on every float is whole.
+    if x.abs() >= 8_388_608.0 {
+        return x;
+    }
+    let whole = x as i32 as f32;
+    if whole > x { whole - 1.0 } else { whole }
+}
+
 /// A coordinate brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.
 #[inline(always)]
 fn wrapped(u: f32, wrap: Wrap) -> f32 {
@@ -175,9 +186,9 @@ fn wrapped(u: f32, wrap: Wrap) -> f32 {
         return 0.0;
     }
     match wrap {
-        Wrap::Repeat => u - u.floor(),
+        Wrap::Repeat => u - floor(u),
         Wrap::MirroredRepeat => {
-            let folded = u - 2.0 * (u * 0.5).floor();
+            let folded = u - 2.0 * floor(u * 0.5);
             if folded > 1.0 { 2.0 - folded } else { folded }
         }
         Wrap::ClampToEdge => u.clamp(0.0, 1.0),
@@ -193,8 +204,9 @@ fn nearest(u: f32, size: u32, wrap: Wrap) -> u32 {
 /// The two texels around the coordinate and the weight of the second.
 #[inline(always)]
 fn linear(u: f32, size: u32, wrap: Wrap) -> (u32, u32, f32) {
-    let fixed = ((wrapped(u, wrap) * size as f32 - 0.5) * SUBTEXEL + 0.5).floor() as i64;
-    let first = fixed >> SUBTEXEL_BITS;
+    // One texel too far, so that the number is positive and cutting off its fraction rounds down.
+    let fixed = ((wrapped(u, wrap) * size as f32 + 0.5) * SUBTEXEL + 0.5) as i64;
+    let first = (fixed >> SUBTEXEL_BITS) - 1;
     let weight = (fixed & ((1 << SUBTEXEL_BITS) - 1)) as f32 * (1.0 / SUBTEXEL);
     (inside(first, size, wrap), inside(first + 1, size, wrap), weight)
 }
@@ -255,6 +267,13 @@ mod tests {
     }
 
     #[test]
+    fn floor_is_the_standard_librarys() {
+        for x in [0.0, 0.5, -0.5, -1.0, 1.0, -1e-9, 8_388_607.5, -8_388_607.5, 3e9, -3e9, 1e38] {
+            assert_eq!(floor(x), x.floor());
+        }
+    }
+
+    #[test]
     fn wrap_modes_follow_their_laws() {
         let image = ramp(8, 8);
         for filter in [Filter::Linear, Filter::Nearest] {
@@ -291,7 +310,7 @@ mod tests {
 
     #[test]
     fn minified_checker_is_mean_grey() {
-        let texel = |i: u32| if (i / 64 + i) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
+        let texel = |i: u32| if (i / 64 + i).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
         let data = (0..64 * 64).map(texel).collect();
         let image = Image { name: String::new(), width: 64, height: 64, data };
         for mip in [MipFilter::Linear, MipFilter::Nearest] {

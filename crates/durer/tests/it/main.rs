@@ -2,12 +2,11 @@
 
 mod clip_place;
 mod clip_volume;
-//mod conformance_visible_surface;
-//mod data;
 mod determinism;
 mod raster_interpolate;
 mod raster_triangle;
 mod scenes;
+mod shading;
 mod tidy;
 mod view_cull;
 mod view_projection;

@@ -6,6 +6,7 @@
 
 use crate::math::{DMat4, DVec3, Mat3, Vec3, Vec4};
 use crate::scene::{Mesh, Scene, Topology};
+use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
@@ -24,12 +25,10 @@ struct RunTransform {
 }
 
 /// A visible triangle, ready to be interpolated.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct VisibleTriangle {
     /// Its item.
     pub item: u32,
-    /// Its run.
-    pub run: usize,
     /// Its vertices in the mesh.
     pub corners: [u32; 3],
     /// World axes, relative to the eye.
@@ -44,6 +43,27 @@ pub struct VisibleTriangle {
     origin: [i32; 2],
     /// Edge function i at (x, y) is `edges[i][0] + edges[i][1]·x + edges[i][2]·y`.
     edges: [[f32; 3]; 3],
+}
+
+impl Default for VisibleTriangle {
+    /// No triangle.
+    fn default() -> Self {
+        Self {
+            item: NO_ITEM,
+            corners: [0; 3],
+            positions: [Vec3::ZERO; 3],
+            normals: [Vec3::ZERO; 3],
+            face_normal: Vec3::ZERO,
+            world_from_mesh: Mat3::IDENTITY,
+            origin: [0; 2],
+            edges: [[0.0; 3]; 3],
+        }
+    }
+}
+
+/// The run that holds an item that was drawn.
+pub fn run_of(runs: &[Run], item: u32) -> usize {
+    runs.partition_point(|run| run.first_item <= item).saturating_sub(1)
 }
 
 /// Barycentric coordinates of one pixel.
@@ -133,7 +153,7 @@ pub struct Triangles<'a> {
     view: &'a View,
     runs: &'a [Run],
     transform: Option<RunTransform>,
-    cache: Vec<Option<Box<VisibleTriangle>>>,
+    cache: Vec<VisibleTriangle>,
 }
 
 /// Triangles kept: a power of two; about 64 kB.
@@ -141,31 +161,17 @@ const CACHE: usize = 256;
 
 impl<'a> Triangles<'a> {
     pub fn new(scene: &'a Scene, view: &'a View, runs: &'a [Run]) -> Self {
-        Self { scene, view, runs, transform: None, cache: vec![None; CACHE] }
-    }
-
-    /// The run that holds an item.
-    pub fn run_of(&self, item: u32) -> usize {
-        if let Some(t) = &self.transform {
-            let run = &self.runs[t.run];
-            if item >= run.first_item && item - run.first_item < run.range.len() as u32 {
-                return t.run;
-            }
-        }
-        self.runs.partition_point(|run| run.first_item <= item) - 1
+        Self { scene, view, runs, transform: None, cache: vec![VisibleTriangle::default(); CACHE] }
     }
 
     /// The triangle of an item that the rasterizer has drawn.
-    pub fn get(&mut self, item: u32) -> &VisibleTriangle {
+    #[inline(always)]
+    pub fn get(&mut self, item: u32, run: usize) -> &VisibleTriangle {
         let slot = item as usize % CACHE;
-        if self.cache[slot].as_ref().is_none_or(|t| t.item != item) {
-            let triangle = self.prepare(item);
-            match &mut self.cache[slot] {
-                Some(kept) => **kept = triangle,
-                empty => *empty = Some(Box::new(triangle)),
-            }
+        if self.cache[slot].item != item {
+            self.cache[slot] = self.prepare(item, run);
         }
-        self.cache[slot].as_ref().expect("just filled")
+        &self.cache[slot]
     }
 
     fn transform_of(&mut self, run: usize) -> RunTransform {
@@ -179,8 +185,8 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    fn prepare(&mut self, item: u32) -> VisibleTriangle {
-        let run_index = self.run_of(item);
+    #[inline(never)]
+    fn prepare(&mut self, item: u32, run_index: usize) -> VisibleTriangle {
         let t = self.transform_of(run_index);
         let run = &self.runs[run_index];
         let mesh = &self.scene.meshes[run.mesh];
@@ -213,7 +219,6 @@ impl<'a> Triangles<'a> {
         let (origin, edges) = edges(on_screen);
         VisibleTriangle {
             item,
-            run: run_index,
             corners,
             positions: at_eye.map(DVec3::as_vec3),
             normals,

@@ -18,7 +18,6 @@ mod tile;
 use crate::info::{Class, Info};
 use crate::math::Vec4;
 use crate::scene::Scene;
-use crate::shade::color::{encode_rgba8, unpremultiply};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::target::{Framebuffer, NO_ITEM};
@@ -27,7 +26,7 @@ use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
-use resolve::{Fragments, MaskTest, TileColors, background_rows};
+use resolve::{Area, Fragments, MaskTest, Mixed, Output, background_rows, resolve};
 use surface::{Lighting, Lit};
 use tile::{AllPass, FragmentTest, SamplePlane, TILE};
 
@@ -171,7 +170,7 @@ struct Scratch<'a> {
     /// One sample at the pixel's centre, for depth, item and normal.
     center: Vec<SamplePlane>,
     fragments: Fragments,
-    colors: TileColors,
+    mixed: Mixed,
     lit: Lit<'a>,
 }
 
@@ -184,7 +183,7 @@ impl Frame<'_> {
             planes: offsets.iter().map(|&o| SamplePlane::new(o)).collect(),
             center: wants_center.then(|| SamplePlane::new([0; 2])).into_iter().collect(),
             fragments: Fragments::new(offsets),
-            colors: TileColors::new(),
+            mixed: Mixed::new(),
             lit: Lit::new(self.lighting),
         };
         for column in 0..grid.columns {
@@ -226,7 +225,7 @@ impl Frame<'_> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, fragments, colors, lit, .. } = scratch;
+        let Scratch { planes, fragments, mixed, lit, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
         self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
         let mut mask = MaskTest { lit, tile };
@@ -234,15 +233,10 @@ impl Frame<'_> {
         fragments.clear(tile);
         self.rasterize(Coverage::Blended, planes, area, index, Some(fragments));
         let background = background_rows(self.options.background, self.view.height());
+        let area = Area { tile, size, background: &background };
+        let mut output = Output { color: &mut band.color[tile[0] as usize..], stride: band.width };
         dispatch!(self.options.level, simd =>
-            colors.resolve(simd, planes, fragments, lit, &background, tile, size));
-        for y in 0..size[1] {
-            let start = y as usize * band.width + tile[0] as usize;
-            let out = &mut band.color[start..start + size[0] as usize];
-            for (out, color) in out.iter_mut().zip(colors.row(y)) {
-                *out = encode_rgba8(if color.w < 1.0 { unpremultiply(*color) } else { *color });
-            }
-        }
+            resolve(simd, planes, fragments, mixed, lit, &area, &mut output));
     }
 
     /// Depth, item and normal: one sample at the centre, where blended surfaces count as opaque.

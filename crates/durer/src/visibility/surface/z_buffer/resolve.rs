@@ -1,10 +1,10 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
-use super::surface::Lit;
+use super::surface::{Lit, Queue};
 use super::tile::{FragmentTest, SamplePlane, TILE, TILE_PIXELS};
 use crate::math::Vec4;
-use crate::shade::color::premultiply;
+use crate::shade::color::{encode_rgba8, encode_srgb8, premultiply, unpremultiply};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::Background;
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -90,43 +90,107 @@ impl FragmentTest for MaskTest<'_, '_> {
     }
 }
 
-/// The colours of a tile: linear, premultiplied, row after row.
-pub struct TileColors(Vec<Vec4>);
+/// Where a tile lies in the picture, and what is behind everything.
+pub struct Area<'b> {
+    /// The upper left pixel.
+    pub tile: [i32; 2],
+    /// Pixels across and down.
+    pub size: [i32; 2],
+    /// Linear with straight alpha, by row of the picture.
+    pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
+}
 
-impl TileColors {
+/// A tile's part of the colour plane.
+pub struct Output<'o> {
+    /// Rows of the picture, from the tile's first.
+    pub color: &'o mut [[u8; 4]],
+    /// Pixels of a row.
+    pub stride: usize,
+}
+
+/// Pixels whose samples show several items: the sum of their colours so far, and what still waits.
+pub struct Mixed {
+    /// Tile-local pixels.
+    pixels: Vec<u32>,
+    /// Linear, premultiplied; divided by the number of samples.
+    sums: Vec<Vec4>,
+    /// Pixel and weight of each entry of the queue.
+    waiting: [(u32, f32); 8],
+    queue: Queue,
+}
+
+impl Mixed {
     pub fn new() -> Self {
-        Self(vec![Vec4::ZERO; TILE_PIXELS])
+        Self {
+            pixels: Vec::new(),
+            sums: vec![Vec4::ZERO; TILE_PIXELS],
+            waiting: [(0, 0.0); 8],
+            queue: Queue::default(),
+        }
     }
 
-    /// A row of the tile.
-    pub fn row(&self, y: i32) -> &[Vec4] {
-        &self.0[(y * TILE) as usize..][..TILE as usize]
-    }
-
-    /// Lights everything that is visible in the tile whose upper left pixel is `tile`.
-    #[expect(clippy::too_many_arguments, reason = "one call, all of it a tile's state")]
-    pub fn resolve<S: Simd>(
+    /// Adds an item's share of a pixel.
+    #[inline(always)]
+    fn add<S: Simd>(
         &mut self,
         simd: S,
-        planes: &[SamplePlane],
-        fragments: &mut Fragments,
         lit: &mut Lit<'_>,
-        background: &dyn Fn(i32) -> Vec4,
-        tile: [i32; 2],
-        size: [i32; 2],
+        item: u32,
+        index: u32,
+        weight: f32,
+        at: [i32; 2],
     ) {
-        resolve_opaque(simd, &mut self.0, planes, lit, background, [tile, size]);
-        fragments.sort();
-        let mut rest = fragments.list.as_slice();
-        while let Some(first) = rest.first() {
-            let count = rest.iter().take_while(|f| f.pixel == first.pixel).count();
-            let (of_pixel, others) = rest.split_at(count);
-            rest = others;
-            let (x, y) = (first.pixel as i32 % TILE, first.pixel as i32 / TILE);
-            if x < size[0] && y < size[1] {
-                self.0[first.pixel as usize] =
-                    blended(planes, of_pixel, lit, background, [tile[0] + x, tile[1] + y]);
-            }
+        if !lit.is_plain(item) {
+            let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
+            self.sums[index as usize] += color * weight;
+            return;
+        }
+        if !lit.add_to_batch(item, at, &mut self.queue) {
+            self.flush(simd, lit);
+            lit.add_to_batch(item, at, &mut self.queue);
+        }
+        self.waiting[self.queue.count - 1] = (index, weight);
+        if self.queue.count == 8 {
+            self.flush(simd, lit);
+        }
+    }
+
+    /// Lights what waits.
+    #[inline(always)]
+    fn flush<S: Simd>(&mut self, simd: S, lit: &mut Lit<'_>) {
+        if self.queue.count == 0 {
+            return;
+        }
+        let [r, g, b] = lit.shade_batch(simd, &self.queue);
+        for (i, &(pixel, weight)) in self.waiting[..self.queue.count].iter().enumerate() {
+            self.sums[pixel as usize] += Vec4::new(r[i], g[i], b[i], 1.0) * weight;
+        }
+        self.queue.count = 0;
+    }
+}
+
+fn encode(premultiplied: Vec4) -> [u8; 4] {
+    let opaque = premultiplied.w >= 1.0;
+    encode_rgba8(if opaque { premultiplied } else { unpremultiply(premultiplied) })
+}
+
+/// Lights everything that is visible in a tile.
+pub fn resolve<S: Simd>(
+    simd: S,
+    planes: &[SamplePlane],
+    fragments: &mut Fragments,
+    mixed: &mut Mixed,
+    lit: &mut Lit<'_>,
+    area: &Area<'_>,
+    output: &mut Output<'_>,
+) {
+    resolve_opaque(simd, planes, mixed, lit, area, output);
+    fragments.sort();
+    for of_pixel in fragments.list.chunk_by(|a, b| a.pixel == b.pixel) {
+        let (x, y) = (of_pixel[0].pixel as i32 % TILE, of_pixel[0].pixel as i32 / TILE);
+        if x < area.size[0] && y < area.size[1] {
+            let color = blended(planes, of_pixel, lit, area, [x, y]);
+            output.color[y as usize * output.stride + x as usize] = encode(color);
         }
     }
 }
@@ -135,64 +199,113 @@ impl TileColors {
 #[simd]
 fn resolve_opaque<S: Simd>(
     simd: S,
-    colors: &mut [Vec4],
     planes: &[SamplePlane],
+    mixed: &mut Mixed,
     lit: &mut Lit<'_>,
-    background: &dyn Fn(i32) -> Vec4,
-    [tile, size]: [[i32; 2]; 2],
+    area: &Area<'_>,
+    output: &mut Output<'_>,
 ) {
-    for y in 0..size[1] {
-        let behind = premultiply(background(tile[1] + y));
-        let mut x = 0;
-        while x < size[0] {
+    for y in 0..area.size[1] {
+        let behind = premultiply((area.background)(area.tile[1] + y));
+        let encoded = encode(behind);
+        let start = y as usize * output.stride;
+        let row = &mut output.color[start..start + area.size[0] as usize];
+        for (eight, out) in row.chunks_mut(8).enumerate() {
+            let x = 8 * eight as i32;
             let index = (y * TILE + x) as usize;
-            let out = &mut colors[index..index + 8];
-            resolve_eight(simd, out, planes, index, lit, behind, [tile[0] + x, tile[1] + y]);
-            x += 8;
+            let at = [area.tile[0] + x, area.tile[1] + y];
+            out.fill(encoded);
+            resolve_eight(simd, out, planes, index, lit, at);
+            if planes.len() > 1 {
+                add_mixed(simd, planes, index, mixed, lit, behind, at, out.len());
+            }
         }
+    }
+    mixed.flush(simd, lit);
+    for pixel in mixed.pixels.drain(..) {
+        let (x, y) = (pixel as usize % TILE as usize, pixel as usize / TILE as usize);
+        output.color[y * output.stride + x] = encode(mixed.sums[pixel as usize]);
     }
 }
 
-/// Eight pixels in a row: those that show one item at all samples together, the others one by one.
+/// Of eight pixels in a row, those that show one item at all samples.
 #[inline(always)]
 fn resolve_eight<S: Simd>(
     simd: S,
-    out: &mut [Vec4],
+    out: &mut [[u8; 4]],
     planes: &[SamplePlane],
     index: usize,
     lit: &mut Lit<'_>,
-    behind: Vec4,
     [x, y]: [i32; 2],
 ) {
     let mut whole = [NO_ITEM; 8];
     whole.copy_from_slice(&planes[0].items()[index..index + 8]);
-    let mut mixed = [false; 8];
     for plane in &planes[1..] {
         let items = &plane.items()[index..index + 8];
         for i in 0..8 {
-            mixed[i] |= items[i] != whole[i];
+            whole[i] = if items[i] == whole[i] { whole[i] } else { NO_ITEM };
         }
     }
-    for i in 0..8 {
-        if mixed[i] {
-            whole[i] = NO_ITEM;
+    if whole == [NO_ITEM; 8] {
+        return;
+    }
+    let mut colors = [[0.0; 8]; 3];
+    lit.colors_x8(simd, &whole, x, y, &mut colors);
+    let [r, g, b] = colors;
+    for (i, out) in out.iter_mut().enumerate() {
+        if whole[i] != NO_ITEM {
+            *out = [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255];
         }
     }
-    out.fill(behind);
-    if whole != [NO_ITEM; 8] {
-        let mut colors = [Vec4::ZERO; 8];
-        lit.colors_x8(simd, &whole, x, y, &mut colors);
+}
+
+/// Of eight pixels in a row, those that show several items, or one and the background: each item is
+/// lit once and weighted by its samples.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one call, all of it a tile's state")]
+fn add_mixed<S: Simd>(
+    simd: S,
+    planes: &[SamplePlane],
+    index: usize,
+    mixed: &mut Mixed,
+    lit: &mut Lit<'_>,
+    behind: Vec4,
+    [x, y]: [i32; 2],
+    count: usize,
+) {
+    let share = 1.0 / planes.len() as f32;
+    let first = &planes[0].items()[index..index + 8];
+    let mut differs = [false; 8];
+    for plane in &planes[1..] {
+        let items = &plane.items()[index..index + 8];
         for i in 0..8 {
-            if whole[i] != NO_ITEM {
-                // Opaque and masked surfaces hide what is behind them.
-                out[i] = colors[i].truncate().extend(1.0);
-            }
+            differs[i] |= items[i] != first[i];
         }
     }
-    for i in 0..8 {
-        if mixed[i] {
-            let each = sample_colors(planes, index + i, lit, behind, [x + i as i32, y]);
-            out[i] = average(&each[..planes.len()]);
+    if differs == [false; 8] {
+        return;
+    }
+    for i in (0..count).filter(|&i| differs[i]) {
+        let pixel = (index + i) as u32;
+        mixed.pixels.push(pixel);
+        mixed.sums[pixel as usize] = Vec4::ZERO;
+        let mut seen = 0u32;
+        for (s, plane) in planes.iter().enumerate() {
+            if seen >> s & 1 == 1 {
+                continue;
+            }
+            let item = plane.items()[index + i];
+            let mut same = 0u32;
+            for (j, other) in planes.iter().enumerate().skip(s) {
+                same |= u32::from(other.items()[index + i] == item) << j;
+            }
+            seen |= same;
+            let weight = same.count_ones() as f32 * share;
+            if item == NO_ITEM {
+                mixed.sums[pixel as usize] += behind * weight;
+            } else {
+                mixed.add(simd, lit, item, pixel, weight, [x + i as i32, y]);
+            }
         }
     }
 }
@@ -231,11 +344,13 @@ fn blended(
     planes: &[SamplePlane],
     fragments: &[Fragment],
     lit: &mut Lit<'_>,
-    background: &dyn Fn(i32) -> Vec4,
+    area: &Area<'_>,
     [x, y]: [i32; 2],
 ) -> Vec4 {
+    let (x, y) = (area.tile[0] + x, area.tile[1] + y);
     let index = fragments[0].pixel as usize;
-    let mut colors = sample_colors(planes, index, lit, premultiply(background(y)), [x, y]);
+    let behind = premultiply((area.background)(y));
+    let mut colors = sample_colors(planes, index, lit, behind, [x, y]);
     for fragment in fragments {
         let over = premultiply(lit.color(fragment.item, x, y));
         for (i, under) in colors[..planes.len()].iter_mut().enumerate() {
@@ -248,7 +363,7 @@ fn blended(
 }
 
 /// The background's colour in each row of a picture of this height.
-pub fn background_rows(background: Background, height: u32) -> impl Fn(i32) -> Vec4 {
+pub fn background_rows(background: Background, height: u32) -> impl Fn(i32) -> Vec4 + Sync {
     move |y| match background {
         Background::Color(color) => color,
         Background::Gradient(top, bottom) => {

@@ -1,16 +1,17 @@
 //! Lighting visible items: one pixel with everything a material can have, or eight plain ones.
 
-use super::attributes::{Triangles, VisibleTriangle, Weights, blend, blend_x8};
+use super::attributes::{Triangles, VisibleTriangle, Weights, blend, blend_x8, run_of};
 use crate::math::{Vec2, Vec3, Vec4};
-use crate::scene::{Projection, Scene, Topology};
+use crate::scene::{Mesh, Projection, Scene, Topology};
+use crate::shade::lane::Vec3Lane;
 use crate::shade::{
-    Batch, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Shading, Surface,
-    TexCoord, shade, shade_face, shade_vertex, shade_x8,
+    Batch, Points, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Shading,
+    Surface, TexCoord, shade, shade_face, shade_points, shade_vertex, shade_x8,
 };
 use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f32x8};
 
 /// Sets of texture coordinates that are looked at.
 const TEX_COORD_SETS: usize = 4;
@@ -26,10 +27,25 @@ pub struct Lighting<'a> {
     pub shading: Option<Shading>,
 }
 
+/// What is the same for all items of a run.
+#[derive(Clone, Copy)]
+struct RunInfo<'a> {
+    run: usize,
+    first_item: u32,
+    count: u32,
+    mesh: &'a Mesh,
+    material: &'a PreparedMaterial<'a>,
+    shading: Shading,
+    /// Whether eight pixels can be shaded at a time.
+    plain: bool,
+}
+
 /// One thread's way from items to colours.
 pub struct Lit<'a> {
     shared: Lighting<'a>,
     triangles: Triangles<'a>,
+    /// The run of the latest item.
+    latest: Option<RunInfo<'a>>,
     /// Towards the eye where projection lines are parallel.
     parallel_view: Option<Vec3>,
     /// The light on the face or at the corners of the latest triangle; for flat and Gouraud.
@@ -44,28 +60,43 @@ impl<'a> Lit<'a> {
             Projection::Orthographic { .. } => Some(camera.axes()[2].as_vec3()),
         };
         let triangles = Triangles::new(shared.scene, shared.view, shared.runs);
-        Self { shared, triangles, parallel_view, reflected: None }
+        Self { shared, triangles, latest: None, parallel_view, reflected: None }
     }
 
-    fn material(&self, run: usize) -> (&'a PreparedMaterial<'a>, Shading) {
-        let run = &self.shared.runs[run];
-        let mesh = &self.shared.scene.meshes[run.mesh];
-        let material = self.shared.materials.get(run.material);
+    /// The run of an item, and what it is made of.
+    #[inline(always)]
+    fn run_info(&mut self, item: u32) -> RunInfo<'a> {
+        match self.latest {
+            Some(info) if item.wrapping_sub(info.first_item) < info.count => info,
+            _ => self.find_run_info(item),
+        }
+    }
+
+    #[cold]
+    fn find_run_info(&mut self, item: u32) -> RunInfo<'a> {
+        let shared = self.shared;
+        let index = run_of(shared.runs, item);
+        let run = &shared.runs[index];
+        let mesh = &shared.scene.meshes[run.mesh];
+        let material = shared.materials.get(run.material);
         let without_sides = mesh.topology != Topology::Triangles && mesh.normals.is_empty();
-        let shading = match self.shared.shading {
+        let shading = match shared.shading {
             _ if without_sides => Shading::Unlit,
             Some(shading) => shading,
             None => material.shading(),
         };
-        (material, shading)
-    }
-
-    /// Whether eight pixels of a run can be shaded at a time.
-    fn is_plain(&self, run: usize) -> bool {
-        let (material, shading) = self.material(run);
-        let mesh = &self.shared.scene.meshes[self.shared.runs[run].mesh];
         let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
-        material.is_plain() && mesh.colors.is_empty() && per_pixel
+        let info = RunInfo {
+            run: index,
+            first_item: run.first_item,
+            count: run.range.len() as u32,
+            mesh,
+            material,
+            shading,
+            plain: material.is_plain() && mesh.colors.is_empty() && per_pixel,
+        };
+        self.latest = Some(info);
+        info
     }
 
     /// Linear RGBA, straight alpha, of an item at a pixel's centre.
@@ -82,8 +113,8 @@ impl<'a> Lit<'a> {
 
     /// Unit normal of an item at a pixel's centre, world axes, turned to the eye.
     pub fn normal(&mut self, item: u32, x: i32, y: i32) -> Vec3 {
-        let parallel = self.parallel_view;
-        let t = self.triangles.get(item);
+        let (parallel, run) = (self.parallel_view, self.run_info(item).run);
+        let t = self.triangles.get(item, run);
         let w = t.weights(x, y, [0.0; 2]);
         let normal = blend(&t.normals, w).normalize_or(t.face_normal);
         let view = parallel.unwrap_or(-blend(&t.positions, w));
@@ -97,12 +128,10 @@ impl<'a> Lit<'a> {
         y: i32,
         use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
     ) -> R {
-        let run = self.triangles.get(item).run;
-        let (material, shading) = self.material(run);
-        let lit = self.reflected(item, material, shading);
+        let RunInfo { run, mesh, material, shading, .. } = self.run_info(item);
+        let lit = self.reflected(item, run, material, shading);
         let parallel = self.parallel_view;
-        let t = self.triangles.get(item);
-        let mesh = &self.shared.scene.meshes[self.shared.runs[run].mesh];
+        let t = self.triangles.get(item, run);
         let w = t.weights(x, y, [0.0; 2]);
         let position = blend(&t.positions, w);
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
@@ -138,6 +167,7 @@ impl<'a> Lit<'a> {
     fn reflected(
         &mut self,
         item: u32,
+        run: usize,
         material: &PreparedMaterial<'_>,
         shading: Shading,
     ) -> Option<[Reflected; 3]> {
@@ -150,7 +180,7 @@ impl<'a> Lit<'a> {
             return Some(corners);
         }
         let (lights, parallel) = (self.shared.lights, self.parallel_view);
-        let t = self.triangles.get(item);
+        let t = self.triangles.get(item, run);
         let view = |p: Vec3| parallel.unwrap_or(-p);
         let corners = if shading == Shading::Flat {
             let centroid = (t.positions[0] + t.positions[1] + t.positions[2]) / 3.0;
@@ -165,7 +195,7 @@ impl<'a> Lit<'a> {
         Some(corners)
     }
 
-    /// Linear RGBA of up to eight pixels in a row from `x`: those with an item.
+    /// Linear RGB of up to eight pixels in a row from `x`: those with an item.
     ///
     /// Plain materials are shaded eight at a time, others one by one; the bits are the same.
     #[inline(always)]
@@ -175,20 +205,41 @@ impl<'a> Lit<'a> {
         items: &[u32; 8],
         x: i32,
         y: i32,
-        colors: &mut [Vec4; 8],
+        colors: &mut [[f32; 8]; 3],
     ) {
         let mut done = [false; 8];
         for i in 0..8 {
             if done[i] || items[i] == NO_ITEM {
                 continue;
             }
-            let run = self.triangles.get(items[i]).run;
-            if self.is_plain(run) {
-                self.plain_x8(simd, run, items, [x, y], &mut done, colors);
+            let info = self.run_info(items[i]);
+            if info.plain {
+                if i == 0 && *items == [items[0]; 8] {
+                    return self.one_triangle_x8(simd, &info, items[0], [x, y], colors);
+                }
+                self.plain_x8(simd, &info, items, [x, y], &mut done, colors);
             } else {
-                colors[i] = self.color(items[i], x + i as i32, y);
+                let color = self.color(items[i], x + i as i32, y);
+                set_lane(colors, i, color.truncate());
             }
         }
+    }
+
+    /// Shades eight pixels that show one triangle of a plain run.
+    #[inline(always)]
+    fn one_triangle_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        item: u32,
+        [x, y]: [i32; 2],
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let parallel = self.parallel_view;
+        let t = self.triangles.get(item, info.run);
+        let points = points_x8(simd, t, [x, y], parallel);
+        let color = shade_points(&points, info.material, self.shared.lights, info.shading);
+        *colors = [color.x.into(), color.y.into(), color.z.into()];
     }
 
     /// Shades all of eight pixels whose items belong to one plain run.
@@ -196,75 +247,128 @@ impl<'a> Lit<'a> {
     fn plain_x8<S: Simd>(
         &mut self,
         simd: S,
-        run: usize,
+        info: &RunInfo<'a>,
         items: &[u32; 8],
         [x, y]: [i32; 2],
         done: &mut [bool; 8],
-        colors: &mut [Vec4; 8],
+        colors: &mut [[f32; 8]; 3],
     ) {
         let mut batch = Batch::default();
         let mut mine = [false; 8];
+        let parallel = self.parallel_view;
         for i in 0..8 {
-            if done[i] || items[i] == NO_ITEM || self.triangles.run_of(items[i]) != run {
+            if done[i] || items[i].wrapping_sub(info.first_item) >= info.count {
                 continue;
             }
-            let parallel = self.parallel_view;
-            let t = self.triangles.get(items[i]);
             let mut lanes = [false; 8];
             for j in i..8 {
                 lanes[j] = items[j] == items[i];
                 done[j] |= lanes[j];
                 mine[j] |= lanes[j];
             }
-            interpolate_x8(simd, t, [x, y], parallel, &lanes, &mut batch);
+            let t = self.triangles.get(items[i], info.run);
+            fill_lanes(&points_x8(simd, t, [x, y], parallel), &lanes, &mut batch);
         }
-        let (material, shading) = self.material(run);
-        let [r, g, b] = shade_x8(simd, &batch, material, self.shared.lights, shading);
-        for i in 0..8 {
-            if mine[i] {
-                colors[i] = Vec4::new(r[i], g[i], b[i], 1.0);
+        let shaded = shade_x8(simd, &batch, info.material, self.shared.lights, info.shading);
+        for (to, from) in colors.iter_mut().zip(&shaded) {
+            for i in 0..8 {
+                to[i] = if mine[i] { from[i] } else { to[i] };
             }
         }
     }
+
+    /// Adds a pixel to a batch of one plain run, if the item belongs to such a run and to that of
+    /// the batch, if it has one; gives the run's key.
+    #[inline(always)]
+    pub fn add_to_batch(&mut self, item: u32, [x, y]: [i32; 2], queue: &mut Queue) -> bool {
+        let info = self.run_info(item);
+        if !info.plain || (queue.count > 0 && queue.first_item != info.first_item) {
+            return false;
+        }
+        queue.first_item = info.first_item;
+        let parallel = self.parallel_view;
+        let t = self.triangles.get(item, info.run);
+        let w = t.weights(x, y, [0.0; 2]);
+        let position = blend(&t.positions, w);
+        let lane = queue.count;
+        set_lane(&mut queue.batch.position, lane, position);
+        set_lane(&mut queue.batch.view, lane, parallel.unwrap_or(-position));
+        set_lane(&mut queue.batch.normal, lane, blend(&t.normals, w));
+        set_lane(&mut queue.batch.geometric_normal, lane, t.face_normal);
+        queue.count += 1;
+        true
+    }
+
+    /// Whether an item can be shaded in batches.
+    pub fn is_plain(&mut self, item: u32) -> bool {
+        self.run_info(item).plain
+    }
+
+    /// Shades a batch that [`Self::add_to_batch`] has filled.
+    #[inline(always)]
+    pub fn shade_batch<S: Simd>(&mut self, simd: S, queue: &Queue) -> [[f32; 8]; 3] {
+        let info = self.run_info(queue.first_item);
+        shade_x8(simd, &queue.batch, info.material, self.shared.lights, info.shading)
+    }
 }
 
-/// Fills the lanes of a batch that show one triangle.
+/// Up to eight pixels of one plain run, from anywhere.
+#[derive(Default)]
+pub struct Queue {
+    batch: Batch,
+    /// How many pixels there are.
+    pub count: usize,
+    /// The first item of their run.
+    first_item: u32,
+}
+
 #[inline(always)]
-fn interpolate_x8<S: Simd>(
+fn set_lane(lanes: &mut [[f32; 8]; 3], lane: usize, v: Vec3) {
+    lanes[0][lane] = v.x;
+    lanes[1][lane] = v.y;
+    lanes[2][lane] = v.z;
+}
+
+/// The points of a triangle at eight pixels in a row.
+#[inline(always)]
+fn points_x8<S: Simd>(
     simd: S,
     t: &VisibleTriangle,
     [x, y]: [i32; 2],
     parallel_view: Option<Vec3>,
-    lanes: &[bool; 8],
-    batch: &mut Batch,
-) {
+) -> Points<f32x8<S>> {
     let w = t.weights_x8(simd, x, y);
-    let position = blend_x8(&t.positions, &w);
-    let normal = blend_x8(&t.normals, &w);
-    let face = t.face_normal.to_array();
-    let parallel = parallel_view.map(|v| v.to_array());
-    let all = *lanes == [true; 8];
-    for axis in 0..3 {
-        let (p, n): ([f32; 8], [f32; 8]) = (position[axis].into(), normal[axis].into());
-        let v: [f32; 8] = match parallel {
-            Some(view) => [view[axis]; 8],
-            None => (-position[axis]).into(),
-        };
-        if all {
-            batch.position[axis] = p;
-            batch.normal[axis] = n;
-            batch.view[axis] = v;
-            batch.geometric_normal[axis] = [face[axis]; 8];
-            continue;
-        }
-        for i in 0..8 {
-            if lanes[i] {
-                batch.position[axis][i] = p[i];
-                batch.normal[axis][i] = n[i];
-                batch.view[axis][i] = v[i];
-                batch.geometric_normal[axis][i] = face[axis];
-            }
-        }
+    let [px, py, pz] = blend_x8(&t.positions, &w);
+    let [nx, ny, nz] = blend_x8(&t.normals, &w);
+    let position = Vec3Lane::new(px, py, pz);
+    let view = match parallel_view {
+        Some(v) => Vec3Lane::splat(px, v),
+        None => Vec3Lane::new(-px, -py, -pz),
+    };
+    let geometric_normal = Vec3Lane::splat(px, t.face_normal);
+    Points { position, view, normal: Vec3Lane::new(nx, ny, nz), geometric_normal }
+}
+
+/// Copies the chosen lanes of points into a batch.
+#[inline(always)]
+fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &[bool; 8], batch: &mut Batch) {
+    fill_vector(&points.position, lanes, &mut batch.position);
+    fill_vector(&points.view, lanes, &mut batch.view);
+    fill_vector(&points.normal, lanes, &mut batch.normal);
+    fill_vector(&points.geometric_normal, lanes, &mut batch.geometric_normal);
+}
+
+#[inline(always)]
+fn fill_vector<S: Simd>(from: &Vec3Lane<f32x8<S>>, lanes: &[bool; 8], to: &mut [[f32; 8]; 3]) {
+    fill_axis(from.x.into(), lanes, &mut to[0]);
+    fill_axis(from.y.into(), lanes, &mut to[1]);
+    fill_axis(from.z.into(), lanes, &mut to[2]);
+}
+
+#[inline(always)]
+fn fill_axis(from: [f32; 8], lanes: &[bool; 8], to: &mut [f32; 8]) {
+    for i in 0..8 {
+        to[i] = if lanes[i] { from[i] } else { to[i] };
     }
 }
 

@@ -1,0 +1,56 @@
+//! Write masks: which channels, depths and stencil bits may change (OpenGL 4.6, 17.4.2).
+
+/// What may be written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct WriteMask {
+    /// Red, green, blue, alpha.
+    pub color: [bool; 4],
+    /// Depth, and with it the item and the normal, which tell what is nearest.
+    pub depth: bool,
+    /// Stencil bits, for front and back faces.
+    pub stencil: [u8; 2],
+}
+
+impl Default for WriteMask {
+    /// Everything.
+    fn default() -> Self {
+        Self { color: [true; 4], depth: true, stencil: [0xff; 2] }
+    }
+}
+
+impl WriteMask {
+    /// The new channels where they may be written, the old ones elsewhere.
+    #[inline(always)]
+    pub fn color(&self, new: [u8; 4], old: [u8; 4]) -> [u8; 4] {
+        std::array::from_fn(|i| if self.color[i] { new[i] } else { old[i] })
+    }
+
+    /// The new stencil bits where they may be written, the old ones elsewhere.
+    #[inline(always)]
+    pub fn stencil(&self, front_facing: bool, new: u8, old: u8) -> u8 {
+        let mask = self.stencil[usize::from(!front_facing)];
+        (new & mask) | (old & !mask)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_unmasked_bits_change() {
+        let (new, old) = ([1, 2, 3, 4], [5, 6, 7, 8]);
+        for bits in 0..16_usize {
+            let mask = WriteMask {
+                color: std::array::from_fn(|i| bits >> i & 1 == 1),
+                ..WriteMask::default()
+            };
+            for (i, value) in mask.color(new, old).into_iter().enumerate() {
+                assert_eq!(value, if bits >> i & 1 == 1 { new[i] } else { old[i] });
+            }
+        }
+        let mask = WriteMask { stencil: [0x0f, 0xf0], ..WriteMask::default() };
+        assert_eq!(mask.stencil(true, 0xab, 0xcd), 0xcb);
+        assert_eq!(mask.stencil(false, 0xab, 0xcd), 0xad);
+    }
+}
