@@ -192,7 +192,7 @@ impl Default for FitOptions {
 
 /// The nearest point of the model is no nearer to the eye than this part of its radius: a needle that
 /// points at the eye is not looked at from within.
-const CLOSEST: f64 = 0.02;
+pub const CLOSEST: f64 = 0.02;
 
 /// Near and far plane keep this part of the radius from the model.
 const DEPTH_PAD: f64 = 0.01;
@@ -200,7 +200,7 @@ const DEPTH_PAD: f64 = 0.01;
 /// The camera whose picture holds the box as large as it can be, in the middle.
 ///
 /// The box's own corners are projected: at least two opposite borders of the frame (less the margin)
-/// are touched. `None` (an empty scene), a point, and a line are seen too: what has no extent is
+/// are touched, unless the nearest point would come nearer than [`CLOSEST`]. `None` (an empty scene), a point, and a line are seen too: what has no extent is
 /// taken for a cube of side 1, or as much as the digits at its place can tell apart.
 ///
 /// # Errors
@@ -210,19 +210,50 @@ pub fn fit_box(
     direction: &ViewDirection,
     options: &FitOptions,
 ) -> Result<Camera> {
-    let bounds = visible_extent(bounds);
+    let extent = visible_extent(bounds);
+    fit(&extent.corners(), &extent, direction, options)
+}
+
+/// The camera whose picture holds the points as large as they can be, in the middle: tighter than
+/// [`fit_box`] where a model does not fill its box. Points that are not finite are left out.
+///
+/// O(n) time and memory.
+///
+/// # Errors
+/// As [`fit_box`].
+pub fn fit_points(
+    points: impl IntoIterator<Item = DVec3>,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> Result<Camera> {
+    let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
+    let bounds = Aabb::around(points.iter().copied());
+    let extent = visible_extent(bounds.as_ref());
+    if bounds == Some(extent) {
+        fit(&points, &extent, direction, options)
+    } else {
+        fit(&extent.corners(), &extent, direction, options)
+    }
+}
+
+fn fit(
+    points: &[DVec3],
+    bounds: &Aabb,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> Result<Camera> {
     let center = bounds.center();
     let radius = (bounds.size() * 0.5).length();
     let axes = [direction.right(), direction.up(), direction.to_eye()];
-    let corners = bounds.corners().map(|c| DVec3::from(axes.map(|a| a.dot(c - center))));
+    let view = |p: &DVec3| DVec3::from(axes.map(|a| a.dot(*p - center)));
+    let corners: Vec<DVec3> = points.iter().map(view).collect();
     let frame = Frame::new(options)?;
-    let eye = frame.eye_for(corners, radius);
-    let depths = corners.map(|c| eye.z - c.z);
-    let nearest = depths.into_iter().fold(f64::INFINITY, f64::min);
-    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let eye = frame.eye_for(&corners, radius);
+    let (back, front) = range(&corners, 2);
+    let (nearest, farthest) = (eye.z - front, eye.z - back);
     let world = |v: DVec3| center + axes[0] * v.x + axes[1] * v.y + axes[2] * v.z;
-    // A line seen end-on has no extent in the picture, but a neighbourhood.
-    let height = frame.height_for(corners).max(radius * 1e-3);
+    // A line seen end-on has no extent in the picture, or that of rounding.
+    let height = frame.height_for(&corners).max(radius * 1e-9);
     let target = DVec3::new(eye.x, eye.y, 0.0);
     finished(world(eye), world(target), direction, options, height, nearest..farthest, radius)
 }
@@ -288,6 +319,12 @@ fn visible_extent(bounds: Option<&Aabb>) -> Aabb {
     Aabb { min: bounds.min - half, max: bounds.max + half }
 }
 
+/// The smallest and the largest of one coordinate.
+fn range(points: &[DVec3], k: usize) -> (f64, f64) {
+    let grow = |(lo, hi): (f64, f64), p: &DVec3| (lo.min(p[k]), hi.max(p[k]));
+    points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), grow)
+}
+
 /// The part of the picture to be filled.
 struct Frame {
     lens: Lens,
@@ -318,14 +355,15 @@ impl Frame {
     }
 
     /// Where the eye must be for the frame to hold the points; x right, y up, z toward the eye.
-    fn eye_for(&self, points: [DVec3; 8], radius: f64) -> DVec3 {
+    fn eye_for(&self, points: &[DVec3], radius: f64) -> DVec3 {
         let largest =
             |f: &dyn Fn(&DVec3) -> f64| points.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
         let closest = largest(&|p| p.z) + CLOSEST * radius;
         match self.lens {
             Lens::Orthographic => {
-                let middle = |k: usize| (largest(&|p| p[k]) - largest(&|p| -p[k])) * 0.5;
-                DVec3::new(middle(0), middle(1), closest + radius)
+                let middle = |(lo, hi): (f64, f64)| (lo + hi) * 0.5;
+                let [x, y] = [0, 1].map(|k| middle(range(points, k)));
+                DVec3::new(x, y, closest + radius)
             }
             Lens::Perspective { .. } => {
                 // On each axis two sides of the frame, each through its outermost point, meet in
@@ -341,11 +379,10 @@ impl Frame {
     }
 
     /// The height of an orthographic picture whose frame holds the points.
-    fn height_for(&self, points: [DVec3; 8]) -> f64 {
+    fn height_for(&self, points: &[DVec3]) -> f64 {
         let extent = |k: usize| {
-            let c = points.map(|p| p[k]);
-            let hi = c.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            hi - c.into_iter().fold(f64::INFINITY, f64::min)
+            let (lo, hi) = range(points, k);
+            hi - lo
         };
         (extent(0) / self.slope.x).max(extent(1) / self.slope.y)
     }

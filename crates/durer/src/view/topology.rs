@@ -2,9 +2,10 @@
 
 use super::cull::triangle_area;
 use crate::math::{DVec3, Vec3};
-use crate::scene::Mesh;
+use crate::scene::{Aabb, Mesh};
 
-/// What [`mesh_topology`] finds. Vertices at equal positions count as one.
+/// What [`mesh_topology`] finds. Vertices at one place count as one:
+/// where no coordinate differs by more than 2⁻²⁶ of the model's extent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshTopology {
     /// Whether each edge belongs to exactly two triangles: the mesh bounds a body.
@@ -85,17 +86,42 @@ fn finite_corners(mesh: &Mesh, corners: [u32; 3]) -> Option<[DVec3; 3]> {
     Some([a?.as_dvec3(), b?.as_dvec3(), c?.as_dvec3()])
 }
 
-/// For each vertex the number of the first, in sorted order, at the same place.
+/// Coordinates that differ by less than this part of the model's extent are one. Exporters write 5e-17
+/// for 0; an f32 above a quarter of the extent cannot hold so small a difference. Much more would
+/// close real gaps, less would leave models open that are closed.
+const WELD: f64 = 1.0 / (1u64 << 26) as f64;
+
+/// For each vertex the number of one at the same place, the same for all of them.
 fn weld(positions: &[Vec3]) -> Vec<u32> {
-    // Adding zero makes −0 and 0 one place.
-    let key = |i: u32| (positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by_key(|&i| (key(i), i));
+    let bounds = Aabb::around(positions.iter().map(|p| p.as_dvec3()));
+    let tolerance = bounds.map_or(0.0, |b| b.size().max_element() * WELD);
+    let axes = [0, 1, 2].map(|axis| classes(positions, axis, tolerance));
+    // Class numbers and the vertex's own in one integer: sorting needs no look-up.
+    let packed = (0..positions.len()).map(|i| {
+        axes.iter().fold(0, |bits, class| bits << 32 | u128::from(class[i])) << 32 | i as u128
+    });
+    let mut order: Vec<u128> = packed.collect();
+    order.sort_unstable();
     let mut welded = vec![0; positions.len()];
-    for same in order.chunk_by(|&i, &j| key(i) == key(j)) {
-        for &i in same {
-            welded[i as usize] = same[0];
+    for same in order.chunk_by(|a, b| a >> 32 == b >> 32) {
+        for &vertex in same {
+            welded[vertex as u32 as usize] = same[0] as u32;
         }
     }
     welded
+}
+
+/// Numbers the distinct coordinates of one axis from the smallest; neighbours within the tolerance
+/// share a number.
+fn classes(positions: &[Vec3], axis: usize, tolerance: f64) -> Vec<u32> {
+    let mut order: Vec<(f32, u32)> = positions.iter().zip(0..).map(|(p, i)| (p[axis], i)).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut class = vec![0; positions.len()];
+    let mut number = 0;
+    for pair in order.windows(2) {
+        let gap = f64::from(pair[1].0) - f64::from(pair[0].0);
+        number += u32::from(gap.is_nan() || gap > tolerance);
+        class[pair[1].1 as usize] = number;
+    }
+    class
 }

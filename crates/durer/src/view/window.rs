@@ -250,11 +250,12 @@ impl WindowToViewport {
     }
 }
 
-/// One axis: to' = scale · (from − from0) + to0.
+/// One axis: to' = scale · (x − from) + to, from whichever of two anchors is nearer, so that each is
+/// mapped exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
-    from0: f64,
-    to0: f64,
+    from: [f64; 2],
+    to: [f64; 2],
     scale: Double,
     inverse: Double,
 }
@@ -264,7 +265,7 @@ impl Axis {
     fn stretched(from: [f64; 2], to: [f64; 2]) -> Self {
         let (span, length) = (Double::sum(from[1], -from[0]), Double::sum(to[1], -to[0]));
         let (scale, inverse) = (length.over(span), span.over(length));
-        Self { from0: from[0], to0: to[0], scale, inverse }
+        Self { from, to, scale, inverse }
     }
 
     /// The same axis with the size of the other's scale, the middle staying in the middle.
@@ -273,20 +274,22 @@ impl Axis {
         let (scale, inverse) = (other.scale.times(sign), other.inverse.times(sign));
         let covered = scale.product(Double::sum(from[1], -from[0])).hi;
         let to0 = (to[0] + to[1]) * 0.5 - covered * 0.5;
-        Self { from0: from[0], to0, scale, inverse }
+        Self { from: [from[0]; 2], to: [to0; 2], scale, inverse }
     }
 
     fn forward(&self, x: f64) -> f64 {
-        transform(x, self.from0, self.scale, self.to0)
+        transform(x, self.from, self.scale, self.to)
     }
 
     fn backward(&self, x: f64) -> f64 {
-        transform(x, self.to0, self.inverse, self.from0)
+        transform(x, self.to, self.inverse, self.from)
     }
 }
 
 /// scale · (x − from) + to, rounded once where all is in range.
-fn transform(x: f64, from: f64, scale: Double, to: f64) -> f64 {
+fn transform(x: f64, from: [f64; 2], scale: Double, to: [f64; 2]) -> f64 {
+    let nearer = usize::from((x - from[1]).abs() < (x - from[0]).abs());
+    let (from, to) = (from[nearer], to[nearer]);
     let product = scale.product(Double::sum(x, -from));
     let total = Double::sum(product.hi, to);
     let result = total.hi + (total.lo + product.lo);

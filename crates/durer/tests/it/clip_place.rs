@@ -1,8 +1,9 @@
 //! Three places to clip, one picture.
 
-use durer::clip::outcode::DepthRange;
-use durer::clip::place::{ClipPlace, NdcVertex, clip};
-use durer::math::{DMat4, DVec2, DVec3};
+use durer::clip::outcode::{DepthRange, Outcode};
+use durer::clip::place::{ClipPlace, EYE, NdcVertex, clip};
+use durer::clip::volume::Step;
+use durer::math::{DMat4, DVec2, DVec3, DVec4};
 use durer::raster::triangle::{Options, SnappedTriangle, TriangleRasterizer};
 use durer::scene::{Camera, Projection};
 use durer::trace::{NoTrace, Recorder};
@@ -113,6 +114,56 @@ proptest! {
                 let traced = clip(place, &polygon, &matrix, depth, &mut steps);
                 prop_assert_eq!(&traced, &clip(place, &polygon, &matrix, depth, &mut NoTrace));
             }
+        }
+    }
+}
+
+/// The ring rebuilt from the steps; after the border at the eye it is divided by w.
+fn replay(input: Vec<DVec4>, steps: &[Step]) -> Vec<DVec4> {
+    let divided = |ring: Vec<DVec4>| ring.into_iter().map(|p| (p.truncate() / p.w).extend(1.0));
+    let (mut ring, mut next, mut border) = (input, Vec::new(), None);
+    let finish = |border: Option<Outcode>, ring: Vec<DVec4>, next: Vec<DVec4>| match border {
+        None => ring,
+        Some(EYE) => divided(next).collect(),
+        Some(_) => next,
+    };
+    for step in steps {
+        match *step {
+            Step::Border(b) => {
+                ring = finish(border, ring, std::mem::take(&mut next));
+                border = Some(b);
+            }
+            Step::Keep { vertex } => next.push(ring[vertex]),
+            Step::Cut { position, .. } => next.push(position),
+            Step::Rejected => return Vec::new(),
+            Step::Code { .. } | Step::Accepted | Step::Dropped => {}
+        }
+    }
+    finish(border, ring, next)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn replaying_the_steps_rebuilds_the_output(t in [point(), point(), point()], perspective: bool) {
+        let matrix = camera(perspective);
+        for &place in ClipPlace::ALL {
+            let mut steps = Recorder::default();
+            let depth = DepthRange::NegativeOneToOne;
+            let found = clip(place, &t.map(|p| (p, ())), &matrix, depth, &mut steps);
+            let input = t.map(|p| p.extend(1.0));
+            let replayed: Vec<DVec3> = match place {
+                ClipPlace::World => {
+                    replay(input.to_vec(), steps.steps()).iter().map(|p| matrix * *p).collect()
+                }
+                _ => replay(input.map(|p| matrix * p).to_vec(), steps.steps()),
+            }
+            .iter()
+            .map(|p: &DVec4| p.truncate() / p.w)
+            .collect();
+            let replayed = if replayed.len() < 3 { Vec::new() } else { replayed };
+            prop_assert_eq!(replayed, found.iter().map(|v| v.position).collect::<Vec<_>>());
         }
     }
 }

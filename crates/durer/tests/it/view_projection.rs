@@ -11,6 +11,17 @@ fn ndc(camera: &Camera, aspect: f64, p: DVec3) -> DVec3 {
     clip.truncate() / clip.w
 }
 
+/// Whether the eye is as near to the points as it may come.
+fn at_closest(
+    camera: &Camera,
+    points: impl IntoIterator<Item = DVec3> + Clone,
+    d: &ViewDirection,
+) -> bool {
+    let radius = Aabb::around(points.clone()).map_or(0.0, |b| (b.size() * 0.5).length());
+    let depths = points.into_iter().map(|p| (camera.eye - p).dot(d.to_eye()));
+    depths.fold(f64::INFINITY, f64::min) <= CLOSEST * radius * (1.0 + 1e-6)
+}
+
 fn boxes() -> impl Strategy<Value = Aabb> {
     let place = prop_oneof![-5.0..5.0f64, -1e4..1e4f64];
     let size = prop_oneof![4 => 0.1..10.0f64, 1 => 10.0..1000.0f64, 1 => Just(0.0)];
@@ -55,16 +66,14 @@ proptest! {
         prop_assert!(sides.iter().flatten().all(|s| *s <= frame + slack), "{:?} {}", sides, frame);
         prop_assert!(seen.iter().all(|p| p.z.abs() < 1.0), "{:?}", seen);
         prop_assert!((camera.target - camera.eye).dot(d.to_eye()) < 0.0);
-        // Two opposite sides are touched, but for needles that point at the eye and bodies so long
-        // that the nearest end would be in the eye.
-        let size = b.size();
-        let needle = size.max_element() > 4.0 * size.min_element();
-        if !needle && size.min_element() > 0.0 {
-            let touched = |s: &[f64; 2]| s.iter().all(|s| (s - frame).abs() <= slack);
-            let closest = seen.iter().map(|p| p.z).fold(f64::MAX, f64::min);
-            let wide = matches!(o.lens, Lens::Perspective { fov_y } if fov_y > 2.0);
-            prop_assert!(wide || sides.iter().any(touched), "{:?} {} {}", sides, frame, closest);
-        }
+        // Two opposite sides are touched, unless the eye is as near as it may come. A line may have
+        // no extent in the picture.
+        let line = b.size().to_array().iter().filter(|s| **s > 0.0).count() < 2;
+        let touched = |s: &[f64; 2]| s.iter().all(|s| (s - frame).abs() <= slack);
+        prop_assert!(
+            line || at_closest(&camera, b.corners(), &d) || sides.iter().any(touched),
+            "{:?} {}", sides, frame,
+        );
     }
 
     #[test]
@@ -86,9 +95,33 @@ proptest! {
             prop_assert!(seen.abs().max_element() <= 1.0 + 1e-9);
             largest = largest.max(seen.x.abs()).max(seen.y.abs());
         }
-        let wide = matches!(o.lens, Lens::Perspective { fov_y } if fov_y > 2.0);
+        let free = distance > radius * (1.0 + CLOSEST) * (1.0 + 1e-9);
         prop_assert!(largest <= frame + 1e-9, "{} {}", largest, frame);
-        prop_assert!(wide || largest >= frame - 1e-3, "{} {}", largest, frame);
+        prop_assert!(!free || largest >= frame - 1e-3, "{} {}", largest, frame);
+    }
+}
+
+proptest! {
+    #[test]
+    fn fitted_points_lie_in_the_frame_and_touch_it(
+        points in prop::collection::vec([-5.0..5.0f64, -5.0..5.0, -5.0..5.0], 3..40),
+        d in directions(), o in options(),
+    ) {
+        let mut points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
+        let camera = fit_points(points.iter().copied().chain([DVec3::NAN]), &d, &o).unwrap();
+        let box_camera = fit_box(Aabb::around(points.iter().copied()).as_ref(), &d, &o).unwrap();
+        let frame = 1.0 - 2.0 * o.margin;
+        let outermost = |camera: &Camera| {
+            let seen = points.iter().map(|p| ndc(camera, o.aspect, *p));
+            seen.fold(0.0_f64, |m, p| m.max(p.x.abs()).max(p.y.abs()))
+        };
+        prop_assert!(outermost(&camera) <= frame + 1e-9);
+        let closest = at_closest(&camera, points.iter().copied(), &d);
+        prop_assert!(closest || outermost(&camera) >= frame - 1e-9);
+        prop_assert!(outermost(&box_camera) <= frame + 1e-9);
+        // The order of the points is of no matter.
+        points.reverse();
+        prop_assert_eq!(fit_points(points, &d, &o).unwrap(), camera);
     }
 }
 
