@@ -15,6 +15,7 @@ mod number;
 pub mod obj;
 mod place;
 pub mod ply;
+pub mod png;
 mod sniff;
 pub mod stl;
 mod text;

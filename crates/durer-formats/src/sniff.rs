@@ -1,7 +1,7 @@
 //! Which format a model is in: by its content first, then by its name.
 
 use crate::text::{Cursor, utf8};
-use crate::{Error, Model, Place, ReadOptions, Resources, Result, obj, ply, stl, threemf};
+use crate::{Error, Model, ReadOptions, Resources, Result, gltf, obj, ply, stl, threemf};
 
 /// How much of a file is looked at.
 const PROBE: usize = 64 << 10;
@@ -109,12 +109,7 @@ pub fn read_model(
     options: &ReadOptions,
 ) -> Result<Model> {
     match ModelFormat::of_content(bytes).or_else(|| ModelFormat::of_name(name)) {
-        // The reader of glTF is called here.
-        Some(ModelFormat::Gltf) => Err(Error::Unsupported {
-            place: Place::Whole,
-            what: "glTF".to_owned(),
-            hint: String::new(),
-        }),
+        Some(ModelFormat::Gltf) => gltf::read(bytes, resources, options),
         Some(ModelFormat::Obj) => obj::read(bytes, resources, options),
         Some(ModelFormat::Stl) => stl::read(bytes, resources, options),
         Some(ModelFormat::Ply) => ply::read(bytes, resources, options),

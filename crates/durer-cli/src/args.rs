@@ -1,0 +1,370 @@
+//! What can be said on the command line.
+
+use crate::values::{self, Size};
+use crate::{color, lights};
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap_complete::Shell;
+use durer::math::DVec3;
+use durer::pipeline::{self, Background};
+use durer::scene::{self, Light};
+use durer::view::layout::Layout;
+use durer::view::projection::NamedView;
+use std::path::PathBuf;
+
+const ABOUT: &str = "Renders 3D models to pictures, on the CPU";
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
+(several models with --skip-failures).";
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  durer render bunny.obj -o bunny.png
+  durer render part.stl -o part.png --size 1920x1080 --view front --background transparent
+  durer render scene.glb -o scene.png --camera Overview --aa 16
+  durer render scene.glb -o scene.png --eye -3.4,1.2,-1.3 --target 0,0.5,0 --fov 35
+  durer render part.stl -o sheet.png --viewports front,top,right,iso --size 1600x1200
+  durer render part.stl -o frames/part_%03d.png --turntable 72
+  durer render *.stl -o thumbnails/ --size 256x256 --skip-failures
+  durer render bunny.obj -o bunny.png --item items.png --depth depth.png --normal normals.png
+  curl -s https://example.org/a.glb | durer render - -o - --size 256x256 > a.png
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
+(several models with --skip-failures).";
+
+/// Renders 3D models to pictures, on the CPU.
+#[derive(Debug, Parser)]
+#[command(name = "durer", version, about = ABOUT, after_help = EXIT_CODES, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render models to PNG pictures
+    #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
+    Render(Box<RenderArgs>),
+    /// Say what is in a model
+    Info(InfoArgs),
+    /// Write a completion script for a shell to standard output
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Write the manual page to standard output, in roff
+    Man,
+}
+
+/// The options of `durer info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Models; `-` reads one from standard input
+    #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    pub models: Vec<PathBuf>,
+    /// Write JSON: one object, or an array of them for several models
+    #[arg(long)]
+    pub json: bool,
+    /// Reading and its limits.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+}
+
+/// The options of `durer render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF; `-` reads one from standard input
+    #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    pub models: Vec<PathBuf>,
+    /// Where the picture goes
+    ///
+    /// A .png file; `-` for standard output; a folder (existing, or ending in `/`) for NAME.png of
+    /// each model; for --turntable also a file name with a place for the frame's number, e.g.
+    /// `frame_%04d.png`. Missing folders are made. A file is replaced only by a whole picture.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub output: PathBuf,
+    /// What the picture is like.
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// Where the eye is.
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// How surfaces look.
+    #[command(flatten)]
+    pub look: LookArgs,
+    /// Further planes.
+    #[command(flatten)]
+    pub planes: PlaneArgs,
+    /// Reading and its limits.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+    /// Go on with the next model where one fails; exit code 3 if some failed and some did not
+    #[arg(long, help_heading = "Running")]
+    pub skip_failures: bool,
+    /// Write a report on standard output, in JSON
+    ///
+    /// Seconds per stage (read, geometry, raster, encode), triangles (in, clipped, culled, drawn,
+    /// not finite), warnings, and the peak memory of the process where the system tells it.
+    #[arg(long, help_heading = "Running")]
+    pub json: bool,
+}
+
+/// The shape of the output.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Picture")]
+pub struct PictureArgs {
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
+    pub size: Size,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", default_value = "4")]
+    pub aa: Samples,
+    /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
+    ///
+    /// Colours are #rgb, #rrggbb, #rrggbbaa, or a name such as white, black, silver, navy.
+    #[arg(long, value_name = "COLOR", default_value = "white", value_parser = color::background)]
+    pub background: Background,
+    /// Several views in one picture
+    ///
+    /// Views joined by commas, e.g. `front,top,right,iso`, in as square a grid as possible; columns
+    /// and rows may be given first: `3x1:front,right,iso`. Each view fits the model.
+    #[arg(long, value_name = "LAYOUT", value_parser = crate::camera::layout)]
+    pub viewports: Option<Layout>,
+    /// N pictures around the up axis
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub turntable: Option<u32>,
+    /// How small the PNG is to be: `fast` or `small`
+    #[arg(long, value_name = "HOW", default_value = "fast")]
+    pub compression: Compression,
+    /// Refuse pictures of more pixels; the default is 16384x16384
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
+    pub max_pixels: u64,
+}
+
+/// The camera: a named view, angles, a place, or one of the file's.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "View")]
+pub struct ViewArgs {
+    /// iso, front, back, left, right, top or bottom; fits the model into the picture
+    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera", "viewports"])]
+    pub view: NamedView,
+    /// Degrees around the up axis from the front, to the right; fits the model
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::number, conflicts_with_all = ["eye", "camera", "viewports"])]
+    pub azimuth: Option<f64>,
+    /// Degrees above the horizon, -90 to 90; fits the model
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, conflicts_with_all = ["eye", "camera", "viewports"])]
+    pub elevation: Option<f64>,
+    /// Where the eye is, in the world of the file
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with_all = ["camera", "viewports"])]
+    pub eye: Option<DVec3>,
+    /// What the eye looks at [default: the middle of the model]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "eye")]
+    pub target: Option<DVec3>,
+    /// What is up in the picture [default: the up axis]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction, requires = "eye")]
+    pub up: Option<DVec3>,
+    /// Vertical angle of view in degrees
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::angle_of_view, conflicts_with_all = ["ortho", "camera"])]
+    pub fov: Option<f64>,
+    /// Parallel projection; the height of the view in world units, or `fit`
+    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = crate::camera::ortho, conflicts_with = "camera")]
+    pub ortho: Option<crate::camera::Ortho>,
+    /// Distance of the near plane [default: by the model]
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
+    pub near: Option<f64>,
+    /// Distance of the far plane [default: by the model]
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
+    pub far: Option<f64>,
+    /// A camera of the file, by its name; `durer info` lists them
+    #[arg(long, value_name = "NAME", conflicts_with = "viewports")]
+    pub camera: Option<String>,
+    /// Which axis is up [default: by the format]
+    #[arg(long, value_name = "AXIS", ignore_case = true)]
+    pub up_axis: Option<UpAxis>,
+}
+
+/// Light and surfaces.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Look")]
+pub struct LookArgs {
+    /// How surfaces are shaded [default: by the material]
+    #[arg(long, value_name = "MODEL")]
+    pub shading: Option<Shading>,
+    /// A light; replaces the default three-point light or the file's own
+    #[arg(long, value_name = "LIGHT", allow_hyphen_values = true, long_help = lights::SYNTAX, value_parser = lights::light)]
+    pub light: Vec<Light>,
+    /// Which faces are left out
+    #[arg(long, value_name = "WHICH", default_value = "none")]
+    pub cull: Cull,
+}
+
+/// Pictures of other planes than colour.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Further pictures")]
+pub struct PlaneArgs {
+    /// The visible triangle of each pixel
+    ///
+    /// A PNG whose colour is the triangle's index as R<<16|G<<8|B, 0xFFFFFF where there is none.
+    /// Triangles count in file order, over all parts of the scene; faces of more vertices are
+    /// fanned from their first. One sample at the pixel's centre, whatever --aa says.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub item: Option<PathBuf>,
+    /// The depth of each pixel
+    ///
+    /// A 16-bit grey PNG: window depth (0 at the near plane, 1 at the far) times 65535, 65535 where
+    /// there is nothing. One sample at the pixel's centre. Give --near and --far to compare pictures.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub depth: Option<PathBuf>,
+    /// The normal of each pixel
+    ///
+    /// A PNG whose colour is the unit normal in world space, each component n as n/2 + 1/2;
+    /// (128, 128, 128) where there is nothing. One sample at the pixel's centre.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub normal: Option<PathBuf>,
+}
+
+/// What is read of a model, and how much.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading")]
+pub struct ReadingArgs {
+    /// Pose the model at this animation, by name or number [default: the first, given --time]
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+    /// Pose the model at this time of the animation
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::not_negative)]
+    pub time: Option<f64>,
+    /// Refuse models of more triangles, lines and points [default: 100 million]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
+    pub max_triangles: Option<u64>,
+    /// Refuse models that are, or unpack to, more bytes; k, M, G are understood [default: 4G]
+    #[arg(long, value_name = "BYTES", allow_hyphen_values = true, value_parser = values::bytes)]
+    pub max_bytes: Option<u64>,
+}
+
+/// How the command runs.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Running")]
+pub struct RunningArgs {
+    /// Work on so many threads [default: as many as there are processors]; the pictures are the same
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// No warnings and no progress; errors are still told
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// All warnings, and what was done
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// `--aa`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Samples {
+    /// One, at the centre: no anti-aliasing
+    #[value(name = "1")]
+    One,
+    /// Four
+    #[value(name = "4")]
+    Four,
+    /// Sixteen
+    #[value(name = "16")]
+    Sixteen,
+}
+
+/// `--shading`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Shading {
+    /// One intensity per face
+    Flat,
+    /// Intensities at the vertices, interpolated
+    Gouraud,
+    /// Normals interpolated, Blinn's highlights
+    Phong,
+    /// glTF's formula
+    MetallicRoughness,
+    /// The base colour as it is
+    Unlit,
+}
+
+/// `--cull`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Cull {
+    /// No faces
+    None,
+    /// Faces seen from behind
+    Back,
+}
+
+/// `--up-axis`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum UpAxis {
+    /// glTF, most OBJ and PLY files
+    Y,
+    /// STL, 3MF
+    Z,
+}
+
+/// `--compression`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Compression {
+    /// Some twenty times faster than `small`
+    Fast,
+    /// Files a quarter to a half smaller
+    Small,
+}
+
+impl From<Samples> for pipeline::Samples {
+    fn from(samples: Samples) -> Self {
+        match samples {
+            Samples::One => Self::One,
+            Samples::Four => Self::Four,
+            Samples::Sixteen => Self::Sixteen,
+        }
+    }
+}
+
+impl From<Shading> for pipeline::Shading {
+    fn from(shading: Shading) -> Self {
+        match shading {
+            Shading::Flat => Self::Flat,
+            Shading::Gouraud => Self::Gouraud,
+            Shading::Phong => Self::Phong,
+            Shading::MetallicRoughness => Self::MetallicRoughness,
+            Shading::Unlit => Self::Unlit,
+        }
+    }
+}
+
+impl From<Cull> for pipeline::Cull {
+    fn from(cull: Cull) -> Self {
+        match cull {
+            Cull::None => Self::None,
+            Cull::Back => Self::Back,
+        }
+    }
+}
+
+impl From<UpAxis> for scene::UpAxis {
+    fn from(axis: UpAxis) -> Self {
+        match axis {
+            UpAxis::Y => Self::Y,
+            UpAxis::Z => Self::Z,
+        }
+    }
+}
+
+impl From<Compression> for durer_formats::png::Compression {
+    fn from(compression: Compression) -> Self {
+        match compression {
+            Compression::Fast => Self::Fast,
+            Compression::Small => Self::Small,
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The camera that the options ask for.
+
+use crate::args::{PictureArgs, ViewArgs};
+use crate::failure::Failure;
+use crate::fit::{self, Fit};
+use crate::values::{Size, positive};
+use durer::math::{DQuat, DVec3};
+use durer::scene::{Camera, Projection, Scene};
+use durer::view::layout::Layout;
+use durer::view::projection::{NamedView, ViewDirection};
+
+/// Angle of view of a fitted camera, degrees: like a lens of 70 mm on a full frame.
+const FOV: f64 = 30.0;
+
+/// `--ortho`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ortho {
+    /// The height of the view in world units.
+    Height(f64),
+    /// As high as the model needs.
+    Fit,
+}
+
+/// `fit`, or a height above 0.
+pub fn ortho(text: &str) -> Result<Ortho, String> {
+    match text {
+        "fit" => Ok(Ortho::Fit),
+        _ => positive(text).map(Ortho::Height).map_err(|e| format!("{e}; or `fit`")),
+    }
+}
+
+/// A layout whose cells are named views.
+pub fn layout(text: &str) -> Result<Layout, String> {
+    let layout: Layout = text.parse().map_err(|e: durer::Error| e.to_string())?;
+    for name in layout.names() {
+        name.parse::<NamedView>().map_err(|e| e.to_string())?;
+    }
+    Ok(layout)
+}
+
+/// Which picture of those that the options ask for.
+#[derive(Debug, Clone, Copy)]
+pub struct Shot {
+    /// The view of a viewport; `None` = the one of the view options.
+    pub view: Option<NamedView>,
+    /// Its size.
+    pub size: Size,
+    /// Its place in a turntable, and the number of frames.
+    pub turn: Option<(u32, u32)>,
+}
+
+impl Shot {
+    /// The only picture, or one frame of a turntable.
+    pub fn of(picture: &PictureArgs, frame: Option<u32>) -> Self {
+        Self { view: None, size: picture.size, turn: frame.zip(picture.turntable) }
+    }
+
+    fn aspect(&self) -> f64 {
+        f64::from(self.size.width) / f64::from(self.size.height)
+    }
+
+    /// How far the turntable has turned, in degrees.
+    fn turned(&self) -> f64 {
+        self.turn.map_or(0.0, |(frame, count)| 360.0 * f64::from(frame) / f64::from(count))
+    }
+}
+
+/// Option combinations that the parser does not know to be wrong.
+pub fn check(args: &ViewArgs) -> Result<(), Failure> {
+    let usage = |text: &str| Err(Failure::Usage(text.to_owned()));
+    match (args.eye, args.target) {
+        (Some(eye), Some(target)) if eye == target => {
+            return usage("--target: it must be a point other than --eye");
+        }
+        (Some(_), _) if args.ortho == Some(Ortho::Fit) => {
+            return usage("--ortho fit: with --eye the height must be given as a number");
+        }
+        _ => {}
+    }
+    let parallel = args.ortho.is_some() || args.camera.is_some();
+    match (args.near, args.far) {
+        (Some(near), Some(far)) if near >= far => usage("--near: it must be less than --far"),
+        (Some(near), _) if near <= 0.0 && !parallel => {
+            usage("--near: it must be above 0 for a perspective view")
+        }
+        (_, Some(far)) if far <= 0.0 && !parallel => {
+            usage("--far: it must be above 0 for a perspective view")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The camera of one picture of a scene.
+pub fn camera(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+    let mut camera = if let Some(name) = &args.camera {
+        of_file(name, scene, shot)?
+    } else if let Some(eye) = args.eye {
+        at(eye, args, scene, shot)
+    } else {
+        fitted(args, scene, shot)?
+    };
+    camera.near = args.near.unwrap_or(camera.near);
+    camera.far = args.far.unwrap_or(camera.far);
+    keep_order(args, &mut camera);
+    camera.check().map_err(|e| Failure::Usage(format!("--{e}")))?;
+    Ok(camera)
+}
+
+/// Where one of near and far was given beyond the other, which comes from the model, moves the latter.
+fn keep_order(args: &ViewArgs, camera: &mut Camera) {
+    if camera.near < camera.far {
+        return;
+    }
+    match (args.near, args.far) {
+        (Some(near), None) => camera.far = near + near.abs().max(1.0),
+        (None, Some(far)) if far > 0.0 => camera.near = far * 1e-3,
+        (None, Some(far)) => camera.near = far - far.abs().max(1.0),
+        _ => {}
+    }
+}
+
+/// A camera of the file, turned around the middle of the model.
+fn of_file(name: &str, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+    let found = scene.cameras.iter().find(|c| c.name == name).ok_or_else(|| {
+        let names: Vec<&str> = scene.cameras.iter().map(|c| c.name.as_str()).collect();
+        let there = match names[..] {
+            [] => "the file has no cameras".to_owned(),
+            _ => format!("there are {}", names.join(", ")),
+        };
+        Failure::Data(format!("--camera: no camera `{name}`; {there}"))
+    })?;
+    let pivot = fit::center(scene).unwrap_or(DVec3::ZERO);
+    Ok(turned(found.camera, pivot, scene, shot))
+}
+
+/// A camera in a given place, turned around its target.
+fn at(eye: DVec3, args: &ViewArgs, scene: &Scene, shot: &Shot) -> Camera {
+    let front = NamedView::Front.direction(scene.up_axis);
+    let center = fit::center(scene).unwrap_or(DVec3::ZERO);
+    let ahead = if center == eye { eye - front.to_eye() } else { center };
+    let target = args.target.unwrap_or(ahead);
+    let up = args.up.unwrap_or_else(|| fit::up_for(target - eye, scene.up_axis));
+    let camera = Camera { eye, target, up, projection: projection(args), near: 1.0, far: 2.0 };
+    let camera = turned(camera, target, scene, shot);
+    let (near, far) = fit::depth_range(&camera, scene);
+    Camera { near, far, ..camera }
+}
+
+fn projection(args: &ViewArgs) -> Projection {
+    match args.ortho {
+        Some(Ortho::Height(height)) => Projection::Orthographic { height },
+        _ => Projection::Perspective { fov_y: args.fov.unwrap_or(FOV).to_radians() },
+    }
+}
+
+/// The camera after the share of a full turn around the up axis through the pivot.
+fn turned(camera: Camera, pivot: DVec3, scene: &Scene, shot: &Shot) -> Camera {
+    let half = shot.turned().to_radians() * 0.5;
+    if half == 0.0 {
+        return camera;
+    }
+    let (sin, cos) = libm::sincos(half);
+    let axis = NamedView::Front.direction(scene.up_axis).up() * sin;
+    let turn = DQuat::from_xyzw(axis.x, axis.y, axis.z, cos);
+    let around = |p: DVec3| pivot + turn * (p - pivot);
+    let (eye, target) = (around(camera.eye), around(camera.target));
+    Camera { eye, target, up: turn * camera.up, ..camera }
+}
+
+/// A camera that sees the whole model; the same distance for all frames of a turntable.
+fn fitted(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+    let (azimuth, elevation) = match (shot.view, args.azimuth, args.elevation) {
+        (Some(view), ..) => view.angles(),
+        (None, None, None) => args.view.angles(),
+        (None, azimuth, elevation) => (azimuth.unwrap_or(0.0), elevation.unwrap_or(0.0)),
+    };
+    let azimuth = azimuth + shot.turned();
+    let direction = ViewDirection::from_angles(azimuth, elevation, scene.up_axis)
+        .map_err(|e| Failure::Usage(format!("--{e}")))?;
+    let around = shot.turn.map(|_| NamedView::Front.direction(scene.up_axis).up());
+    let fit = Fit { direction, around, aspect: shot.aspect() };
+    Ok(match args.ortho {
+        Some(Ortho::Height(height)) => fit.orthographic(scene, Some(height)),
+        Some(Ortho::Fit) => fit.orthographic(scene, None),
+        None => fit.perspective(scene, args.fov.unwrap_or(FOV).to_radians()),
+    })
+}

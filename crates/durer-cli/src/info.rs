@@ -1,0 +1,211 @@
+//! `durer info`.
+
+use crate::args::InfoArgs;
+use crate::failure::Failure;
+use crate::input;
+use crate::messages::Messages;
+use crate::report;
+use durer::scene::{LightKind, Material, Scene, ShadingModel, UpAxis};
+use durer::view::topology::mesh_topology;
+use durer_formats::Model;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What a model holds.
+#[derive(Debug, Serialize)]
+struct Info {
+    model: String,
+    format: String,
+    triangles: u64,
+    /// Of all meshes, before instancing.
+    vertices: u64,
+    lines: u64,
+    points: u64,
+    meshes: usize,
+    instances: usize,
+    bounds: Option<Bounds>,
+    /// Whether the triangles bound a body; `null` where there are none.
+    closed: Option<bool>,
+    up_axis: &'static str,
+    materials: Vec<MaterialInfo>,
+    textures: Vec<TextureInfo>,
+    cameras: Vec<String>,
+    lights: Vec<&'static str>,
+    animations: Vec<String>,
+    extensions: Vec<String>,
+    warnings: Vec<String>,
+}
+
+/// The box around the model, in its own units.
+#[derive(Debug, Serialize)]
+struct Bounds {
+    min: [f64; 3],
+    max: [f64; 3],
+    size: [f64; 3],
+}
+
+#[derive(Debug, Serialize)]
+struct MaterialInfo {
+    name: String,
+    model: &'static str,
+    textures: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct TextureInfo {
+    name: String,
+    width: u32,
+    height: u32,
+}
+
+/// Tells about all models.
+pub fn run(args: &InfoArgs) -> Result<(), Failure> {
+    input::check_streams(&args.models)?;
+    let messages = Messages::new(&args.running, args.models.len() as u64);
+    let options = input::read_options(&args.reading);
+    let mut infos = Vec::new();
+    for path in &args.models {
+        let name = input::display_name(path);
+        messages.progress.stage(|| format!("reading {name}"));
+        let model = input::read(path, &options)?;
+        infos.push(of_model(name, &model));
+        messages.progress.advance();
+    }
+    drop(messages);
+    if !args.json {
+        let texts: Vec<String> = infos.iter().map(Info::text).collect();
+        return report::print_text(&texts.join("\n"));
+    }
+    match &infos[..] {
+        [one] => report::print(one),
+        several => report::print(&several),
+    }
+}
+
+fn of_model(name: String, model: &Model) -> Info {
+    let scene = &model.scene;
+    let count = |wanted| {
+        let of =
+            |i: &durer::scene::Instance| scene.meshes.get(i.mesh).filter(|m| m.topology == wanted);
+        scene.instances.iter().filter_map(of).map(|m| m.primitive_count() as u64).sum()
+    };
+    Info {
+        model: name,
+        format: model.format.clone(),
+        triangles: scene.triangle_count(),
+        vertices: scene.meshes.iter().map(|m| m.positions.len() as u64).sum(),
+        lines: count(durer::scene::Topology::Lines),
+        points: count(durer::scene::Topology::Points),
+        meshes: scene.meshes.len(),
+        instances: scene.instances.len(),
+        bounds: bounds(scene),
+        closed: closed(scene),
+        up_axis: if scene.up_axis == UpAxis::Y { "y" } else { "z" },
+        materials: scene.materials.iter().map(material).collect(),
+        textures: textures(scene),
+        cameras: scene.cameras.iter().map(|c| c.name.clone()).collect(),
+        lights: scene.lights.iter().map(|l| light(&l.kind)).collect(),
+        animations: model.animations.clone(),
+        extensions: model.extensions.clone(),
+        warnings: model.warnings.iter().map(ToString::to_string).collect(),
+    }
+}
+
+fn bounds(scene: &Scene) -> Option<Bounds> {
+    let b = scene.bounds()?;
+    Some(Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() })
+}
+
+/// Whether all meshes of triangles that are shown are closed.
+fn closed(scene: &Scene) -> Option<bool> {
+    let shown = |i: usize| scene.instances.iter().any(|instance| instance.mesh == i);
+    let meshes = scene.meshes.iter().enumerate();
+    let solid = meshes.filter(|(i, mesh)| mesh.triangle_count() > 0 && shown(*i));
+    solid.map(|(_, mesh)| mesh_topology(mesh).closed).reduce(|a, b| a && b)
+}
+
+fn material(material: &Material) -> MaterialInfo {
+    let model = match material.model {
+        ShadingModel::MetallicRoughness => "metallic-roughness",
+        ShadingModel::Phong => "phong",
+        ShadingModel::Unlit => "unlit",
+    };
+    MaterialInfo { name: material.name.clone(), model, textures: material.textures().count() }
+}
+
+fn textures(scene: &Scene) -> Vec<TextureInfo> {
+    let images = scene.textures.iter().filter_map(|t| scene.images.get(t.image));
+    images.map(|i| TextureInfo { name: i.name.clone(), width: i.width, height: i.height }).collect()
+}
+
+fn light(kind: &LightKind) -> &'static str {
+    match kind {
+        LightKind::Ambient => "ambient",
+        LightKind::Directional { .. } => "directional",
+        LightKind::Point { .. } => "point",
+        LightKind::Spot { .. } => "spot",
+    }
+}
+
+impl Info {
+    /// A line for each fact; facts that are nothing are left out.
+    fn text(&self) -> String {
+        let mut lines = vec![
+            ("format", self.format.clone()),
+            ("triangles", self.triangles.to_string()),
+            ("vertices", self.vertices.to_string()),
+        ];
+        let mut some = |name, count: u64| {
+            if count > 0 {
+                lines.push((name, count.to_string()));
+            }
+        };
+        some("lines", self.lines);
+        some("points", self.points);
+        some("meshes", self.meshes as u64);
+        some("instances", self.instances as u64);
+        if let Some(Bounds { min, max, size }) = &self.bounds {
+            lines.push(("bounds", format!("{} … {}", triple(min), triple(max))));
+            lines.push(("size", triple(size)));
+        }
+        if let Some(closed) = self.closed {
+            lines.push(("closed", if closed { "yes" } else { "no" }.to_owned()));
+        }
+        lines.push(("up axis", self.up_axis.to_owned()));
+        let mut list = |name, items: Vec<String>| {
+            if !items.is_empty() {
+                lines.push((name, items.join(", ")));
+            }
+        };
+        let unnamed =
+            |name: &String| if name.is_empty() { "(no name)".to_owned() } else { name.clone() };
+        list(
+            "materials",
+            self.materials.iter().map(|m| format!("{} [{}]", unnamed(&m.name), m.model)).collect(),
+        );
+        list(
+            "textures",
+            self.textures
+                .iter()
+                .map(|t| format!("{} {}x{}", unnamed(&t.name), t.width, t.height))
+                .collect(),
+        );
+        list("cameras", self.cameras.clone());
+        list("lights", self.lights.iter().map(ToString::to_string).collect());
+        list("animations", self.animations.iter().map(unnamed).collect());
+        list("extensions", self.extensions.clone());
+        lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
+        let mut text = format!("{}\n", self.model);
+        for (name, value) in lines {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "  {name:<11} {value}");
+        }
+        text
+    }
+}
+
+/// As many digits as coordinates of single precision have.
+fn triple(v: &[f64; 3]) -> String {
+    let [x, y, z] = v.map(|c| c as f32);
+    format!("({x}, {y}, {z})")
+}

@@ -1,0 +1,81 @@
+//! A model from a file or from standard input.
+
+use crate::args::ReadingArgs;
+use crate::failure::{Failure, in_words};
+use crate::resources::Folder;
+use durer_formats::{Limits, Model, NoResources, Pose, ReadOptions, Resources, read_model};
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// The argument that stands for standard input or output.
+pub const STREAM: &str = "-";
+
+/// Whether the argument stands for standard input or output.
+pub fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == OsStr::new(STREAM)
+}
+
+/// What messages call an input.
+pub fn display_name(path: &Path) -> String {
+    if is_stream(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// At most one model can come from standard input.
+pub fn check_streams(models: &[impl AsRef<Path>]) -> Result<(), Failure> {
+    match models.iter().filter(|m| is_stream(m.as_ref())).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Failure::Usage("`-` is given twice; standard input holds one model".to_owned())),
+    }
+}
+
+/// How models are read.
+pub fn read_options(args: &ReadingArgs) -> ReadOptions {
+    let default = Limits::default();
+    let posed = args.animation.is_some() || args.time.is_some();
+    let pose = Pose { animation: args.animation.clone(), time: args.time.unwrap_or(0.0) };
+    ReadOptions {
+        limits: Limits {
+            primitives: args.max_triangles.unwrap_or(default.primitives),
+            decoded_bytes: args.max_bytes.unwrap_or(default.decoded_bytes),
+            ..default
+        },
+        pose: posed.then_some(pose),
+    }
+}
+
+/// Reads a model.
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    let limit = options.limits.decoded_bytes;
+    let bytes = if is_stream(path) {
+        bounded(std::io::stdin().lock(), 0, limit).map_err(fail)?
+    } else {
+        let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
+        let metadata = file.metadata().map_err(|e| fail(in_words(&e)))?;
+        if metadata.is_dir() {
+            return Err(fail("it is a folder; name the model in it".to_owned()));
+        }
+        bounded(file, metadata.len(), limit).map_err(fail)?
+    };
+    let folder = Folder::of(path);
+    let resources: &dyn Resources = match &folder {
+        Ok(folder) if !is_stream(path) => folder,
+        _ => &NoResources,
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read_model(&bytes, &name, resources, options).map_err(|e| fail(e.to_string()))
+}
+
+/// All bytes of a source, refused above the limit.
+fn bounded(source: impl Read, expected: u64, limit: u64) -> Result<Vec<u8>, String> {
+    let too_large =
+        || format!("it has more bytes than the limit of {limit}; --max-bytes raises it");
+    if expected > limit {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(expected).unwrap_or(0));
+    source.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| in_words(&e))?;
+    if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
+}

@@ -1,0 +1,53 @@
+//! What is told on standard error.
+
+use crate::args::RunningArgs;
+use crate::progress::Progress;
+use durer_formats::Warning;
+
+/// Warnings of one model that are told without `--verbose`; the rest is counted.
+const WARNINGS: usize = 5;
+
+/// Errors, warnings and progress, as much as is wanted.
+#[derive(Debug)]
+pub struct Messages {
+    quiet: bool,
+    verbose: bool,
+    /// The progress line.
+    pub progress: Progress,
+}
+
+impl Messages {
+    /// Messages for `count` pictures or models.
+    pub fn new(args: &RunningArgs, count: u64) -> Self {
+        let progress = Progress::new(count, !args.quiet);
+        Self { quiet: args.quiet, verbose: args.verbose, progress }
+    }
+
+    /// Something went wrong; always told.
+    pub fn error(&self, message: impl std::fmt::Display) {
+        self.progress.tell(&format!("durer: {message}"));
+    }
+
+    /// The warnings of a model.
+    pub fn warnings(&self, file: &str, warnings: &[Warning]) {
+        if self.quiet {
+            return;
+        }
+        let told = if self.verbose { warnings.len() } else { warnings.len().min(WARNINGS) };
+        for warning in &warnings[..told] {
+            self.progress.tell(&format!("durer: warning: {file}: {warning}"));
+        }
+        let rest = warnings.len() - told;
+        if rest > 0 {
+            let message = format!("durer: warning: {file}: and {rest} more; --verbose tells all");
+            self.progress.tell(&message);
+        }
+    }
+
+    /// What was done, for `--verbose`.
+    pub fn detail(&self, message: impl FnOnce() -> String) {
+        if self.verbose {
+            self.progress.tell(&format!("durer: {}", message()));
+        }
+    }
+}

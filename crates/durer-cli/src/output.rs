@@ -1,0 +1,290 @@
+//! Where pictures go: one file, many files, or standard output; never half a file.
+
+use crate::failure::{Failure, in_words};
+use crate::input::is_stream;
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// A place for one picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Target {
+    /// Standard output.
+    Stdout,
+    /// A file that is replaced as a whole.
+    File(PathBuf),
+}
+
+impl std::fmt::Display for Target {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Stdout => f.write_str("-"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+/// What a picture is called where there are several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Name {
+    /// The model's name without its suffix.
+    pub stem: String,
+    /// Its number among the frames of a turntable.
+    pub frame: Option<u32>,
+}
+
+/// One target for each name; creates missing folders for what is to be several files.
+pub fn plan(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Failure> {
+    let many = names.len() != 1;
+    if is_stream(path) {
+        return if many {
+            Err(usage(option, path, "standard output takes one picture; name a folder"))
+        } else {
+            stdout_target(option).map(|t| vec![t])
+        };
+    }
+    if let Some(pattern) = Pattern::of(path).filter(|_| names.iter().any(|n| n.frame.is_some())) {
+        if names.iter().any(|n| n.stem != names[0].stem) {
+            return Err(usage(option, path, "frames of several models need a folder"));
+        }
+        make_folder(path.parent().unwrap_or(Path::new("")))?;
+        return Ok(names
+            .iter()
+            .map(|n| Target::File(pattern.path(n.frame.unwrap_or(0))))
+            .collect());
+    }
+    if path.is_dir() || ends_in_separator(path) || (many && path.extension().is_none()) {
+        make_folder(path)?;
+        return Ok(names.iter().map(|n| Target::File(path.join(n.file_name()))).collect());
+    }
+    if many {
+        let frames = names.iter().any(|n| n.frame.is_some());
+        let hint = if frames { " or a name such as frame_%04d.png" } else { "" };
+        return Err(usage(option, path, &format!("several pictures need a folder{hint}")));
+    }
+    single(option, path).map(|t| vec![t])
+}
+
+/// Refuses two pictures in one place.
+pub fn check_distinct<'a>(targets: impl Iterator<Item = &'a Target>) -> Result<(), Failure> {
+    let mut seen = BTreeSet::new();
+    for target in targets {
+        let key = match target {
+            Target::Stdout => PathBuf::from("-"),
+            Target::File(path) => path.clone(),
+        };
+        if !seen.insert(key.clone()) {
+            let place = key.display();
+            return Err(Failure::Usage(format!("{place}: two pictures would go there")));
+        }
+    }
+    Ok(())
+}
+
+fn usage(option: &str, path: &Path, what: &str) -> Failure {
+    Failure::Usage(format!("{option} {}: {what}", path.display()))
+}
+
+fn stdout_target(option: &str) -> Result<Target, Failure> {
+    if io::stdout().is_terminal() {
+        let message =
+            format!("{option} -: a picture is no text for a terminal; use a pipe or a file");
+        return Err(Failure::Usage(message));
+    }
+    Ok(Target::Stdout)
+}
+
+/// One file: a PNG by its name, in a folder that is there; or something special such as a device.
+fn single(option: &str, path: &Path) -> Result<Target, Failure> {
+    if is_special(path) {
+        return Ok(Target::File(path.to_owned()));
+    }
+    let suffix = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    if suffix.as_deref() != Some("png") {
+        return Err(usage(option, path, "pictures are written as PNG; end the name in .png"));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match fs::metadata(folder) {
+        Ok(m) if m.is_dir() => Ok(Target::File(path.to_owned())),
+        Ok(_) => Err(Failure::of_file(path, format!("{} is not a folder", folder.display()))),
+        Err(e) => {
+            Err(Failure::of_file(path, format!("folder {}: {}", folder.display(), in_words(&e))))
+        }
+    }
+}
+
+/// Whether the path is there and neither a file nor a folder.
+fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
+}
+
+fn ends_in_separator(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(std::path::is_separator)
+}
+
+fn make_folder(folder: &Path) -> Result<(), Failure> {
+    if folder.as_os_str().is_empty() || folder.is_dir() {
+        return Ok(());
+    }
+    fs::create_dir_all(folder).map_err(|e| Failure::of_file(folder, in_words(&e)))
+}
+
+impl Name {
+    /// `NAME.png`, or `NAME_0001.png` for a frame.
+    fn file_name(&self) -> String {
+        match self.frame {
+            Some(frame) => format!("{}_{frame:04}.png", self.stem),
+            None => format!("{}.png", self.stem),
+        }
+    }
+}
+
+/// Names without folder and suffix, made different where they are not: by the suffix, then by number.
+pub fn stems(models: &[impl AsRef<Path>]) -> Vec<String> {
+    let part = |p: Option<&std::ffi::OsStr>| p.unwrap_or_default().to_string_lossy().into_owned();
+    let stem = |m: &Path| if is_stream(m) { "stdin".to_owned() } else { part(m.file_stem()) };
+    let stems: Vec<String> = models.iter().map(|m| stem(m.as_ref())).collect();
+    let shared = |s: &String| stems.iter().filter(|t| *t == s).count() > 1;
+    let mut taken = BTreeSet::new();
+    let mut result = Vec::new();
+    for (model, stem) in models.iter().zip(&stems) {
+        let base = if shared(stem) { part(model.as_ref().file_name()) } else { stem.clone() };
+        let mut name = base.clone();
+        for number in 2.. {
+            if taken.insert(name.clone()) {
+                break;
+            }
+            name = format!("{base}-{number}");
+        }
+        result.push(name);
+    }
+    result
+}
+
+/// A file name with one place for a number, such as `frame_%04d.png`.
+#[derive(Debug, PartialEq, Eq)]
+struct Pattern {
+    before: String,
+    digits: usize,
+    after: String,
+    folder: PathBuf,
+}
+
+impl Pattern {
+    fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?;
+        let (before, rest) = name.split_once('%')?;
+        let (digits, after) = rest.split_once('d')?;
+        let digits =
+            if digits.is_empty() { 0 } else { digits.parse().ok().filter(|&d| d <= 20)? };
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Some(Self { before: before.to_owned(), digits, after: after.to_owned(), folder })
+    }
+
+    fn path(&self, frame: u32) -> PathBuf {
+        let Self { before, digits, after, folder } = self;
+        folder.join(format!("{before}{frame:0digits$}{after}"))
+    }
+}
+
+/// Makes the bytes of a file in memory, then puts them in their place. Gives their number.
+pub fn deliver(
+    target: &Target,
+    encode: impl FnOnce(&mut Vec<u8>) -> durer_formats::Result<()>,
+) -> Result<u64, Failure> {
+    let name = match target {
+        Target::Stdout => Path::new("standard output"),
+        Target::File(path) => path,
+    };
+    let mut bytes = Vec::new();
+    encode(&mut bytes).map_err(|e| Failure::of_file(name, e))?;
+    match target {
+        Target::Stdout => {
+            let mut out = io::stdout().lock();
+            out.write_all(&bytes).and_then(|()| out.flush()).map_err(|e| Failure::of_stdout(&e))?;
+        }
+        Target::File(path) if is_special(path) => write_special(path, &bytes)?,
+        Target::File(path) => {
+            replace(path, &bytes).map_err(|e| Failure::of_file(path, in_words(&e)))?;
+        }
+    }
+    Ok(bytes.len() as u64)
+}
+
+/// Writes to a pipe or device, which cannot be replaced.
+fn write_special(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let fail = |e: &io::Error| Failure::of_file(path, in_words(e));
+    let mut file = OpenOptions::new().write(true).open(path).map_err(|e| fail(&e))?;
+    if file.is_terminal() {
+        return Err(Failure::of_file(path, "a picture is no text for a terminal"));
+    }
+    match file.write_all(bytes).and_then(|()| file.flush()) {
+        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
+        other => other.map_err(|e| fail(&e)),
+    }
+}
+
+/// Writes a new file beside the old one and renames it, so that at any moment there is the old file
+/// or the whole new one. A link stays a link; permissions stay.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let old = fs::metadata(&path).ok();
+    if old.as_ref().is_some_and(|m| m.permissions().readonly()) {
+        return Err(io::Error::other("the file is read-only"));
+    }
+    let (beside, mut file) = create_beside(&path)?;
+    let written = file.write_all(bytes).and_then(|()| match &old {
+        Some(old) => file.set_permissions(old.permissions()),
+        None => Ok(()),
+    });
+    drop(file);
+    let done = written.and_then(|()| fs::rename(&beside, &path));
+    if done.is_err() {
+        // The first error is the one to tell; a file that cannot be removed stays.
+        let _ = fs::remove_file(&beside);
+    }
+    done
+}
+
+/// A new file in the same folder, with a name that nothing has.
+fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+    for attempt in 0u32.. {
+        let beside = path.with_file_name(format!(".durer-{}-{attempt}.tmp", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
+            other => return other.map(|file| (beside, file)),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_have_one_number() {
+        let pattern = Pattern::of(Path::new("out/frame_%04d.png")).unwrap();
+        assert_eq!(pattern.path(7), Path::new("out/frame_0007.png"));
+        assert_eq!(Pattern::of(Path::new("%d.png")).unwrap().path(12), Path::new("12.png"));
+        for none in ["frame.png", "%.png", "%xd.png", "100%.png", "%99d.png", "%d/a.png"] {
+            assert_eq!(Pattern::of(Path::new(none)), None, "{none}");
+        }
+    }
+
+    #[test]
+    fn stems_differ_where_names_do_not() {
+        assert_eq!(stems(&["x/a.obj", "b.stl"]), ["a", "b"]);
+        assert_eq!(stems(&["a.obj", "a.stl", "-"]), ["a.obj", "a.stl", "stdin"]);
+        assert_eq!(stems(&["x/a.obj", "y/a.obj"]), ["a.obj", "a.obj-2"]);
+    }
+
+    #[test]
+    fn two_pictures_cannot_share_a_place() {
+        let a = Target::File("a.png".into());
+        assert!(check_distinct([&a, &Target::Stdout].into_iter()).is_ok());
+        assert!(check_distinct([&a, &a].into_iter()).is_err());
+        assert!(check_distinct([&Target::Stdout, &Target::Stdout].into_iter()).is_err());
+    }
+}

@@ -1,0 +1,335 @@
+//! `durer render`.
+
+use crate::args::RenderArgs;
+use crate::camera::{self, Shot};
+use crate::failure::Failure;
+use crate::input;
+use crate::messages::Messages;
+use crate::output::{self, Name, Target};
+use crate::report::{self, Failed, ModelReport, PictureReport, Report};
+use crate::values::Size;
+use durer::pipeline::{self, Lighting, RenderOptions};
+use durer::scene::Scene;
+use durer::target::Framebuffer;
+use durer::view::layout::Layout;
+use durer_formats::{Model, png};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Renders all models, each to its pictures.
+pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    check(args)?;
+    let jobs = plan(args)?;
+    let pictures = jobs.iter().map(|job| job.pictures.len() as u64).sum();
+    let messages = Messages::new(&args.running, pictures);
+    let mut report = Report { version: env!("CARGO_PKG_VERSION"), ..Report::default() };
+    for job in &jobs {
+        match render_model(args, job, &messages) {
+            Ok(model) => report.models.push(model),
+            Err(Failure::Data(error)) if args.skip_failures => {
+                messages.error(&error);
+                report.failed.push(Failed { model: job.model.display().to_string(), error });
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    drop(messages);
+    report.total_seconds = start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = report::peak_memory();
+    if args.json {
+        report::print(&report)?;
+    }
+    match (report.failed.is_empty(), report.models.is_empty()) {
+        (true, _) => Ok(()),
+        (false, false) => Err(Failure::Partial),
+        (false, true) => Err(Failure::Data("no model could be rendered".to_owned())),
+    }
+}
+
+/// What the parser does not know to be wrong, before anything is read.
+fn check(args: &RenderArgs) -> Result<(), Failure> {
+    input::check_streams(&args.models)?;
+    camera::check(&args.view)?;
+    let Size { width, height } = args.picture.size;
+    let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);
+    if pixels > limit {
+        let message = format!(
+            "--size {width}x{height}: {pixels} pixels are above the limit of {limit}; \
+             --max-pixels raises it"
+        );
+        return Err(Failure::Usage(message));
+    }
+    shots(args, None).map(|_| ())
+}
+
+/// A model and what is to be made of it.
+struct Job<'a> {
+    model: &'a Path,
+    pictures: Vec<Picture>,
+}
+
+/// Where a picture and its further planes go.
+struct Picture {
+    frame: Option<u32>,
+    color: Target,
+    item: Option<Target>,
+    depth: Option<Target>,
+    normal: Option<Target>,
+}
+
+impl Picture {
+    fn targets(&self) -> impl Iterator<Item = &Target> {
+        std::iter::once(&self.color).chain(&self.item).chain(&self.depth).chain(&self.normal)
+    }
+}
+
+/// Decides where each picture goes, before anything is read, so that a wrong name costs no time.
+fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
+    let frames: Vec<Option<u32>> = match args.picture.turntable {
+        Some(count) => (0..count).map(Some).collect(),
+        None => vec![None],
+    };
+    let stems = output::stems(&args.models);
+    let names: Vec<Name> = stems
+        .iter()
+        .flat_map(|stem| frames.iter().map(move |&frame| Name { stem: stem.clone(), frame }))
+        .collect();
+    let optional = |option: &str, path: &Option<PathBuf>| match path {
+        Some(path) => Ok(output::plan(option, path, &names)?.into_iter().map(Some).collect()),
+        None => Ok(vec![None; names.len()]),
+    };
+    let color = output::plan("--output", &args.output, &names)?;
+    let item = optional("--item", &args.planes.item)?;
+    let depth = optional("--depth", &args.planes.depth)?;
+    let normal = optional("--normal", &args.planes.normal)?;
+    let planes = color.into_iter().zip(item).zip(depth).zip(normal);
+    let mut pictures = planes.zip(&names).map(|((((color, item), depth), normal), name)| {
+        let frame = name.frame;
+        Picture { frame, color, item, depth, normal }
+    });
+    let jobs: Vec<Job> = args
+        .models
+        .iter()
+        .map(|model| Job { model, pictures: pictures.by_ref().take(frames.len()).collect() })
+        .collect();
+    let targets = || jobs.iter().flat_map(|j| &j.pictures).flat_map(Picture::targets);
+    output::check_distinct(targets())?;
+    if args.json && targets().any(|t| *t == Target::Stdout) {
+        let message = "--json: the report goes to standard output, where the picture goes too";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(jobs)
+}
+
+/// Reads a model and makes its pictures.
+fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<ModelReport, Failure> {
+    let name = input::display_name(job.model);
+    messages.progress.stage(|| format!("reading {name}"));
+    let start = Instant::now();
+    let mut model = input::read(job.model, &input::read_options(&args.reading))?;
+    let read_seconds = start.elapsed().as_secs_f64();
+    if let Some(axis) = args.view.up_axis {
+        model.scene.up_axis = axis.into();
+    }
+    messages.warnings(&name, &model.warnings);
+    messages.detail(|| {
+        format!(
+            "{name}: {}, {} triangles, read in {read_seconds:.3} s",
+            model.format,
+            model.scene.triangle_count()
+        )
+    });
+    let mut pictures = Vec::new();
+    for picture in &job.pictures {
+        messages.progress.stage(|| format!("rendering {name}"));
+        let report = render_picture(args, &model.scene, picture)
+            .map_err(|failure| with_file(&name, failure))?;
+        messages.detail(|| describe(&report));
+        messages.progress.advance();
+        pictures.push(report);
+    }
+    tell_non_finite(&name, &mut model, &pictures, messages);
+    Ok(ModelReport {
+        model: name,
+        format: model.format,
+        read_seconds,
+        warnings: model.warnings.iter().map(ToString::to_string).collect(),
+        pictures,
+    })
+}
+
+/// Vertices that are no numbers are found by the renderer, not by the reader.
+fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
+    let count = pictures.first().map_or(0, |p| p.triangles.non_finite);
+    if count == 0 {
+        return;
+    }
+    let known = model.warnings.len();
+    let message = format!("{count} triangles with a coordinate that is not finite are left out");
+    model.warn(durer_formats::Place::Whole, message);
+    messages.warnings(name, &model.warnings[known..]);
+}
+
+fn describe(report: &PictureReport) -> String {
+    format!(
+        "{}: {}x{}, {} triangles drawn; geometry {:.4} s, raster {:.4} s, encode {:.4} s",
+        report.files.join(", "),
+        report.width,
+        report.height,
+        report.triangles.drawn,
+        report.geometry_seconds,
+        report.raster_seconds,
+        report.encode_seconds
+    )
+}
+
+/// Data that does not fit the options, such as a camera that the file does not have, is told with
+/// the file's name.
+fn with_file(name: &str, failure: Failure) -> Failure {
+    match failure {
+        Failure::Data(message) if message.starts_with("--") => {
+            Failure::Data(format!("{name}: {message}"))
+        }
+        other => other,
+    }
+}
+
+/// A part of the picture and what is seen in it.
+struct Cell {
+    x: u32,
+    y: u32,
+    shot: Shot,
+}
+
+/// The cells of a picture: one, or one for each viewport.
+fn shots(args: &RenderArgs, frame: Option<u32>) -> Result<Vec<Cell>, Failure> {
+    let size = args.picture.size;
+    let Some(layout) = &args.picture.viewports else {
+        return Ok(vec![Cell { x: 0, y: 0, shot: Shot::of(&args.picture, frame) }]);
+    };
+    viewports(layout, size).map_err(|e| Failure::Usage(format!("--viewports: {e}")))
+}
+
+fn viewports(layout: &Layout, size: Size) -> Result<Vec<Cell>, String> {
+    let viewports = layout.viewports(size.width, size.height).map_err(|e| e.to_string())?;
+    let cell = |(name, viewport): (&str, durer::view::window::Viewport)| {
+        let view = name.parse().map_err(|e: durer::Error| e.to_string())?;
+        let pixels = viewport.pixels();
+        let size = Size { width: pixels.width(), height: pixels.height() };
+        let (x, y) = (pixels.x0().unsigned_abs(), pixels.y0().unsigned_abs());
+        Ok(Cell { x, y, shot: Shot { view: Some(view), size, turn: None } })
+    };
+    viewports.into_iter().map(cell).collect()
+}
+
+/// Renders one picture and writes its files.
+fn render_picture(
+    args: &RenderArgs,
+    scene: &Scene,
+    picture: &Picture,
+) -> Result<PictureReport, Failure> {
+    let Size { width, height } = args.picture.size;
+    let mut report = PictureReport { width, height, ..PictureReport::default() };
+    let mut cells = Vec::new();
+    for cell in shots(args, picture.frame)? {
+        let options = render_options(args, scene, picture, &cell.shot)?;
+        let (framebuffer, stages) =
+            pipeline::render(scene, &options).map_err(|e| Failure::Usage(e.to_string()))?;
+        report.add(&stages);
+        cells.push((cell, framebuffer));
+    }
+    let framebuffer = assemble(cells, args.picture.size);
+    let start = Instant::now();
+    report.files = write(args, picture, &framebuffer)?;
+    report.encode_seconds = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+fn render_options(
+    args: &RenderArgs,
+    scene: &Scene,
+    picture: &Picture,
+    shot: &Shot,
+) -> Result<RenderOptions, Failure> {
+    let lighting = match &args.look.light[..] {
+        [] => Lighting::Auto,
+        lights => Lighting::Given(lights.to_vec()),
+    };
+    Ok(RenderOptions {
+        width: shot.size.width,
+        height: shot.size.height,
+        shading: args.look.shading.map(Into::into),
+        lighting,
+        background: args.picture.background,
+        cull: args.look.cull.into(),
+        samples: args.picture.aa.into(),
+        depth: picture.depth.is_some(),
+        item: picture.item.is_some(),
+        normal: picture.normal.is_some(),
+        max_pixels: args.picture.max_pixels,
+        ..RenderOptions::new(camera::camera(&args.view, scene, shot)?)
+    })
+}
+
+/// Puts the viewports into one picture.
+fn assemble(mut cells: Vec<(Cell, Framebuffer)>, size: Size) -> Framebuffer {
+    if let [(_, whole)] = &mut cells[..] {
+        return std::mem::replace(whole, Framebuffer::new(0, 0));
+    }
+    let mut all = Framebuffer::new(size.width, size.height);
+    for (Cell { x, y, .. }, part) in &cells {
+        if part.depth.is_some() && all.depth.is_none() {
+            all = all.with_depth();
+        }
+        if part.item.is_some() && all.item.is_none() {
+            all = all.with_items();
+        }
+        if part.normal.is_some() && all.normal.is_none() {
+            all = all.with_normals();
+        }
+        all.color.paste(&part.color, *x, *y);
+        paste(&mut all.depth, &part.depth, *x, *y);
+        paste(&mut all.item, &part.item, *x, *y);
+        paste(&mut all.normal, &part.normal, *x, *y);
+    }
+    all
+}
+
+fn paste<T: Copy>(
+    all: &mut Option<durer::target::Pixels<T>>,
+    part: &Option<durer::target::Pixels<T>>,
+    x: u32,
+    y: u32,
+) {
+    if let (Some(all), Some(part)) = (all, part) {
+        all.paste(part, x, y);
+    }
+}
+
+/// Writes all planes that are asked for; gives the names of the files.
+fn write(
+    args: &RenderArgs,
+    picture: &Picture,
+    planes: &Framebuffer,
+) -> Result<Vec<String>, Failure> {
+    let compression = args.picture.compression.into();
+    let mut files = Vec::new();
+    let mut done = |target: &Target| files.push(target.to_string());
+    // The picture comes last: where it is new, so is the rest.
+    if let (Some(target), Some(items)) = (&picture.item, &planes.item) {
+        output::deliver(target, |out| png::write_items(out, items, compression))?;
+        done(target);
+    }
+    if let (Some(target), Some(depth)) = (&picture.depth, &planes.depth) {
+        output::deliver(target, |out| png::write_depth(out, depth, compression))?;
+        done(target);
+    }
+    if let (Some(target), Some(normals)) = (&picture.normal, &planes.normal) {
+        output::deliver(target, |out| png::write_normals(out, normals, compression))?;
+        done(target);
+    }
+    output::deliver(&picture.color, |out| png::write_color(out, &planes.color, compression))?;
+    done(&picture.color);
+    Ok(files)
+}

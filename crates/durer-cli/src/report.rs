@@ -1,0 +1,115 @@
+//! What `durer render --json` says.
+
+use durer::pipeline;
+use serde::Serialize;
+
+/// The whole report.
+#[derive(Debug, Default, Serialize)]
+pub struct Report {
+    /// The version of durer.
+    pub version: &'static str,
+    /// Models in the order of the command line, without those that failed.
+    pub models: Vec<ModelReport>,
+    /// Models that failed.
+    pub failed: Vec<Failed>,
+    /// From start to end.
+    pub total_seconds: f64,
+    /// The most memory that the process held, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+}
+
+/// A model that could be read.
+#[derive(Debug, Serialize)]
+pub struct ModelReport {
+    /// As on the command line.
+    pub model: String,
+    /// The format found.
+    pub format: String,
+    /// Seconds for reading and decoding.
+    pub read_seconds: f64,
+    /// What was repaired or left out.
+    pub warnings: Vec<String>,
+    /// What was made of it.
+    pub pictures: Vec<PictureReport>,
+}
+
+/// One picture, with its further planes.
+#[derive(Debug, Default, Serialize)]
+pub struct PictureReport {
+    /// Where it went; `-` is standard output.
+    pub files: Vec<String>,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// Over all viewports.
+    pub triangles: Triangles,
+    /// Seconds for vertices, clipping and set-up.
+    pub geometry_seconds: f64,
+    /// Seconds for rasterization, shading and resolve.
+    pub raster_seconds: f64,
+    /// Seconds for encoding and writing.
+    pub encode_seconds: f64,
+}
+
+/// Counts of triangles.
+#[derive(Debug, Default, Serialize)]
+pub struct Triangles {
+    /// Handed to the renderer.
+    #[serde(rename = "in")]
+    pub given: u64,
+    /// Left out because a vertex is not finite.
+    pub non_finite: u64,
+    /// Cut by a plane of the view volume.
+    pub clipped: u64,
+    /// Left out: outside the view, turned away, or without area.
+    pub culled: u64,
+    /// Handed to the rasterizer.
+    pub drawn: u64,
+}
+
+/// A model that could not be rendered.
+#[derive(Debug, Serialize)]
+pub struct Failed {
+    /// As on the command line.
+    pub model: String,
+    /// Why.
+    pub error: String,
+}
+
+impl PictureReport {
+    /// Adds what the renderer says about one viewport.
+    pub fn add(&mut self, report: &pipeline::Report) {
+        self.triangles.given += report.triangles_in;
+        self.triangles.non_finite += report.non_finite;
+        self.triangles.clipped += report.clipped;
+        self.triangles.culled += report.culled;
+        self.triangles.drawn += report.drawn;
+        self.geometry_seconds += report.geometry_seconds;
+        self.raster_seconds += report.raster_seconds;
+    }
+}
+
+/// The peak of the resident memory, as Linux tells it.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}
+
+/// Writes a value as indented JSON, with a newline, to standard output.
+pub fn print(value: &impl Serialize) -> Result<(), crate::failure::Failure> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|e| crate::failure::Failure::Data(format!("the report: {e}")))?;
+    text.push('\n');
+    print_text(&text)
+}
+
+/// Writes text to standard output.
+pub fn print_text(text: &str) -> Result<(), crate::failure::Failure> {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|e| crate::failure::Failure::of_stdout(&e))
+}

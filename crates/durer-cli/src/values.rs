@@ -1,0 +1,128 @@
+//! Numbers and vectors as options take them; every message says what would be right.
+
+use durer::math::DVec3;
+
+/// Width and height of a picture, in pixels, each at least 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// `WxH`, e.g. `1920x1080`; a single number makes a square.
+pub fn size(text: &str) -> Result<Size, String> {
+    let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
+    let side = |side: &str| match side.trim().parse::<u32>() {
+        Ok(n) if n > 0 => Ok(n),
+        _ => Err("a size is WIDTHxHEIGHT in whole pixels from 1, e.g. 1920x1080".to_owned()),
+    };
+    Ok(Size { width: side(width)?, height: side(height)? })
+}
+
+/// A finite number.
+pub fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(n) if n.is_finite() => Ok(n),
+        Ok(_) => Err("the number must be finite".to_owned()),
+        Err(_) => Err("a number is needed, e.g. 1.5 or -3e2".to_owned()),
+    }
+}
+
+/// A finite number above zero.
+pub fn positive(text: &str) -> Result<f64, String> {
+    number(text).and_then(|n| if n > 0.0 { Ok(n) } else { Err("it must be above 0".to_owned()) })
+}
+
+/// A finite number, zero or above.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    number(text)
+        .and_then(|n| if n >= 0.0 { Ok(n) } else { Err("it must not be below 0".to_owned()) })
+}
+
+/// An angle of view in degrees, between 0 and 180.
+pub fn angle_of_view(text: &str) -> Result<f64, String> {
+    let inside = |n: &f64| (0.001..180.0).contains(n);
+    number(text)
+        .and_then(|n| Some(n).filter(inside).ok_or("it must lie between 0 and 180 degrees".into()))
+}
+
+/// An elevation in degrees, straight down to straight up.
+pub fn elevation(text: &str) -> Result<f64, String> {
+    let inside = |n: &f64| (-90.0..=90.0).contains(n);
+    number(text)
+        .and_then(|n| Some(n).filter(inside).ok_or("it must lie between -90 and 90 degrees".into()))
+}
+
+/// A count of at least 1.
+pub fn count(text: &str) -> Result<u64, String> {
+    match text.replace('_', "").parse() {
+        Ok(n) if n > 0 => Ok(n),
+        _ => Err("a whole number from 1 is needed".to_owned()),
+    }
+}
+
+/// A number of bytes, with `k`, `M` or `G` for powers of 1024.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let factor = match text[digits.len()..].trim_end_matches("iB").trim_end_matches('B') {
+        "" => 1,
+        "k" | "K" => 1 << 10,
+        "M" => 1 << 20,
+        "G" => 1 << 30,
+        _ => return Err("a size in bytes may end in k, M or G".to_owned()),
+    };
+    count(digits)?.checked_mul(factor).ok_or_else(|| "the number is too large".to_owned())
+}
+
+/// `x,y,z`, all finite.
+pub fn vector(text: &str) -> Result<DVec3, String> {
+    let parts: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    match parts[..] {
+        [x, y, z] => Ok(DVec3::new(x, y, z)),
+        _ => Err("three numbers joined by commas are needed, e.g. 0,-2.5,1".to_owned()),
+    }
+}
+
+/// `x,y,z`, finite and not all zero; comes back with unit length.
+pub fn direction(text: &str) -> Result<DVec3, String> {
+    vector(text)?
+        .try_normalize()
+        .ok_or_else(|| "a direction needs a component other than 0".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("1920x1080"), Ok(Size { width: 1920, height: 1080 }));
+        assert_eq!(size("64"), Ok(Size { width: 64, height: 64 }));
+        for wrong in ["", "x", "0x5", "5x0", "NaNxNaN", "1e3x2", "-1x2", "4294967296x1", "1x2x3"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn vectors_may_be_negative_but_must_be_finite() {
+        assert_eq!(vector("-3.39,1.2,-1.3"), Ok(DVec3::new(-3.39, 1.2, -1.3)));
+        for wrong in ["", "1,2", "1,2,3,4", "nan,0,0", "inf,0,0", "a,b,c", "1;2;3"] {
+            assert!(vector(wrong).is_err(), "{wrong}");
+        }
+        assert!(direction("0,0,0").is_err());
+        assert_eq!(direction("0,0,-5"), Ok(DVec3::NEG_Z));
+    }
+
+    #[test]
+    fn bytes_have_suffixes() {
+        assert_eq!(bytes("10"), Ok(10));
+        assert_eq!(bytes("2k"), Ok(2048));
+        assert_eq!(bytes("3MiB"), Ok(3 << 20));
+        assert_eq!(bytes("4GB"), Ok(4 << 30));
+        for wrong in ["", "k", "0", "-1", "5q", "99999999999G"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The command as its users see it: the built binary, run on small models.
+
+mod conformance_models;
+mod harness;
+mod options;
+mod outputs;
+mod pictures;
+mod resources;
+mod streams;

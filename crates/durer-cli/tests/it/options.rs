@@ -1,0 +1,111 @@
+//! What is wrong with options is said, with the option's name, and ends with code 2.
+
+use crate::harness::Folder;
+
+#[test]
+fn wrong_values_name_their_option() {
+    let folder = Folder::with_models();
+    for (option, part) in [
+        ("--size NaNxNaN", "--size"),
+        ("--size 0x5", "--size"),
+        ("--size -5x5", "--size"),
+        ("--size 99999999999x1", "--size"),
+        ("--size 20000x20000", "--max-pixels"),
+        ("--eye nan,0,0", "--eye"),
+        ("--eye 1,2", "--eye"),
+        ("--eye 1,1,1 --target 1,1,1", "--target"),
+        ("--eye 0,0,5 --target 0,0,0 --up 0,0,1", "--up"),
+        ("--eye 0,0,5 --up 0,0,0", "--up"),
+        ("--fov 180", "--fov"),
+        ("--fov 0", "--fov"),
+        ("--ortho -1", "--ortho"),
+        ("--ortho inf", "--ortho"),
+        ("--near 2 --far 1", "--near"),
+        ("--near 0", "--near"),
+        ("--far -1", "--far"),
+        ("--elevation 91", "--elevation"),
+        ("--azimuth inf", "--azimuth"),
+        ("--view sideways", "one of iso, front"),
+        ("--viewports front,sideways", "one of iso, front"),
+        ("--viewports front,top --size 1x1", "--viewports"),
+        ("--background purpleish", "--background"),
+        ("--light sun", "--light"),
+        ("--light directional:0,0,0", "--light"),
+        ("--aa 3", "--aa"),
+        ("--threads 0", "--threads"),
+        ("--turntable 0", "--turntable"),
+        ("--time nan", "--time"),
+        ("--max-bytes 1x", "--max-bytes"),
+        ("--wrong", "--wrong"),
+    ] {
+        let ended = folder.run(&format!("render cube.obj -o out.png {option}"));
+        assert!(ended.code == 2 && ended.err.contains(part), "{option}: {ended:?}");
+        assert_eq!(folder.names(), ["broken.obj", "cube.obj"], "{option} left something");
+    }
+}
+
+#[test]
+fn options_that_exclude_each_other_are_refused() {
+    let folder = Folder::with_models();
+    for options in [
+        "--eye 1,2,3 --view front",
+        "--eye 1,2,3 --azimuth 5",
+        "--eye 1,2,3 --camera a",
+        "--fov 30 --ortho 2",
+        "--target 1,2,3",
+        "--viewports front,top --turntable 3",
+        "--viewports front,top --view top",
+        "--eye 1,2,3 --ortho fit",
+        "--quiet --verbose",
+    ] {
+        let ended = folder.run(&format!("render cube.obj -o out.png {options}"));
+        assert_eq!(ended.code, 2, "{options}: {ended:?}");
+    }
+    folder.run("render cube.obj").fails(2, "--output");
+    folder.run("render -o out.png").fails(2, "MODEL");
+    folder.run("render - - -o out").fails(2, "twice");
+    folder.run("").fails(2, "Usage");
+}
+
+#[test]
+fn negative_numbers_are_values() {
+    let folder = Folder::with_models();
+    folder.must(
+        "render cube.obj -o a.png --size 8x8 --eye -3.39,1.2,-1.3 --target -0.5,-0.5,-0.5 \
+         --up -1,2,-1 --ortho 3 --near -5 --far 20",
+    );
+    folder.must("render cube.obj -o b.png --size 8x8 --azimuth -30 --elevation -20.5");
+}
+
+#[test]
+fn a_camera_that_is_not_there_is_told_with_those_that_are() {
+    let folder = Folder::with_models();
+    let ended = folder.run("render cube.obj -o a.png --camera Main");
+    ended.fails(1, "cube.obj: ").fails(1, "no camera `Main`").fails(1, "the file has no cameras");
+}
+
+#[test]
+fn help_and_version_work_without_a_model() {
+    let folder = Folder::new();
+    let help = String::from_utf8(folder.must("render --help").out).unwrap();
+    for option in ["--viewports", "--turntable", "Examples:", "Exit codes:", "directional:DX,DY,DZ"]
+    {
+        assert!(help.contains(option), "{option} is missing");
+    }
+    assert!(String::from_utf8(folder.must("--version").out).unwrap().starts_with("durer "));
+    folder.must("help render");
+}
+
+#[test]
+fn completions_and_the_manual_know_all_options() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = String::from_utf8(folder.must(&format!("completions {shell}")).out).unwrap();
+        assert!(script.contains("turntable"), "{shell}");
+    }
+    folder.run("completions tcsh").fails(2, "tcsh");
+    let manual = String::from_utf8(folder.must("man").out).unwrap();
+    for part in [".TH", "turntable", "skip\\-failures", "completions"] {
+        assert!(manual.contains(part), "{part} is missing");
+    }
+}

@@ -1,0 +1,115 @@
+//! Where pictures go: whole files or none, many files, further planes.
+
+use crate::harness::{Folder, Picture};
+use std::fs;
+
+#[test]
+fn a_failed_run_leaves_the_old_file_and_nothing_else() {
+    let folder = Folder::with_models();
+    folder.write("out.png", "old");
+    folder.run("render broken.obj -o out.png").fails(1, "broken.obj: line 3");
+    folder.run("render missing.obj -o out.png").fails(1, "missing.obj: No such file");
+    folder.run("render . -o out.png").fails(1, "folder");
+    assert_eq!(folder.read("out.png"), b"old");
+    assert_eq!(folder.names(), ["broken.obj", "cube.obj", "out.png"]);
+}
+
+#[test]
+fn a_new_picture_replaces_the_old_one() {
+    let folder = Folder::with_models();
+    folder.write("out.png", "old");
+    let ended = folder.must("render cube.obj -o out.png --size 20x10");
+    assert!(ended.err.is_empty() && ended.out.is_empty(), "{ended:?}");
+    assert_eq!(Picture::decode(&folder.read("out.png")).size(), (20, 10));
+    assert_eq!(folder.names(), ["broken.obj", "cube.obj", "out.png"]);
+}
+
+#[test]
+fn places_that_cannot_be_written_are_told_before_the_work() {
+    let folder = Folder::with_models();
+    folder.run("render cube.obj -o nowhere/out.png").fails(1, "nowhere");
+    folder.run("render cube.obj -o cube.obj/out.png").fails(1, "not a folder");
+    folder.run("render cube.obj -o out.jpg").fails(2, "--output out.jpg").fails(2, ".png");
+    folder.run("render cube.obj -o cube.obj").fails(2, ".png");
+    folder.run("render cube.obj -o a.png --depth a.png").fails(2, "a.png: two pictures");
+    folder.run("render cube.obj cube.obj -o a.png").fails(2, "folder");
+    folder.run("render cube.obj -o a.png --turntable 2").fails(2, "frame_%04d.png");
+    assert_eq!(folder.read("cube.obj"), crate::harness::CUBE.as_bytes());
+}
+
+#[cfg(unix)]
+#[test]
+fn read_only_files_and_links_are_kept() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = Folder::with_models();
+    folder.write("kept.png", "old");
+    fs::set_permissions(folder.path("kept.png"), fs::Permissions::from_mode(0o444)).unwrap();
+    folder
+        .run("render cube.obj -o kept.png --size 8x8")
+        .fails(1, "kept.png: the file is read-only");
+    assert_eq!(folder.read("kept.png"), b"old");
+
+    folder.write("true.png", "old");
+    fs::set_permissions(folder.path("true.png"), fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("true.png", folder.path("link.png")).unwrap();
+    folder.must("render cube.obj -o link.png --size 8x8");
+    assert!(fs::symlink_metadata(folder.path("link.png")).unwrap().is_symlink());
+    let metadata = fs::metadata(folder.path("true.png")).unwrap();
+    assert_eq!(metadata.permissions().mode() & 0o777, 0o640);
+    assert!(folder.read("true.png").starts_with(b"\x89PNG"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    let folder = Folder::with_models();
+    let ended = folder.run("render cube.obj -o /dev/full --size 8x8");
+    ended.fails(1, "/dev/full: No space left on device");
+    folder.must("render cube.obj -o /dev/null --size 8x8");
+    assert!(!fs::metadata("/dev/null").unwrap().is_file(), "a device is not replaced");
+}
+
+#[test]
+fn several_models_make_one_picture_each() {
+    let folder = Folder::with_models();
+    fs::create_dir(folder.path("sub")).unwrap();
+    fs::copy(folder.path("cube.obj"), folder.path("sub/cube.obj")).unwrap();
+    fs::copy(folder.path("cube.obj"), folder.path("b.obj")).unwrap();
+    folder.must("render cube.obj b.obj sub/cube.obj -o new/pictures --size 8x8");
+    let mut names: Vec<_> = fs::read_dir(folder.path("new/pictures")).unwrap().collect();
+    names.sort_by_key(|e| e.as_ref().unwrap().file_name());
+    let names: Vec<_> = names.into_iter().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(names, ["b.png", "cube.obj-2.png", "cube.obj.png"]);
+    folder.must("render cube.obj -o new --size 8x8");
+    assert!(folder.path("new/cube.png").is_file());
+}
+
+#[test]
+fn failures_are_skipped_when_that_is_asked_for() {
+    let folder = Folder::with_models();
+    let run = |options: &str| folder.run(&format!("render {options} -o out/ --size 8x8"));
+    run("broken.obj cube.obj").fails(1, "broken.obj: line 3");
+    assert!(!folder.path("out/cube.png").exists(), "it stops at the first failure");
+    let ended = run("broken.obj cube.obj --skip-failures --json");
+    ended.fails(3, "durer: broken.obj: line 3");
+    let report = ended.json();
+    assert_eq!(report["failed"][0]["model"], "broken.obj");
+    assert_eq!(report["models"][0]["model"], "cube.obj");
+    assert!(folder.path("out/cube.png").is_file());
+    run("broken.obj missing.obj --skip-failures").fails(1, "no model could be rendered");
+    assert_eq!(run("cube.obj --skip-failures").code, 0);
+}
+
+#[test]
+fn turntables_are_numbered() {
+    let folder = Folder::with_models();
+    folder.must(
+        "render cube.obj -o frames/f_%02d.png --turntable 3 --size 16x16 --item frames/i%d.png",
+    );
+    for name in ["f_00.png", "f_01.png", "f_02.png", "i0.png", "i1.png", "i2.png"] {
+        let picture = Picture::decode(&folder.read(&format!("frames/{name}")));
+        assert_eq!(picture.size(), (16, 16));
+    }
+    folder.must("render cube.obj -o dir/ --turntable 2 --size 16x16");
+    assert!(folder.path("dir/cube_0001.png").is_file());
+}
