@@ -236,4 +236,3 @@ fn path(mesh: usize, primitive: usize) -> String {
 fn name(node: &Node) -> String {
     node.name.clone().unwrap_or_default()
 }
-//! glTF 2.0, text and binary.

@@ -71,13 +71,6 @@ fn every_model_has_the_triangles_and_box_of_the_index() {
         let model = read(&path, &ReadOptions::default())
             .unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         model.scene.check().unwrap();
-        println!(
-            "{}: {:?} {:?} {:#?}",
-            path.display(),
-            model.format,
-            model.scene.bounds(),
-            model.warnings
-        );
         let row = format!("| {} |", path.strip_prefix(&data).unwrap().display());
         let Some(row) = index.lines().find(|l| l.starts_with(&row)) else { continue };
         let triangles = row.split(" v / ").nth(1).and_then(|r| r.split(" t").next()).unwrap();
@@ -436,15 +429,6 @@ fn broken_files_tell_where() {
             Ok(_) => assert!(begin.is_empty(), "{name}"),
             Err(e) => {
                 assert!(!begin.is_empty() && e.to_string().starts_with(begin), "{name}: {e}");
-            let took = begin.elapsed();
-            assert!(took < Duration::from_secs(2), "{}: {took:?}", path.display());
-            let name = path.strip_prefix(data.join("malformed")).unwrap().display().to_string();
-            match &result {
-                Ok(m) => println!(
-                    "OK   {name} {:?}",
-                    m.warnings.iter().map(|w| w.to_string()).collect::<Vec<_>>()
-                ),
-                Err(e) => println!("ERR  {name} {e}"),
             }
         }
     }
