@@ -2,6 +2,8 @@
 
 mod clip_place;
 mod clip_volume;
+mod conformance_visible_surface;
+mod data;
 mod determinism;
 mod raster_interpolate;
 mod raster_triangle;

@@ -165,8 +165,19 @@ mod code {
 struct ScreenVertex {
     x: i32,
     y: i32,
+    /// What snapping took away, in grid steps: the place is (x + rest_x, y + rest_y).
+    rest_x: f32,
+    rest_y: f32,
     depth: f32,
     code: u32,
+}
+
+impl ScreenVertex {
+    fn new((pixels, depth): (DVec2, f32)) -> Self {
+        let (x, y) = (snap(pixels.x), snap(pixels.y));
+        let rest = |p: f64, snapped: i32| (p * f64::from(SUBPIXELS) - f64::from(snapped)) as f32;
+        Self { x, y, rest_x: rest(pixels.x, x), rest_y: rest(pixels.y, y), depth, code: 0 }
+    }
 }
 
 /// Takes mesh space to homogeneous screen space, and says what is outside.
@@ -252,12 +263,16 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     // Adding 1.5 · 2⁵² leaves the integer, rounded to nearest and ties to even, in the low bits.
     let magic = 6_755_399_441_055_744.0;
     let snap_scale = f64::from(SUBPIXELS);
-    let (snapped_x, snapped_y) = (x * snap_scale + magic, y * snap_scale + magic);
+    let (grid_x, grid_y) = (x * snap_scale, y * snap_scale);
+    let (snapped_x, snapped_y) = (grid_x + magic, grid_y + magic);
+    let (rest_x, rest_y) = (grid_x - (snapped_x - magic), grid_y - (snapped_y - magic));
     for i in 0..4 {
         let bit = |mask: u64, code: u32| ((mask >> i) as u32 & 1) * code;
         to[i] = ScreenVertex {
             x: snapped_x[i].to_bits() as i32,
             y: snapped_y[i].to_bits() as i32,
+            rest_x: rest_x[i] as f32,
+            rest_y: rest_y[i] as f32,
             depth: z[i] as f32,
             code: bit(left, code::LEFT)
                 | bit(right, code::RIGHT)
@@ -430,10 +445,7 @@ impl<'a> Assembler<'a> {
         } else if any & (code::NEAR | code::GUARD) != 0 {
             self.clip(mesh, transform, corners, item, emit);
         } else {
-            let x = [v[0].x, v[1].x, v[2].x];
-            let y = [v[0].y, v[1].y, v[2].y];
-            match self.set_up(x, y, [v[0].depth, v[1].depth, v[2].depth], item, transform.mirrored)
-            {
+            match self.set_up(v, item, transform.mirrored) {
                 Some(triangle) => {
                     self.counts.drawn += 1;
                     emit(triangle);
@@ -456,17 +468,12 @@ impl<'a> Assembler<'a> {
         self.counts.clipped += 1;
         let points = corners.map(|c| transform.clip_vertex(mesh.positions[c as usize]));
         let polygon = clip_polygon(&points, &transform.clip_options(), &mut NoTrace);
-        let snapped = |v: &ClipVertex| {
-            let (p, depth) = transform.to_screen(v);
-            (snap(p.x), snap(p.y), depth)
-        };
-        let projected: Vec<(i32, i32, f32)> = polygon.iter().map(snapped).collect();
-        let (mut drawn, mirrored) = (0, transform.mirrored);
+        let projected: Vec<ScreenVertex> =
+            polygon.iter().map(|v| ScreenVertex::new(transform.to_screen(v))).collect();
+        let mut drawn = 0;
         for i in 2..projected.len() {
-            let [a, b, c] = [projected[0], projected[i - 1], projected[i]];
-            if let Some(triangle) =
-                self.set_up([a.0, b.0, c.0], [a.1, b.1, c.1], [a.2, b.2, c.2], item, mirrored)
-            {
+            let v = [&projected[0], &projected[i - 1], &projected[i]];
+            if let Some(triangle) = self.set_up(v, item, transform.mirrored) {
                 drawn = 1;
                 emit(triangle);
             }
@@ -498,19 +505,13 @@ impl<'a> Assembler<'a> {
             false => (DVec2::ZERO, along.perp() * (0.5 * LINE_WIDTH)),
         };
         let corners = [pa - back - side, pa - back + side, pb + back + side, pb + back - side];
-        let (x, y) = (corners.map(|c| snap(c.x)), corners.map(|c| snap(c.y)));
         let z = [za, za, zb, zb];
+        let v = [0, 1, 2, 3].map(|i| ScreenVertex::new((corners[i], z[i])));
         let seen_from_both_sides = Filter { cull_back: false, ..self.filter };
         let keep = std::mem::replace(&mut self.filter, seen_from_both_sides);
         let mut drawn = 0;
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
-            let triangle = self.set_up(
-                [x[i], x[j], x[k]],
-                [y[i], y[j], y[k]],
-                [z[i], z[j], z[k]],
-                item,
-                false,
-            );
+            let triangle = self.set_up([&v[i], &v[j], &v[k]], item, false);
             if let Some(triangle) = triangle {
                 drawn = 1;
                 emit(triangle);
@@ -523,48 +524,29 @@ impl<'a> Assembler<'a> {
 
     /// Back-face and area test, bounding box test, depth plane.
     #[inline(always)]
-    fn set_up(
-        &self,
-        mut x: [i32; 3],
-        mut y: [i32; 3],
-        mut z: [f32; 3],
-        item: u32,
-        mirrored: bool,
-    ) -> Option<ScreenTriangle> {
-        let mut area = i64::from(x[1] - x[0]) * i64::from(y[2] - y[0])
-            - i64::from(x[2] - x[0]) * i64::from(y[1] - y[0]);
+    fn set_up(&self, v: [&ScreenVertex; 3], item: u32, mirrored: bool) -> Option<ScreenTriangle> {
+        let area = i64::from(v[1].x - v[0].x) * i64::from(v[2].y - v[0].y)
+            - i64::from(v[2].x - v[0].x) * i64::from(v[1].y - v[0].y);
         // Fronts are counter-clockwise with y up, so their area is negative with y down.
         if area == 0 || (self.filter.cull_back && (area > 0) != mirrored) {
             return None;
         }
-        if area < 0 {
-            x.swap(1, 2);
-            y.swap(1, 2);
-            z.swap(1, 2);
-            area = -area;
-        }
+        let [a, b, c] = if area < 0 { [v[0], v[2], v[1]] } else { v };
+        let (x, y) = ([a.x, b.x, c.x], [a.y, b.y, c.y]);
         if self.misses_all_samples(&x, self.view.width())
             || self.misses_all_samples(&y, self.view.height())
         {
             return None;
         }
-        // The plane through the snapped vertices, so that it fits what is rasterized.
-        let scale = 256.0 / area as f64;
-        let (dx1, dx2) = (f64::from(x[1] - x[0]), f64::from(x[2] - x[0]));
-        let (dy1, dy2) = (f64::from(y[1] - y[0]), f64::from(y[2] - y[0]));
-        let z0 = f64::from(z[0]);
-        let (dz1, dz2) = (f64::from(z[1]) - z0, f64::from(z[2]) - z0);
-        let depth_dx = (dz1 * dy2 - dz2 * dy1) * scale;
-        let depth_dy = (dz2 * dx1 - dz1 * dx2) * scale;
-        let depth = z0 + depth_dx * to_center(x[0]) + depth_dy * to_center(y[0]);
+        let [depth, depth_dx, depth_dy] = depth_plane(a, b, c, area.abs() as f64);
         Some(ScreenTriangle {
             x,
             y,
-            depth: depth as f32,
-            depth_dx: depth_dx as f32,
-            depth_dy: depth_dy as f32,
-            depth_min: z[0].min(z[1]).min(z[2]).max(0.0),
-            depth_max: z[0].max(z[1]).max(z[2]).max(0.0),
+            depth,
+            depth_dx,
+            depth_dy,
+            depth_min: a.depth.min(b.depth).min(c.depth).max(0.0),
+            depth_max: a.depth.max(b.depth).max(c.depth).max(0.0),
             item,
         })
     }
@@ -579,8 +561,42 @@ impl<'a> Assembler<'a> {
     }
 }
 
-/// From a coordinate to its pixel's centre, in pixels.
+/// The plane of depth through three vertices: its value at the centre of the pixel that holds the
+/// first, and its change per pixel.
 #[inline(always)]
-fn to_center(v: i32) -> f64 {
-    f64::from(HALF_PIXEL - (v & (SUBPIXELS - 1))) / f64::from(SUBPIXELS)
+fn depth_plane(
+    a: &ScreenVertex,
+    b: &ScreenVertex,
+    c: &ScreenVertex,
+    snapped_area: f64,
+) -> [f32; 3] {
+    // Through the places before snapping, which are exact.
+    let away = |to: i32, from: i32, rest: f32, rest_from: f32| {
+        f64::from(to - from) + (f64::from(rest) - f64::from(rest_from))
+    };
+    let (mut dx1, mut dy1) =
+        (away(b.x, a.x, b.rest_x, a.rest_x), away(b.y, a.y, b.rest_y, a.rest_y));
+    let (mut dx2, mut dy2) =
+        (away(c.x, a.x, c.rest_x, a.rest_x), away(c.y, a.y, c.rest_y, a.rest_y));
+    let mut area = dx1 * dy2 - dx2 * dy1;
+    let (mut rest_x, mut rest_y) = (f64::from(a.rest_x), f64::from(a.rest_y));
+    if area < 0.25 * snapped_area {
+        // A sliver that only snapping gives its area: its plane is that of the snapped triangle.
+        (dx1, dy1) = (f64::from(b.x - a.x), f64::from(b.y - a.y));
+        (dx2, dy2) = (f64::from(c.x - a.x), f64::from(c.y - a.y));
+        (area, rest_x, rest_y) = (snapped_area, 0.0, 0.0);
+    }
+    let scale = f64::from(SUBPIXELS) / area;
+    let z = f64::from(a.depth);
+    let (dz1, dz2) = (f64::from(b.depth) - z, f64::from(c.depth) - z);
+    let depth_dx = (dz1 * dy2 - dz2 * dy1) * scale;
+    let depth_dy = (dz2 * dx1 - dz1 * dx2) * scale;
+    let depth = z + depth_dx * to_center(a.x, rest_x) + depth_dy * to_center(a.y, rest_y);
+    [depth as f32, depth_dx as f32, depth_dy as f32]
+}
+
+/// From a coordinate to the centre of the pixel that holds its snapped place, in pixels.
+#[inline(always)]
+fn to_center(v: i32, rest: f64) -> f64 {
+    (f64::from(HALF_PIXEL - (v & (SUBPIXELS - 1))) - rest) / f64::from(SUBPIXELS)
 }
