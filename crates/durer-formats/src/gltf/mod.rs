@@ -17,6 +17,10 @@ mod buffer;
 mod check;
 mod container;
 mod deform;
+#[cfg(feature = "draco")]
+mod draco;
+#[cfg(not(feature = "draco"))]
+#[path = "no_draco.rs"]
 mod draco;
 mod extension;
 mod eye;
