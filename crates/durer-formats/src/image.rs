@@ -132,21 +132,33 @@ fn pixels_of<const N: usize>(samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) 
 
 fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
     let wrong = |e: zune_jpeg::errors::DecodeErrors| broken(name, e);
-    // Always RGB: the decoder turns grey, YCbCr, CMYK and YCCK into it.
-    let options = DecoderOptions::new_safe()
-        .set_max_width(limits.image_side as usize)
-        .set_max_height(limits.image_side as usize)
-        .jpeg_set_out_colorspace(ColorSpace::RGB);
-    let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
-    decoder.decode_headers().map_err(wrong)?;
+    let open = |out: ColorSpace| {
+        let options = DecoderOptions::new_safe()
+            .set_max_width(limits.image_side as usize)
+            .set_max_height(limits.image_side as usize)
+            .jpeg_set_out_colorspace(out);
+        let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
+        decoder.decode_headers().map_err(wrong)?;
+        Ok::<_, Error>(decoder)
+    };
+    let mut decoder = open(ColorSpace::RGBA)?;
     let (width, height) = decoder.dimensions().ok_or_else(|| broken(name, "has no size"))?;
     let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let size = (side(width), side(height));
     let holds = (bytes.len() as u64).saturating_mul(JPEG_PIXELS_PER_BYTE);
     check_size(size, holds, name, limits)?;
-    let mut samples = vec![0; width * height * 3];
-    decoder.decode_into(&mut samples).map_err(wrong)?;
-    Ok((size.0, size.1, pixels_of(&samples, |[r, g, b]| [r, g, b, 255])))
+    let ink = matches!(decoder.input_colorspace(), Some(ColorSpace::CMYK | ColorSpace::YCCK));
+    let pixels = if ink {
+        // The decoder brings inks to RGB only.
+        let mut samples = vec![0; width * height * 3];
+        open(ColorSpace::RGB)?.decode_into(&mut samples).map_err(wrong)?;
+        pixels_of(&samples, |[r, g, b]| [r, g, b, 255])
+    } else {
+        let mut pixels = vec![[0; 4]; width * height];
+        decoder.decode_into(pixels.as_flattened_mut()).map_err(wrong)?;
+        pixels
+    };
+    Ok((size.0, size.1, pixels))
 }
 
 #[cfg(test)]

@@ -149,3 +149,31 @@ fn blend(g: &Geometry, v: usize, joints: &[DMat4], at: &str) -> Result<DMat4> {
     }
     Ok(sum * (1.0 / total))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gltf::primitive::Influences;
+    use durer::math::Vec4;
+
+    #[test]
+    fn normals_stay_perpendicular_under_scale_and_mirror() {
+        // A plane through x + y = 0, stretched along x and mirrored along z.
+        let mut g = Geometry {
+            positions: vec![Vec3::ZERO, Vec3::new(1.0, -1.0, 0.0), Vec3::Z],
+            normals: vec![Vec3::new(1.0, 1.0, 0.0).normalize(); 3],
+            tangents: vec![Vec4::new(0.0, 0.0, 1.0, -1.0); 3],
+            influences: vec![Influences { joints: vec![[0; 4]; 3], weights: vec![[1.0; 4]; 3] }],
+            ..Geometry::default()
+        };
+        let joint = DMat4::from_scale(DVec3::new(3.0, 1.0, -2.0));
+        skin(&mut g, &[joint], "here").unwrap();
+        let [a, b, c] = [0, 1, 2].map(|i| g.positions[i]);
+        assert_eq!([a, b, c], [Vec3::ZERO, Vec3::new(3.0, -1.0, 0.0), Vec3::Z * -2.0]);
+        let normal = g.normals[0];
+        assert!(normal.dot(b).abs() < 1e-6 && normal.dot(c).abs() < 1e-6, "{normal}");
+        // On the same side as before: where x and y grow.
+        assert!((normal.length() - 1.0).abs() < 1e-6 && normal.x > 0.0 && normal.y > 0.0);
+        assert_eq!(g.tangents[0], Vec4::new(0.0, 0.0, -1.0, -1.0));
+    }
+}

@@ -8,7 +8,6 @@ use super::json::{Draco, Whole};
 use crate::{Error, Place, Result};
 
 /// What a normalized integer is divided by; `None` for types that are not normalized.
-#[cfg(feature = "draco")]
 const fn largest(kind: draco_core::DataType) -> Option<f32> {
     match kind {
         draco_core::DataType::Int8 => Some(127.0),
@@ -20,19 +19,16 @@ const fn largest(kind: draco_core::DataType) -> Option<f32> {
 }
 
 /// A decoded mesh.
-#[cfg(feature = "draco")]
 #[derive(Debug)]
 pub struct Packed(draco_core::Mesh);
 
 /// One of its attributes.
-#[cfg(feature = "draco")]
 #[derive(Debug, Clone, Copy)]
 pub struct Attribute<'a> {
     attribute: &'a draco_core::PointAttribute,
     points: usize,
 }
 
-#[cfg(feature = "draco")]
 impl Packed {
     /// Decodes the mesh.
     ///
@@ -85,7 +81,6 @@ impl Packed {
     }
 }
 
-#[cfg(feature = "draco")]
 impl Attribute<'_> {
     /// N floats per vertex; integers become −1 … 1 or 0 … 1 where `normalized`.
     ///
@@ -108,42 +103,5 @@ impl Attribute<'_> {
             values.iter_mut().for_each(|v| *v = (*v / scale).max(-1.0));
         }
         Ok(values.as_chunks::<N>().0.to_vec())
-    }
-}
-
-/// Without the feature there is never a decoded mesh: the fallback accessors are read.
-#[cfg(not(feature = "draco"))]
-#[derive(Debug)]
-pub enum Packed {}
-
-/// Without the feature there is none.
-#[cfg(not(feature = "draco"))]
-pub type Attribute<'a> = &'a Packed;
-
-#[cfg(not(feature = "draco"))]
-impl Packed {
-    /// Nothing: the accessors of the file are read in its place, where they have data.
-    pub fn read(_: &Source<'_>, _: &Draco, _: &str) -> Result<Option<Self>> {
-        Ok(None)
-    }
-
-    /// Never called.
-    pub fn indices(&self) -> Vec<u32> {
-        match *self {}
-    }
-
-    /// Never called.
-    pub fn attribute(&self, _: Whole) -> Option<Attribute<'_>> {
-        match *self {}
-    }
-
-    /// Never called.
-    pub fn floats<const N: usize>(
-        &self,
-        _: bool,
-        _: &Source<'_>,
-        _: &str,
-    ) -> Result<Vec<[f32; N]>> {
-        match *self {}
     }
 }

@@ -17,6 +17,10 @@ mod buffer;
 mod check;
 mod container;
 mod deform;
+#[cfg(feature = "draco")]
+mod draco;
+#[cfg(not(feature = "draco"))]
+#[path = "no_draco.rs"]
 mod draco;
 mod extension;
 mod eye;
@@ -47,7 +51,19 @@ pub fn sniff(bytes: &[u8]) -> bool {
 /// Reads a model, `.gltf` or `.glb`, posed as `options.pose` says.
 ///
 /// Buffers and images that the file refers to come from `resources`; a reference that is absolute,
-/// leads out of the model's folder or has a scheme is refused without asking.
+/// leads out of the model's folder or has a scheme is refused without asking. An image that is missing
+/// or broken is drawn white, with a warning. Linear in the data that are drawn.
+///
+/// ```
+/// use durer_formats::{NoResources, ReadOptions, gltf};
+/// let file = br#"{"asset": {"version": "2.0"},
+///     "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}],
+///     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+///     "nodes": [{"mesh": 0, "name": "all in one point"}]}"#;
+/// let model = gltf::read(file, &NoResources, &ReadOptions::default())?;
+/// assert_eq!(model.scene.triangle_count(), 1);
+/// # Ok::<(), durer_formats::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::Decode`] with the byte of the container, the line of the JSON or the path in it;

@@ -506,3 +506,83 @@ fn several_sets_of_texture_coordinates_are_kept() {
     assert_eq!(sets[0], [Vec2::new(0.0, 1.0), Vec2::new(0.2, 0.0), Vec2::ONE]);
     assert_eq!(sets[1], [Vec2::new(1.0, 2.0), Vec2::new(3.0, 4.0), Vec2::new(5.0, 6.0)]);
 }
+
+/// A triangle with RGBA colours in bytes, packed by a Draco encoder: by edgebreaker, and one vertex
+/// after the other.
+#[cfg(feature = "draco")]
+const DRACO: [&str; 2] = [
+    "445241434f020201010000000301010100000107ff011101010002ff0000000000010009030000000102020401010100\
+     00803f0000000000000000000000000000803f0000000000000000000000000000000001010100091b5515ad2a03f56f\
+     81000100cc666801cde7321a0000000000ff000000",
+    "445241434f02020100000001030100010201020009030000020204010100010000000000000000000000000000803f00\
+     00000000000000000000000000803f0000000000010100091b5515ad2a03047081018039201050e66c8616d00c000000\
+     00ff000000",
+];
+
+/// A file whose triangle is a Draco bitstream.
+#[cfg(feature = "draco")]
+fn draco(bytes: &[u8], normalized: bool) -> String {
+    file(
+        bytes,
+        &format!(
+            r#""accessors": [{{"componentType": 5126, "count": 3, "type": "VEC3"}},
+            {{"componentType": 5121, "normalized": {normalized}, "count": 3, "type": "VEC4"}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "COLOR_0": 1}},
+            "extensions": {{"KHR_draco_mesh_compression": {{"bufferView": 0,
+                "attributes": {{"POSITION": 0, "COLOR_0": 1}}}}}}}}]}}],
+            "nodes": [{{"mesh": 0}}], "extensionsRequired": ["KHR_draco_mesh_compression"]"#
+        ),
+    )
+}
+
+#[cfg(feature = "draco")]
+#[test]
+fn draco_attributes_are_normalized_as_the_accessor_says() {
+    for hex in DRACO {
+        let digits: Vec<u8> =
+            hex.bytes().map(|d| (d as char).to_digit(16).unwrap() as u8).collect();
+        let bytes: Vec<u8> = digits.as_chunks::<2>().0.iter().map(|[a, b]| a << 4 | b).collect();
+        let all = scene(&draco(&bytes, true));
+        let mesh = &all.meshes[0];
+        let corner = |p: Vec3| mesh.positions.iter().position(|q| *q == p).unwrap();
+        let colors = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| mesh.colors[corner(p)]);
+        let expected = [[255, 0, 51, 255], [0, 255, 0, 102], [51, 51, 255, 255]];
+        assert_eq!(colors, expected.map(|c| Vec4::from(c.map(|c| c as f32 / 255.0))));
+        let [a, b, c] = mesh.triangle(0).map(|i| mesh.positions[i as usize]);
+        assert_eq!((b - a).cross(c - a), Vec3::Z);
+        assert_eq!(
+            scene(&draco(&bytes, false)).meshes[0].colors.iter().map(|c| c.x).sum::<f32>(),
+            306.0
+        );
+        for cut in 0..bytes.len() - 8 {
+            let message = error(&draco(&bytes[..cut], true));
+            let begin = "meshes[0].primitives[0].extensions.KHR_draco_mesh_compression: ";
+            assert!(message.starts_with(begin), "{cut}: {message}");
+        }
+    }
+}
+
+#[cfg(not(feature = "draco"))]
+#[test]
+fn draco_is_refused_by_name_without_the_feature() {
+    let required = r#""nodes": [], "extensionsRequired": ["KHR_draco_mesh_compression"]"#;
+    assert!(error(&triangle(required)).contains("KHR_draco_mesh_compression is not supported"));
+}
+
+#[test]
+fn morph_targets_have_as_many_vertices() {
+    let accessors = r#"{"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}"#;
+    let text = file(
+        &triangle_bytes(),
+        &format!(
+            r#""accessors": [{ACCESSOR}, {accessors}], "nodes": [{{"mesh": 0}}],
+            "meshes": [{{"weights": [1], "primitives": [{{"attributes": {{"POSITION": 0}},
+            "targets": [{{"POSITION": 1}}]}}]}}]"#
+        ),
+    );
+    let message = error(&text);
+    assert_eq!(
+        message,
+        "meshes[0].primitives[0].targets[0].POSITION: has 2 elements for 3 vertices"
+    );
+}

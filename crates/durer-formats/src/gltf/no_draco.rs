@@ -1,0 +1,39 @@
+//! What stands in for Draco without the feature `draco`.
+
+use super::buffer::Source;
+use super::json::{Draco, Whole};
+use crate::Result;
+
+/// Without the feature there is never a decoded mesh: the fallback accessors are read.
+#[derive(Debug)]
+pub enum Packed {}
+
+/// Without the feature there is none.
+pub type Attribute<'a> = &'a Packed;
+
+impl Packed {
+    /// Nothing: the accessors of the file are read in its place, where they have data.
+    pub fn read(_: &Source<'_>, _: &Draco, _: &str) -> Result<Option<Self>> {
+        Ok(None)
+    }
+
+    /// Never called.
+    pub fn indices(&self) -> Vec<u32> {
+        match *self {}
+    }
+
+    /// Never called.
+    pub fn attribute(&self, _: Whole) -> Option<Attribute<'_>> {
+        match *self {}
+    }
+
+    /// Never called.
+    pub fn floats<const N: usize>(
+        &self,
+        _: bool,
+        _: &Source<'_>,
+        _: &str,
+    ) -> Result<Vec<[f32; N]>> {
+        match *self {}
+    }
+}
