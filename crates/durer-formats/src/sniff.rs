@@ -114,11 +114,11 @@ pub fn read_model(
         Some(ModelFormat::Stl) => stl::read(bytes, resources, options),
         Some(ModelFormat::Ply) => ply::read(bytes, resources, options),
         Some(ModelFormat::ThreeMf) => threemf::read(bytes, resources, options),
-        None => Err(Error::Unknown(unknown(bytes, name))),
+        None => Err(Error::Unknown(unknown(bytes))),
     }
 }
 
-fn unknown(bytes: &[u8], name: &str) -> String {
+fn unknown(bytes: &[u8]) -> String {
     let formats = ModelFormat::ALL.map(|f| format!("{} (.{})", f.name(), f.suffixes().join(" .")));
     let what = if bytes.is_empty() {
         "the file is empty"
@@ -127,7 +127,7 @@ fn unknown(bytes: &[u8], name: &str) -> String {
     } else {
         "neither content nor name tell"
     };
-    format!("`{name}`: {what}; models are read from {}", formats.join(", "))
+    format!("{what}; models are read from {}", formats.join(", "))
 }
 
 #[cfg(test)]
@@ -166,7 +166,7 @@ mod tests {
             e.expect_err("unknown").to_string()
         };
         let text = message(b"OFF\n", "x.off");
-        assert!(text.contains("`x.off`") && text.contains("STL (.stl)"), "{text}");
+        assert!(text.contains("neither content") && text.contains("STL (.stl)"), "{text}");
         assert!(message(b"newmtl a\n", "x.mtl").contains("material library"));
         assert!(message(b"", "x").contains("empty"));
     }

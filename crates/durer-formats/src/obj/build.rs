@@ -79,6 +79,14 @@ fn warn_of_repairs(model: &mut Model, repairs: &Repairs) {
         (&repairs.short_faces, "elements have too few corners and were left out".to_owned()),
         (&repairs.non_finite, "vertices have a coordinate that is NaN or infinite".to_owned()),
         (&repairs.sloppy, "numbers have something behind them, which was ignored".to_owned()),
+        (
+            &repairs.no_attributes,
+            "corners name texture coordinates or normals, of which the file has none".to_owned(),
+        ),
+        (
+            &repairs.no_color,
+            "vertices have no color where others have one; they are white".to_owned(),
+        ),
         (&repairs.unnamed_parts, "further groups were joined to the last: too many".to_owned()),
     ] {
         if tally.count > 0 {

@@ -30,6 +30,10 @@ pub(super) struct Repairs {
     pub sloppy: Tally,
     pub unnamed_parts: Tally,
     pub byte_colors: bool,
+    /// Corners with a texture coordinate or normal in a file that has none of them.
+    pub no_attributes: Tally,
+    /// Vertices with no color, or no finite one, where others have one.
+    pub no_color: Tally,
 }
 
 /// What the statements say.
@@ -196,6 +200,10 @@ impl<'a> Parser<'a> {
             colors.reserve_exact(self.counts.positions);
         }
         colors.resize(self.out.positions.len() - 1, Vec3::ONE);
+        let color = color.filter(|c| c.is_finite());
+        if color.is_none() {
+            self.out.repairs.no_color.add(|| Place::Line(self.cursor.line(), 0));
+        }
         colors.push(color.unwrap_or(Vec3::ONE));
         self.brightest = self.brightest.max(color.map_or(0.0, Vec3::max_element));
     }
@@ -231,6 +239,7 @@ impl<'a> Parser<'a> {
             return Err(self.not_a_corner());
         }
         let position = self.resolve(position, Kind::Position)?;
+        let (tex_coord, normal) = self.only_existing(tex_coord, normal);
         let tex_coord = tex_coord.map(|i| self.resolve(i, Kind::TexCoord)).transpose()?;
         let normal = normal.map(|i| self.resolve(i, Kind::Normal)).transpose()?;
         Ok(Some(Corner {
@@ -238,6 +247,18 @@ impl<'a> Parser<'a> {
             tex_coord: tex_coord.unwrap_or(NONE),
             normal: normal.unwrap_or(NONE),
         }))
+    }
+
+    /// Drops references to texture coordinates or normals where the file has none at all: some
+    /// writers number them all the same.
+    fn only_existing(&mut self, t: Option<i64>, n: Option<i64>) -> (Option<i64>, Option<i64>) {
+        let kept =
+            (t.filter(|_| self.counts.tex_coords > 0), n.filter(|_| self.counts.normals > 0));
+        if kept != (t, n) {
+            let place = self.cursor.place();
+            self.out.repairs.no_attributes.add(|| place);
+        }
+        kept
     }
 
     fn not_a_corner(&mut self) -> Error {

@@ -2,4 +2,6 @@
 
 mod conformance_gltf;
 mod conformance_meshes;
+mod mesh_properties;
 mod shared;
+mod threemf;

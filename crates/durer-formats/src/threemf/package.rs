@@ -1,0 +1,87 @@
+//! The archive: parts by name, and the relationship that tells which is the model.
+
+use crate::{Error, Limits, Place, Result};
+use quick_xml::Reader;
+use quick_xml::events::Event;
+use std::io::{Cursor, Read};
+use zip::ZipArchive;
+
+/// Where the relationships of the package stand.
+const RELATIONSHIPS: &str = "_rels/.rels";
+/// Where nearly all writers put the model.
+const USUAL: &str = "3D/3dmodel.model";
+
+/// An open archive.
+pub(super) struct Package<'a> {
+    archive: ZipArchive<Cursor<&'a [u8]>>,
+    /// Bytes that may still be inflated.
+    left: u64,
+    limit: u64,
+}
+
+impl<'a> Package<'a> {
+    pub fn open(bytes: &'a [u8], limits: Limits) -> Result<Self> {
+        let archive = ZipArchive::new(Cursor::new(bytes))
+            .map_err(|e| Error::whole(format!("the ZIP archive is broken: {e}")))?;
+        Ok(Self { archive, left: limits.decoded_bytes, limit: limits.decoded_bytes })
+    }
+
+    /// The inflated bytes of a part.
+    pub fn read(&mut self, name: &str) -> Result<Vec<u8>> {
+        let at = |message: String| Error::path(name, message);
+        let name_in_zip = name.trim_start_matches('/');
+        let number = self
+            .archive
+            .index_for_name(name_in_zip)
+            .ok_or_else(|| at("is not in the archive".to_owned()))?;
+        let file = self.archive.by_index(number).map_err(|e| at(format!("cannot be read: {e}")))?;
+        let (what, limit) = ("size of the inflated parts", self.limit);
+        let too_large = |size: u64| {
+            let value = (limit - self.left).saturating_add(size);
+            Error::Limit { place: Place::Path(name.to_owned()), what, value, limit }
+        };
+        if file.size() > self.left {
+            return Err(too_large(file.size()));
+        }
+        // What the archive claims is not trusted: no memory is taken ahead, and one byte more than
+        // is left gives the lie away.
+        let mut bytes = Vec::new();
+        let mut file = file.take(self.left.saturating_add(1));
+        file.read_to_end(&mut bytes).map_err(|e| at(format!("cannot be inflated: {e}")))?;
+        if bytes.len() as u64 > self.left {
+            return Err(too_large(bytes.len() as u64));
+        }
+        self.left -= bytes.len() as u64;
+        Ok(bytes)
+    }
+
+    /// The name of the part that the package's relationships call the 3D model.
+    pub fn root(&mut self) -> Result<String> {
+        let Ok(xml) = self.read(RELATIONSHIPS) else { return Ok(USUAL.to_owned()) };
+        let mut reader = Reader::from_reader(xml.as_slice());
+        loop {
+            let at = reader.buffer_position();
+            match reader.read_event() {
+                Ok(Event::Start(e) | Event::Empty(e)) => {
+                    let value = |key: &str| {
+                        let found = e.attributes().flatten().find(|a| a.key.as_ref() == key);
+                        found.map(|a| a.value.into_owned())
+                    };
+                    let model = value("Type").is_some_and(|t| t.ends_with("/3dmodel"));
+                    if let Some(target) = value("Target").filter(|_| model) {
+                        return Ok(target.trim_start_matches('/').to_owned());
+                    }
+                }
+                Ok(Event::Eof) => break,
+                Ok(_) => {}
+                Err(e) => {
+                    return Err(Error::path(format!("{RELATIONSHIPS}, byte {at}"), e.to_string()));
+                }
+            }
+        }
+        Err(Error::path(
+            RELATIONSHIPS,
+            "names no 3D model (a relationship whose type ends in /3dmodel)",
+        ))
+    }
+}
