@@ -189,6 +189,64 @@ mod tests {
         assert_eq!(deep, [[128, 128, 128, 255], [1, 1, 1, 255]]);
     }
 
+    /// A baseline JPEG of one 8 × 8 block per component, all samples of a component alike: its two
+    /// Huffman tables know differences of 0, 7 and 8 bits, and the end of a block.
+    fn jpeg_block(samples: &[u8]) -> Vec<u8> {
+        let count = samples.len() as u8;
+        let mut bytes = vec![0xff, 0xd8];
+        bytes.extend(b"\xff\xee\0\x0eAdobe\0\x64\0\0\0\0\0");
+        // Quantization: the constant by 8, so that a step of it is a step of the samples.
+        bytes.extend([0xff, 0xdb, 0, 67, 0, 8]);
+        bytes.extend([1; 63]);
+        bytes.extend([0xff, 0xc0, 0, 8 + 3 * count, 8, 0, 8, 0, 8, count]);
+        (1..=count).for_each(|id| bytes.extend([id, 0x11, 0]));
+        bytes.extend([0xff, 0xc4, 0, 22, 0x00, 0, 3]);
+        bytes.extend([0; 14]);
+        bytes.extend([0, 7, 8]);
+        bytes.extend([0xff, 0xc4, 0, 20, 0x10, 1]);
+        bytes.extend([0; 15]);
+        bytes.extend([0, 0xff, 0xda, 0, 6 + 2 * count, count]);
+        (1..=count).for_each(|id| bytes.extend([id, 0]));
+        bytes.extend([0, 63, 0]);
+        let mut bits = String::new();
+        for &sample in samples {
+            let constant = i32::from(sample) - 128;
+            bits += &match constant {
+                64..=127 => format!("01{constant:07b}0"),
+                -255..=-128 => format!("10{:08b}0", constant + 255),
+                _ => "000".to_owned(),
+            };
+        }
+        bits += &"1".repeat(bits.len().wrapping_neg() % 8);
+        for byte in bits.as_bytes().chunks(8) {
+            let byte = byte.iter().fold(0, |b, bit| b << 1 | (bit - b'0'));
+            bytes.push(byte);
+            bytes.extend((byte == 0xff).then_some(0));
+        }
+        bytes.extend([0xff, 0xd9]);
+        bytes
+    }
+
+    #[test]
+    fn jpegs_of_one_three_and_four_components() {
+        let pixels = |samples: &[u8]| {
+            let image = decode(&jpeg_block(samples), "test", &Limits::default()).unwrap();
+            assert_eq!((image.width, image.height), (8, 8));
+            assert!(image.data.iter().all(|p| *p == image.data[0]));
+            image.data[0]
+        };
+        assert_eq!(pixels(&[228]), [228, 228, 228, 255]);
+        // CMYK as Adobe writes it: 255 is no ink.
+        assert_eq!(pixels(&[255, 0, 0, 255]), [255, 0, 0, 255]);
+        assert_eq!(pixels(&[255, 255, 0, 128]), [128, 128, 0, 255]);
+        let whole = jpeg_block(&[228]);
+        let mut huge = whole.clone();
+        let size = whole.windows(2).position(|w| w == [0xff, 0xc0]).unwrap() + 5;
+        huge[size..size + 4].copy_from_slice(&[0x3f; 4]);
+        let error = decode(&huge, "huge", &Limits::default()).unwrap_err().to_string();
+        assert!(error.contains("too short for its 16191 × 16191 pixels"), "{error}");
+    }
+
     #[test]
     fn a_size_is_refused_before_memory_is_taken() {
         let mut bytes = png_row(1, png::ColorType::Rgb, png::BitDepth::Eight, &[5, 6, 7]);

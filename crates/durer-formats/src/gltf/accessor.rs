@@ -1,6 +1,7 @@
 //! Accessors: typed arrays in buffer views, interleaved, sparse, normalized.
 
 use super::buffer::Source;
+use super::check::missing;
 use super::json::{Accessor, Root, Whole};
 use crate::{Error, Result};
 
@@ -112,9 +113,10 @@ impl Layout {
     /// Where the type is unknown or the elements do not fit into the view.
     pub fn of(root: &Root, index: usize) -> Result<Self> {
         let at = || format!("accessors[{index}]");
-        let accessor = root.accessors.get(index).ok_or_else(|| {
-            Error::path(at(), format!("does not exist: there are {}", root.accessors.len()))
-        })?;
+        let accessor = root
+            .accessors
+            .get(index)
+            .ok_or_else(|| missing("accessor", Whole(index as u64), root.accessors.len(), at()))?;
         let component = Component::of(accessor.component_type).ok_or_else(|| {
             Error::path(at() + ".componentType", "must be 5120, 5121, 5122, 5123, 5125 or 5126")
         })?;
@@ -141,11 +143,10 @@ impl Layout {
 
     /// Takes the view's stride and checks that all elements lie in it.
     fn fit(&mut self, root: &Root, view: Whole, at: &str) -> Result<()> {
-        let view = root.buffer_views.get(view.index()).ok_or_else(|| {
-            let message =
-                format!("there is no buffer view {}, only {}", view.0, root.buffer_views.len());
-            Error::path(at, message)
-        })?;
+        let view = root
+            .buffer_views
+            .get(view.index())
+            .ok_or_else(|| missing("buffer view", view, root.buffer_views.len(), at))?;
         // A stride of zero is not allowed but written by some for "tightly packed".
         if let Some(stride) = view.byte_stride.filter(|s| s.0 != 0) {
             if stride.index() < self.stride {
@@ -209,15 +210,19 @@ fn check_sparse(root: &Root, accessor: &Accessor, whole: &Layout, at: &str) -> R
 impl Source<'_> {
     /// Elements without gaps, sparse values put in.
     fn packed(&self, index: Whole, at: &str) -> Result<(Layout, Vec<u8>)> {
-        let layout = Layout::of(self.root, index.index()).map_err(|e| {
-            if index.index() < self.root.accessors.len() { e } else { missing(index, at) }
-        })?;
+        if index.index() >= self.root.accessors.len() {
+            return Err(missing("accessor", index, self.root.accessors.len(), at));
+        }
+        let layout = Layout::of(self.root, index.index())?;
         let accessor = &self.root.accessors[index.index()];
-        let size = layout.count as u64 * layout.element() as u64;
-        self.budget.bytes(size, at)?;
         let mut bytes = match accessor.buffer_view {
             Some(view) => gather(self.view(view, at)?, &layout, at)?,
-            None => vec![0; size as usize],
+            None => {
+                // No data stand behind this count, so the limit alone bounds it.
+                let size = (layout.count as u64).saturating_mul(layout.element() as u64);
+                self.budget.bytes(size, at)?;
+                vec![0; layout.count * layout.element()]
+            }
         };
         if let Some(sparse) = &accessor.sparse {
             let at = format!("accessors[{}]", index.0);
@@ -283,10 +288,6 @@ impl Source<'_> {
             .map(|e| std::array::from_fn(|lane| number(&e[lane * size..][..size])))
             .collect())
     }
-}
-
-fn missing(index: Whole, at: &str) -> Error {
-    Error::path(at, format!("there is no accessor {}", index.0))
 }
 
 /// Elements one after the other, whatever lies between them.

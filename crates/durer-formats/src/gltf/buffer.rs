@@ -1,5 +1,6 @@
 //! Buffers and the views into them, with what their memory is charged to.
 
+use super::check::missing;
 use super::container::Container;
 use super::json::{BufferView, Root, Whole};
 use super::{meshopt, uri};
@@ -90,10 +91,8 @@ impl<'a> Source<'a> {
     /// Where the view does not exist or its buffer has no data.
     pub fn view(&self, index: Whole, at: &str) -> Result<&[u8]> {
         let i = index.index();
-        let view = self.root.buffer_views.get(i).ok_or_else(|| {
-            let count = self.root.buffer_views.len();
-            Error::path(at, format!("there is no buffer view {i}, only {count}"))
-        })?;
+        let views = &self.root.buffer_views;
+        let view = views.get(i).ok_or_else(|| missing("buffer view", index, views.len(), at))?;
         match self.unpacked.get(i) {
             Some(Some(bytes)) => Ok(bytes),
             _ => self.slice(

@@ -22,12 +22,18 @@ pub fn references(root: &Root) -> Result<()> {
 /// That `index`, where there is one, is below `count`.
 fn exists(index: Option<Whole>, count: usize, what: &str, at: impl Display) -> Result<()> {
     match index {
-        Some(i) if i.index() >= count => {
-            let count = if count == 0 { "none".to_owned() } else { format!("only {count}") };
-            Err(Error::path(at.to_string(), format!("there is no {what} {}, {count}", i.0)))
-        }
+        Some(i) if i.index() >= count => Err(missing(what, i, count, at)),
         _ => Ok(()),
     }
+}
+
+/// The error for a reference to one of `count` things that does not exist.
+pub fn missing(what: &str, index: Whole, count: usize, at: impl Display) -> Error {
+    let message = match count {
+        0 => format!("there is no {what} {}, none at all", index.0),
+        _ => format!("there is no {what} {}: there are {count}", index.0),
+    };
+    Error::path(at.to_string(), message)
 }
 
 /// That a member which must be there is there.

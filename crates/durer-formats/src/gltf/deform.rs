@@ -131,8 +131,8 @@ pub fn skin(g: &mut Geometry, joints: &[DMat4], at: &str) -> Result<()> {
 /// The weighted mean of the matrices that vertex `v` follows.
 fn blend(g: &Geometry, v: usize, joints: &[DMat4], at: &str) -> Result<DMat4> {
     let (mut sum, mut total) = (DMat4::ZERO, 0.0);
-    for (set, (indices, weights)) in g.influences.iter().enumerate() {
-        for (&joint, &weight) in indices[v].iter().zip(&weights[v]) {
+    for (set, four) in g.influences.iter().enumerate() {
+        for (&joint, &weight) in four.joints[v].iter().zip(&four.weights[v]) {
             if weight == 0.0 || !weight.is_finite() {
                 continue;
             }

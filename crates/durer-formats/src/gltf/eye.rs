@@ -119,6 +119,9 @@ fn light_kind(light: &json::Light, world: DMat4) -> Option<LightKind> {
     let position = world.w_axis.truncate();
     let direction = (-world.z_axis.truncate()).try_normalize();
     let range = light.range.filter(|r| *r > 0.0);
+    if !position.is_finite() {
+        return None;
+    }
     Some(match light.kind.as_str() {
         "directional" => LightKind::Directional { direction: direction? },
         "point" => LightKind::Point { position, range },

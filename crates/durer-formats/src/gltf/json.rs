@@ -3,7 +3,8 @@
 //! Unknown members are passed over; wrong types are errors with line and column. Numbers that are
 //! indices or sizes may be written as `3` or `3.0`, as JSON Schema allows.
 
-use serde::de::{Deserialize, Deserializer, Error as _, Visitor};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 /// A whole number from 0: an index, a count or a size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,13 +41,30 @@ impl<'de> Deserialize<'de> for Whole {
     }
 }
 
-/// Declares structs of optional members, all named in camel case and with a default.
+/// Declares structs of optional members, all named in camel case and with a default. They are read
+/// from JSON objects alone; what is derived would take arrays too.
 macro_rules! objects {
     ($($(#[$meta:meta])* $name:ident { $($(#[$field_meta:meta])* $field:ident: $type:ty,)* })*) => {$(
         $(#[$meta])*
         #[derive(Debug, Clone, Default, serde::Deserialize)]
-        #[serde(default, rename_all = "camelCase")]
+        #[serde(remote = "Self", default, rename_all = "camelCase")]
         pub struct $name { $($(#[$field_meta])* pub $field: $type,)* }
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                struct Reader;
+                impl<'de> Visitor<'de> for Reader {
+                    type Value = $name;
+                    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                        f.write_str("a JSON object")
+                    }
+                    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<$name, A::Error> {
+                        $name::deserialize(MapAccessDeserializer::new(map))
+                    }
+                }
+                deserializer.deserialize_map(Reader)
+            }
+        }
     )*};
 }
 
@@ -255,9 +273,7 @@ objects! {
 /// # Errors
 /// A decode error at line and column.
 pub fn parse(text: &[u8]) -> crate::Result<Root> {
-    let mut reader = serde_json::Deserializer::from_slice(text);
-    let root = ObjectRoot::deserialize(&mut reader).and_then(|root| reader.end().map(|()| root.0));
-    root.map_err(|e| {
+    serde_json::from_slice(text).map_err(|e| {
         let message = e.to_string();
         // The place goes before the message, so it is taken off its end.
         let end = format!(" at line {} column {}", e.line(), e.column());
@@ -266,28 +282,20 @@ pub fn parse(text: &[u8]) -> crate::Result<Root> {
     })
 }
 
-/// A root that must be an object: structs read from arrays too, which glTF does not know.
-struct ObjectRoot(Root);
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl<'de> Deserialize<'de> for ObjectRoot {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Reader;
-        impl<'de> Visitor<'de> for Reader {
-            type Value = ObjectRoot;
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a JSON object with an `asset`")
-            }
-            fn visit_map<A: serde::de::MapAccess<'de>>(
-                self,
-                map: A,
-            ) -> Result<Self::Value, A::Error> {
-                let root = Root::deserialize(serde::de::value::MapAccessDeserializer::new(map))?;
-                if root.asset.is_none() {
-                    return Err(A::Error::missing_field("asset"));
-                }
-                Ok(ObjectRoot(root))
-            }
-        }
-        deserializer.deserialize_map(Reader)
+    #[test]
+    fn wrong_types_are_told_with_their_line() {
+        let error = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
+        assert!(parse(br#"{"scene": 2.0, "what": [{}], "nodes": [{"mesh": 0}]}"#).is_ok());
+        assert!(error("[]").starts_with("line 1"));
+        assert!(error("{\n\"scene\": -1}").starts_with("line 2, column 1"));
+        assert!(error("{\"scene\": 1.5}").contains("whole number"));
+        assert!(error("{\"images\": [[\"uri\"]]}").contains("a JSON object"));
+        assert!(error("{} x").contains("trailing"));
+        assert!(error(&"[".repeat(100_000)).starts_with("line 1"));
+        assert!(error(&format!("{{\"extras\": {}", "[".repeat(100_000))).starts_with("line 1"));
     }
 }

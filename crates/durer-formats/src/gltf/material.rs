@@ -10,6 +10,9 @@ use durer::scene::{
     Texture, TextureRef, Wrap,
 };
 
+/// Emission is cut at this factor, so that light stays finite whatever a file says.
+const BRIGHTEST: f32 = 1e6;
+
 /// Reads all materials, and the textures and images that they use. Their indices in the scene are
 /// those of the file; images that nothing uses, or that cannot be read, are empty (white).
 ///
@@ -69,16 +72,20 @@ fn read_image(
     match decode_image(source, index, resources, &at) {
         Err(error @ Error::Limit { .. }) => Err(error),
         Err(error) => {
-            // Errors of this crate bring their place with them; those of the decoder do not.
-            let (text, prefix) = (error.to_string(), format!("{at}"));
-            let message = text
-                .strip_prefix(&prefix)
-                .map_or(text.as_str(), |t| t.trim_start_matches([':', ' ']));
-            let message = format!("{message}; drawn white");
+            let message = format!("{}; drawn white", without_place(error));
             warnings.push(Warning { place: Place::Path(at), message });
             Ok(Image::default())
         }
         ok => ok,
+    }
+}
+
+/// What an error says, without the place, which the warning has.
+fn without_place(error: Error) -> String {
+    match error {
+        Error::Decode { message, .. } => message,
+        Error::Resource { uri, message, .. } => format!("cannot read `{uri}`: {message}"),
+        other => other.to_string(),
     }
 }
 
@@ -89,9 +96,7 @@ fn decode_image(
     at: &str,
 ) -> Result<Image> {
     let image = &source.root.images[index];
-    let data =
-        image.uri.as_deref().is_some_and(|u| u.len() > 4 && u[..5].eq_ignore_ascii_case("data:"));
-    let uri = image.uri.as_deref().filter(|_| !data);
+    let uri = image.uri.as_deref().filter(|uri| !uri::is_data(uri));
     let name = image.name.as_deref().or(uri).map_or_else(|| at.to_owned(), str::to_owned);
     let limits = source.budget.rest();
     let owned;
@@ -136,7 +141,8 @@ fn material(index: usize, m: &json::Material, warnings: &mut Vec<Warning>) -> Ma
     let mut material = Material {
         name: m.name.clone().unwrap_or_default(),
         model: ShadingModel::MetallicRoughness,
-        base_color: Vec4::from(pbr.base_color_factor.unwrap_or([1.0; 4])),
+        base_color: Vec4::from(pbr.base_color_factor.unwrap_or([1.0; 4]))
+            .clamp(Vec4::ZERO, Vec4::ONE),
         base_color_texture: texture(pbr.base_color_texture.as_ref()),
         metallic: pbr.metallic_factor.unwrap_or(1.0).clamp(0.0, 1.0),
         roughness: pbr.roughness_factor.unwrap_or(1.0).clamp(0.0, 1.0),
@@ -145,7 +151,8 @@ fn material(index: usize, m: &json::Material, warnings: &mut Vec<Warning>) -> Ma
         normal_scale: normal.and_then(|t| t.scale).unwrap_or(1.0),
         occlusion_texture: texture(occlusion),
         occlusion_strength: occlusion.and_then(|t| t.strength).unwrap_or(1.0),
-        emissive: Vec3::from(m.emissive_factor.unwrap_or([0.0; 3])) * strength.unwrap_or(1.0),
+        emissive: Vec3::from(m.emissive_factor.unwrap_or([0.0; 3])).clamp(Vec3::ZERO, Vec3::ONE)
+            * strength.unwrap_or(1.0).clamp(0.0, BRIGHTEST),
         emissive_texture: texture(m.emissive_texture.as_ref()),
         alpha_mode: AlphaMode::Opaque,
         double_sided: m.double_sided,

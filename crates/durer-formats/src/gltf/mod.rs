@@ -92,7 +92,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
 
 /// Only version 2 is read, and of it 2.0.
 fn check_version(root: &Root) -> Result<()> {
-    let asset = root.asset.clone().unwrap_or_default();
+    let asset = root.asset.clone().ok_or_else(|| Error::whole("`asset` is missing"))?;
     let version = asset.version.ok_or_else(|| Error::path("asset", "`version` is missing"))?;
     let wanted = asset.min_version.as_deref().unwrap_or(&version);
     let known = match asset.min_version {
@@ -138,7 +138,10 @@ impl Builder<'_> {
             };
             // Skins bring vertices to the world themselves; their node's place means nothing.
             let world_from_mesh = if skinned { DMat4::IDENTITY } else { self.world[n] };
-            if let Some(mesh) = made {
+            if !world_from_mesh.is_finite() {
+                let place = Place::Path(format!("nodes[{n}]"));
+                model.warn(place, "its place in the world is not finite; left out");
+            } else if let Some(mesh) = made {
                 model.scene.instances.push(Instance { mesh, world_from_mesh, name: name(node) });
             }
         }

@@ -25,9 +25,18 @@ pub struct Geometry {
     /// `None` where vertex i is index i.
     pub indices: Option<Vec<u32>>,
     /// Joints and their weights, four and four.
-    pub influences: Vec<(Vec<[u32; 4]>, Vec<[f32; 4]>)>,
+    pub influences: Vec<Influences>,
     /// What was repaired.
     pub notes: Vec<String>,
+}
+
+/// A set of four joints that each vertex follows.
+#[derive(Debug, Clone)]
+pub struct Influences {
+    /// Numbers of joints in the skin.
+    pub joints: Vec<[u32; 4]>,
+    /// How much each counts; their sum need not be 1.
+    pub weights: Vec<[f32; 4]>,
 }
 
 /// Reads a primitive; `None` where it has no positions.
@@ -132,7 +141,7 @@ impl<'a> Attributes<'a> {
                 }
                 None => self.source.integers::<4>(accessor, &at)?,
             };
-            g.influences.push((joints, weights));
+            g.influences.push(Influences { joints, weights });
         }
         Ok(())
     }
@@ -206,9 +215,10 @@ impl Geometry {
         ];
         let sets = self.tex_coords.iter().map(Vec::len).enumerate();
         let sets = sets.map(|(i, n)| (format!("TEXCOORD_{i}"), n));
-        let skin = self.influences.iter().enumerate().flat_map(|(i, (joints, weights))| {
-            [(format!("JOINTS_{i}"), joints.len()), (format!("WEIGHTS_{i}"), weights.len())]
-        });
+        let skin =
+            self.influences.iter().enumerate().flat_map(|(i, Influences { joints, weights })| {
+                [(format!("JOINTS_{i}"), joints.len()), (format!("WEIGHTS_{i}"), weights.len())]
+            });
         let present = optional.into_iter().filter(|(_, n)| *n != 0).chain(sets).chain(skin);
         for (name, n) in present {
             if n != count {

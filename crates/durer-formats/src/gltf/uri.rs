@@ -34,6 +34,11 @@ fn refused(uri: &str, at: &str, message: &str) -> Error {
     Error::Resource { place, uri: uri.chars().take(QUOTED).collect(), message: message.to_owned() }
 }
 
+/// Whether the data stand in the URI itself.
+pub fn is_data(uri: &str) -> bool {
+    strip_data_scheme(uri).is_some()
+}
+
 fn strip_data_scheme(uri: &str) -> Option<&str> {
     let (scheme, rest) = uri.split_at_checked(5)?;
     scheme.eq_ignore_ascii_case("data:").then_some(rest)

@@ -2,6 +2,7 @@
 
 mod conformance_gltf;
 mod conformance_meshes;
+mod gltf;
 mod mesh_properties;
 mod shared;
 mod threemf;

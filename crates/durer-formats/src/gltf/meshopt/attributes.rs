@@ -41,8 +41,12 @@ pub fn decode(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, Refus
     let channels = channels(modes, stride)?;
     let mut body = Bytes(body);
     let mut last = first.to_vec();
-    let mut out = vec![0; count.checked_mul(stride).ok_or("the size overflows")?];
     let block = ((BLOCK_BYTES / stride) & !(GROUP - 1)).min(BLOCK_ELEMENTS);
+    // A quarter of a byte per byte position is the least that a block can take.
+    if count.div_ceil(block) > body.0.len() / (stride / 4) {
+        return Err(TOO_SHORT);
+    }
+    let mut out = vec![0; count.checked_mul(stride).ok_or("the size overflows")?];
     for elements in out.chunks_mut(block * stride) {
         decode_block(&mut body, elements, &mut last, &channels, version)?;
     }
@@ -203,6 +207,7 @@ mod tests {
         for cut in 0..data.len() {
             assert!(decode(&data[..cut], 16, 4).is_err(), "{cut}");
         }
+        assert_eq!(decode(&data, 1_000_000_000, 4), Err(TOO_SHORT));
         data.push(0);
         assert_eq!(decode(&data, 16, 4), Err(TOO_LONG));
     }

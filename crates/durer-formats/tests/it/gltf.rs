@@ -1,0 +1,508 @@
+//! glTF: small files written here, each for one thing.
+
+use durer::math::{DVec2, DVec3, Vec2, Vec3, Vec4};
+use durer::scene::{
+    AlphaMode, Filter, LightKind, MipFilter, Projection, ShadingModel, Topology, Wrap,
+};
+use durer_formats::{
+    Error, Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, Result, gltf,
+};
+use std::cell::RefCell;
+
+/// Bytes of numbers, little endian.
+macro_rules! bytes {
+    ($($type:ty: [$($value:expr),* $(,)?]),* $(,)?) => {{
+        let mut bytes: Vec<u8> = Vec::new();
+        $($(bytes.extend(<$type>::to_le_bytes($value));)*)*
+        bytes
+    }};
+}
+
+/// A data URI in percent notation.
+fn uri(bytes: &[u8]) -> String {
+    let digits: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
+    format!("data:,{digits}")
+}
+
+/// A file of one buffer, with a view over all of it, and the members given.
+fn file(buffer: &[u8], members: &str) -> String {
+    let (uri, length) = (uri(buffer), buffer.len());
+    format!(
+        r#"{{"asset": {{"version": "2.0"}},
+        "buffers": [{{"uri": "{uri}", "byteLength": {length}}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": {length}}}],
+        {members}}}"#
+    )
+}
+
+/// The positions of a triangle, its accessor, and a mesh of it.
+const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+const ACCESSOR: &str = r#"{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}"#;
+
+fn triangle_bytes() -> Vec<u8> {
+    TRIANGLE.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+/// A file of one triangle as mesh 0, with the members given.
+fn triangle(members: &str) -> String {
+    let mesh = r#"{"name": "t", "primitives": [{"attributes": {"POSITION": 0}}]}"#;
+    let members = format!(r#""accessors": [{ACCESSOR}], "meshes": [{mesh}], {members}"#);
+    file(&triangle_bytes(), &members)
+}
+
+fn read(text: &str) -> Result<Model> {
+    gltf::read(text.as_bytes(), &NoResources, &ReadOptions::default())
+}
+
+fn scene(text: &str) -> durer::scene::Scene {
+    read(text).unwrap().scene
+}
+
+fn error(text: &str) -> String {
+    read(text).unwrap_err().to_string()
+}
+
+/// A binary file of a JSON text and a binary chunk.
+fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
+    let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
+    let length = (12 + 8 + json.len() + 8 + bin.len()) as u32;
+    let mut file = bytes![u32: [0x4654_6c67, 2, length, json.len() as u32, 0x4e4f_534a]];
+    file.extend(json.as_bytes());
+    file.extend(bytes![u32: [bin.len() as u32, 0x004e_4942]]);
+    file.extend(bin);
+    file
+}
+
+#[test]
+fn text_and_binary_are_told_apart() {
+    assert!(gltf::sniff(br#" {"asset": {}}"#) && gltf::sniff(b"glTF\x02\0\0\0"));
+    assert!(!gltf::sniff(b"{\"type\": \"FeatureCollection\"}") && !gltf::sniff(b"solid asset"));
+    let json = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"byteLength": 36}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 36}}], "accessors": [{ACCESSOR}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "nodes": [{{"mesh": 0}}]}}"#
+    );
+    let model =
+        gltf::read(&binary(&json, &triangle_bytes()), &NoResources, &ReadOptions::default())
+            .unwrap();
+    assert_eq!((model.format.as_str(), model.scene.triangle_count()), ("glTF 2.0 binary", 1));
+    assert_eq!(model.scene.meshes[0].positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+}
+
+#[test]
+fn nodes_are_drawn_depth_first_and_share_meshes() {
+    let scene = scene(&triangle(
+        r#""scene": 1, "scenes": [{"nodes": [4]}, {"nodes": [3, 0]}], "nodes": [
+        {"name": "a", "mesh": 0, "translation": [1, 2, 3], "scale": [2, 2, 2], "children": [2, 1]},
+        {"name": "b", "mesh": 0, "rotation": [0, 0, 1, 0]},
+        {"name": "c", "mesh": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]},
+        {"name": "d", "mesh": 0}, {"name": "other", "mesh": 0}]"#,
+    ));
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["d", "a", "c", "b"]);
+    assert_eq!(scene.meshes.len(), 1);
+    let at = |i: usize| scene.instances[i].world_from_mesh.transform_point3(DVec3::X);
+    assert_eq!(
+        [at(0), at(1), at(2)],
+        [DVec3::X, DVec3::new(3.0, 2.0, 3.0), DVec3::new(13.0, 2.0, 3.0)]
+    );
+    assert!((at(3) - DVec3::new(-1.0, 2.0, 3.0)).length() < 1e-12);
+}
+
+#[test]
+fn a_file_without_scenes_draws_its_roots() {
+    let scene = scene(&triangle(
+        r#""nodes": [{"name": "child", "mesh": 0}, {"name": "root", "mesh": 0, "children": [0]}]"#,
+    ));
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["root", "child"]);
+}
+
+#[test]
+fn trees_must_be_trees() {
+    let nodes = |nodes: &str| error(&triangle(&format!(r#""nodes": [{nodes}]"#)));
+    assert!(nodes(r#"{"children": [1]}, {"children": [0]}"#).starts_with("nodes[0]: "));
+    assert!(nodes(r#"{"children": [0]}"#).contains("its own ancestor"));
+    assert!(nodes(r#"{"children": [2]}, {"children": [2]}, {}"#).contains("two parents"));
+    assert!(nodes(r#"{"children": [1, 1]}, {}"#).contains("two parents"));
+    assert!(nodes(r#"{"children": [7]}"#).contains("no node 7: there are 1"));
+    let chain: Vec<String> = (1..600).map(|i| format!(r#"{{"children": [{i}]}}"#)).collect();
+    assert!(nodes(&format!("{}, {{}}", chain.join(","))).contains("limit of 512"));
+}
+
+#[test]
+fn accessors_may_be_interleaved_sparse_and_normalized() {
+    // Three vertices of 16 bytes: a float x, padding, RGB in bytes, padding; then sparse parts.
+    let mut data = Vec::new();
+    for (i, rgb) in [[255u8, 0, 0], [0, 255, 0], [51, 0, 102]].iter().enumerate() {
+        data.extend(bytes![f32: [i as f32, 0.0, 0.0]]);
+        data.extend(rgb);
+        data.push(9);
+    }
+    data.extend(bytes![u16: [1, 2], f32: [7.0, 8.0, 9.0, 4.0, 5.0, 6.0]]);
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "{}", "byteLength": 76}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 48, "byteStride": 16}},
+            {{"buffer": 0, "byteOffset": 48, "byteLength": 4}},
+            {{"buffer": 0, "byteOffset": 52, "byteLength": 24}}],
+        "accessors": [
+            {{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "sparse":
+                {{"count": 2, "indices": {{"bufferView": 1, "componentType": 5123}},
+                "values": {{"bufferView": 2}}}}}},
+            {{"bufferView": 0, "byteOffset": 12, "componentType": 5121, "normalized": true,
+                "count": 3, "type": "VEC3"}},
+            {{"componentType": 5126, "count": 3, "type": "VEC3", "sparse":
+                {{"count": 1, "indices": {{"bufferView": 1, "componentType": 5123}},
+                "values": {{"bufferView": 2}}}}}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "COLOR_0": 1}}}},
+            {{"attributes": {{"POSITION": 2}}}}]}}], "nodes": [{{"mesh": 0}}]}}"#,
+        uri(&data)
+    );
+    let all = scene(&text);
+    let mesh = &all.meshes[0];
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::new(7.0, 8.0, 9.0), Vec3::new(4.0, 5.0, 6.0)]);
+    assert_eq!(
+        mesh.colors,
+        [
+            Vec4::new(1.0, 0.0, 0.0, 1.0),
+            Vec4::new(0.0, 1.0, 0.0, 1.0),
+            Vec4::new(0.2, 0.0, 0.4, 1.0)
+        ]
+    );
+    assert_eq!(all.meshes[1].positions[1], Vec3::new(7.0, 8.0, 9.0));
+    assert_eq!(all.meshes[1].positions[2], Vec3::ZERO);
+    // The sparse index 2 as 3: one too far.
+    let wrong = text.replace("%01%00%02%00", "%01%00%03%00");
+    assert!(error(&wrong).starts_with("accessors[0].sparse.indices: "), "{}", error(&wrong));
+}
+
+#[test]
+fn strips_and_fans_keep_their_winding() {
+    let positions = [0.0f32, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let mut data = Vec::new();
+    positions.chunks(2).for_each(|p| data.extend(bytes![f32: [p[0], p[1], 0.0]]));
+    let file = |mode: u32| {
+        file(
+            &data,
+            &format!(
+                r#""accessors": [{{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}}],
+                "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "mode": {mode}}}]}}],
+                "nodes": [{{"mesh": 0}}]"#
+            ),
+        )
+    };
+    let strip = &scene(&file(5)).meshes[0];
+    for t in 0..2 {
+        let [a, b, c] = strip.triangle(t).map(|i| strip.positions[i as usize]);
+        assert!((b - a).cross(c - a).z > 0.0, "{t}");
+    }
+    let topologies = [0, 1, 2, 3, 4, 5, 6].map(|m| {
+        let mesh = &scene(&file(m)).meshes[0];
+        (mesh.topology, mesh.primitive_count())
+    });
+    use Topology::*;
+    let expected = [
+        (Points, 4),
+        (Lines, 2),
+        (Lines, 4),
+        (Lines, 3),
+        (Triangles, 1),
+        (Triangles, 2),
+        (Triangles, 2),
+    ];
+    assert_eq!(topologies, expected);
+    assert!(error(&file(7)).starts_with("meshes[0].primitives[0].mode: "));
+}
+
+#[test]
+fn broken_primitives_tell_their_path() {
+    let primitive = |accessors: &str, primitive: &str| {
+        let mut data = triangle_bytes();
+        data.extend(bytes![u16: [0, 1, 3]]);
+        error(&file(
+            &data,
+            &format!(
+                r#""accessors": [{ACCESSOR}, {accessors}],
+                "meshes": [{{"primitives": [{primitive}]}}], "nodes": [{{"mesh": 0}}]"#
+            ),
+        ))
+    };
+    let indices = r#"{"bufferView": 0, "byteOffset": 36, "componentType": 5123, "count": 3, "type": "SCALAR"}"#;
+    let message = primitive(indices, r#"{"attributes": {"POSITION": 0}, "indices": 1}"#);
+    assert_eq!(message, "meshes[0].primitives[0].indices: index 2 is vertex 3 of 3");
+    let message = primitive(indices, r#"{"attributes": {"POSITION": 1}}"#);
+    assert!(message.starts_with("meshes[0].primitives[0].attributes.POSITION: "), "{message}");
+    let two = r#"{"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}"#;
+    let message = primitive(two, r#"{"attributes": {"POSITION": 0, "NORMAL": 1}}"#);
+    assert!(message.starts_with("meshes[0].primitives[0].attributes.NORMAL: "), "{message}");
+    let message = primitive(two, r#"{"attributes": {"POSITION": 0}, "indices": 1}"#);
+    assert!(message.starts_with("meshes[0].primitives[0].indices: "), "{message}");
+    let message = primitive(two, r#"{"attributes": {"POSITION": 0}, "material": 3}"#);
+    assert_eq!(message, "meshes[0].primitives[0].material: there is no material 3, none at all");
+    let huge = r#"{"bufferView": 0, "componentType": 5126, "count": 1000000000, "type": "VEC3"}"#;
+    let message = primitive(huge, r#"{"attributes": {"POSITION": 1}}"#);
+    assert!(message.starts_with("accessors[1]: ends at byte 12000000000"), "{message}");
+    // Without a view the count is backed by nothing, so only the limit can refuse it.
+    let zeros = r#"{"componentType": 5126, "count": 1000000000, "type": "VEC3"}"#;
+    let message = primitive(zeros, r#"{"attributes": {"POSITION": 1}}"#);
+    assert!(message.contains("decoded size of 12000000"), "{message}");
+    let early = r#"{"bufferView": 0, "byteOffset": 18446744073709551615, "componentType": 5126, "count": 3, "type": "VEC3"}"#;
+    assert!(primitive(early, r#"{"attributes": {"POSITION": 0}}"#).starts_with("accessors[1]: "));
+}
+
+#[test]
+fn extensions_are_refused_or_warned_about() {
+    let nodes = r#""nodes": [{"mesh": 0}]"#;
+    let required = triangle(&format!(r#"{nodes}, "extensionsRequired": ["KHR_texture_basisu"]"#));
+    let Err(Error::Unsupported { what, .. }) = read(&required) else { panic!() };
+    assert_eq!(what, "KHR_texture_basisu");
+    let used = ["KHR_materials_sheen", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"];
+    let model = read(&triangle(&format!(r#"{nodes}, "extensionsUsed": {used:?}"#))).unwrap();
+    assert_eq!(model.extensions, used);
+    let warnings: Vec<String> = model.warnings.iter().map(|w| w.message.clone()).collect();
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(warnings[0].starts_with("KHR_materials_sheen"));
+    assert!(warnings[1].starts_with("EXT_mesh_gpu_instancing"));
+    let old = r#"{"asset": {"version": "1.0"}}"#;
+    assert!(matches!(read(old), Err(Error::Unsupported { .. })));
+    assert!(error("{}").contains("asset"));
+}
+
+#[test]
+fn materials_are_read_whole() {
+    let text = triangle(
+        r#""nodes": [{"mesh": 0}], "images": [{"bufferView": 0}],
+        "samplers": [{"magFilter": 9728, "minFilter": 9985, "wrapS": 33071, "wrapT": 33648}],
+        "textures": [{"source": 0, "sampler": 0}, {}],
+        "materials": [{"name": "m", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
+            "emissiveFactor": [1, 0.5, 0], "normalTexture": {"index": 0, "scale": 2},
+            "occlusionTexture": {"index": 0, "strength": 0.5},
+            "pbrMetallicRoughness": {"metallicFactor": 0.25, "baseColorFactor": [1, 0, 0, 0.5],
+                "baseColorTexture": {"index": 0, "texCoord": 1, "extensions": {
+                    "KHR_texture_transform": {"offset": [0.5, 0.25], "scale": [2, 3], "texCoord": 2}}}},
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}},
+            {"alphaMode": "BLEND", "extensions": {"KHR_materials_unlit": {}},
+            "pbrMetallicRoughness": {"baseColorTexture": {"index": 1}}},
+            {"extensions": {"KHR_materials_pbrSpecularGlossiness":
+                {"diffuseFactor": [0, 1, 0, 1], "glossinessFactor": 0.75}}}]"#,
+    );
+    let model = read(&text).unwrap();
+    let [m, unlit, glossy] = model.scene.materials.as_slice() else { panic!() };
+    assert_eq!((m.name.as_str(), m.model), ("m", ShadingModel::MetallicRoughness));
+    assert_eq!(m.alpha_mode, AlphaMode::Mask { cutoff: 0.25 });
+    assert!(m.double_sided && !unlit.double_sided);
+    assert_eq!(m.emissive, Vec3::new(4.0, 2.0, 0.0));
+    assert_eq!((m.metallic, m.roughness), (0.25, 1.0));
+    assert_eq!((m.normal_scale, m.occlusion_strength), (2.0, 0.5));
+    let base = m.base_color_texture.unwrap();
+    assert_eq!((base.texture, base.tex_coord), (0, 2));
+    assert_eq!(base.transform.transform_point2(DVec2::ONE), DVec2::new(2.5, 3.25));
+    assert_eq!((unlit.model, unlit.alpha_mode), (ShadingModel::Unlit, AlphaMode::Blend));
+    assert_eq!((glossy.metallic, glossy.roughness), (0.0, 0.25));
+    let sampler = model.scene.textures[0].sampler;
+    assert_eq!(
+        (sampler.mag, sampler.min, sampler.mip),
+        (Filter::Nearest, Filter::Linear, MipFilter::Nearest)
+    );
+    assert_eq!((sampler.wrap_u, sampler.wrap_v), (Wrap::ClampToEdge, Wrap::MirroredRepeat));
+    // The image is rubbish and texture 1 has none: both are white, and both are told.
+    assert!(model.scene.images.iter().all(|i| i.data.is_empty()));
+    let places: Vec<&Place> = model.warnings.iter().map(|w| &w.place).collect();
+    assert_eq!(places, [&Place::Path("textures[1]".into()), &Place::Path("images[0]".into())]);
+}
+
+/// Answers every request with nothing, and remembers it.
+#[derive(Default)]
+struct Asked(RefCell<Vec<String>>);
+
+impl Resources for Asked {
+    fn read(&self, path: &str, _: u64) -> std::result::Result<Vec<u8>, String> {
+        self.0.borrow_mut().push(path.to_owned());
+        Err("no".to_owned())
+    }
+}
+
+#[test]
+fn references_stay_in_the_folder() {
+    let file = |uri: &str| {
+        triangle(&format!(
+            r#""nodes": [{{"mesh": 0}}], "images": [{{"uri": "{uri}"}}],
+            "textures": [{{"source": 0}}],
+            "materials": [{{"emissiveTexture": {{"index": 0}}}}]"#
+        ))
+    };
+    let asked = Asked::default();
+    let read = |uri: &str| gltf::read(file(uri).as_bytes(), &asked, &ReadOptions::default());
+    let model = read("./maps/a%20b%2epng").unwrap();
+    assert_eq!(*asked.0.borrow(), ["maps/a b.png"]);
+    assert!(model.warnings[0].to_string().contains("cannot read `./maps/a%20b%2epng`: no"));
+    for bad in ["../a.png", "http://h/a.png", "/a.png", "a/%2e%2e/%2e%2e/b", "%5c%5ch%5ca"] {
+        assert!(matches!(read(bad), Err(Error::Resource { .. })), "{bad}");
+    }
+    assert_eq!(asked.0.borrow().len(), 1);
+}
+
+#[test]
+fn cameras_and_lights_stand_in_the_world() {
+    let model = read(&triangle(
+        r#""nodes": [{"mesh": 0}, {"name": "n", "camera": 0, "translation": [0, 0, 5]},
+            {"camera": 1, "rotation": [0, 1, 0, 0]}, {"camera": 2}, {"camera": 0},
+            {"translation": [1, 2, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+            {"extensions": {"KHR_lights_punctual": {"light": 1}}},
+            {"extensions": {"KHR_lights_punctual": {"light": 2}}}],
+        "cameras": [{"perspective": {"yfov": 0.5, "znear": 0.01, "aspectRatio": 1.5}},
+            {"name": "o", "orthographic": {"xmag": 4, "ymag": 2, "znear": 0, "zfar": 10}},
+            {"perspective": {"yfov": 0, "znear": 1}}],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "spot", "intensity": 6, "color": [1, 0.5, 0], "range": 9,
+                "spot": {"outerConeAngle": 0.5}},
+            {"type": "directional"}, {"type": "area"}]}}"#,
+    ))
+    .unwrap();
+    let names: Vec<&str> = model.scene.cameras.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["n", "o", "camera2"]);
+    let [first, second, _] = model.scene.cameras.as_slice() else { panic!() };
+    assert_eq!((first.camera.eye, first.camera.target), (DVec3::Z * 5.0, DVec3::Z * 4.0));
+    assert_eq!(first.camera.projection, Projection::Perspective { fov_y: 0.5 });
+    assert!(first.camera.far > 6.0 && first.aspect == Some(1.5));
+    assert_eq!(second.camera.projection, Projection::Orthographic { height: 4.0 });
+    assert!((second.camera.target - DVec3::Z).length() < 1e-12 && second.aspect == Some(2.0));
+    let [spot, sun] = model.scene.lights.as_slice() else { panic!() };
+    let pi = std::f64::consts::PI;
+    assert_eq!(spot.color, (DVec3::new(6.0, 3.0, 0.0) / pi).as_vec3());
+    let LightKind::Spot { position, direction, range, inner, outer } = spot.kind else { panic!() };
+    assert_eq!((position, direction), (DVec3::new(1.0, 2.0, 3.0), -DVec3::Z));
+    assert_eq!((range, inner, outer), (Some(9.0), 0.0, 0.5));
+    assert_eq!(sun.kind, LightKind::Directional { direction: -DVec3::Z });
+    assert_eq!(model.warnings.len(), 2, "{:?}", model.warnings);
+}
+
+/// A triangle with a morph target that lifts it by one, a skin of two joints, and an animation that
+/// turns the weight up and moves joint 1.
+fn posed(pose: Option<Pose>, members: &str) -> Result<Model> {
+    let data = bytes![
+        f32: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+        f32: [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+        f32: [0.0, 2.0, 0.0, 1.0],
+        f32: [0.0, 0.0, 0.0, 0.0, 4.0, 0.0],
+        u8: [0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0],
+        f32: [1.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0],
+    ];
+    let accessor = |offset: usize, component: u32, count: usize, shape: &str| {
+        format!(
+            r#"{{"bufferView": 0, "byteOffset": {offset}, "componentType": {component},
+            "count": {count}, "type": "{shape}"}}"#
+        )
+    };
+    let accessors = [
+        accessor(0, 5126, 3, "VEC3"),
+        accessor(36, 5126, 3, "VEC3"),
+        accessor(72, 5126, 2, "SCALAR"),
+        accessor(80, 5126, 2, "SCALAR"),
+        accessor(88, 5126, 2, "VEC3"),
+        accessor(112, 5121, 3, "VEC4"),
+        accessor(124, 5126, 3, "VEC4"),
+    ]
+    .join(",");
+    let text = file(
+        &data,
+        &format!(
+            r#""accessors": [{accessors}], "meshes": [{{"primitives": [{{"attributes":
+            {{"POSITION": 0, "JOINTS_0": 5, "WEIGHTS_0": 6}}, "targets": [{{"POSITION": 1}}]}}]}}],
+            "animations": [{{"name": "still", "samplers": [], "channels": []}},
+            {{"name": "go", "samplers": [{{"input": 2, "output": 3}}, {{"input": 2, "output": 4,
+                "interpolation": "STEP"}}],
+            "channels": [{{"sampler": 0, "target": {{"node": 0, "path": "weights"}}}},
+                {{"sampler": 1, "target": {{"node": 2, "path": "translation"}}}}]}}], {members}"#
+        ),
+    );
+    gltf::read(text.as_bytes(), &NoResources, &ReadOptions { pose, ..ReadOptions::default() })
+}
+
+/// The posed triangle's corners in the world.
+fn corners(model: &Model) -> [DVec3; 3] {
+    let instance = &model.scene.instances[0];
+    let positions = &model.scene.meshes[instance.mesh].positions;
+    [0, 1, 2].map(|i| instance.world_from_mesh.transform_point3(positions[i].as_dvec3()))
+}
+
+fn at(animation: &str, time: f64) -> Option<Pose> {
+    Some(Pose { animation: Some(animation.to_owned()), time })
+}
+
+#[test]
+fn morph_targets_follow_their_weights() {
+    let nodes = r#""nodes": [{"mesh": 0, "weights": [0.25]}, {}, {}]"#;
+    let z = |pose| corners(&posed(pose, nodes).unwrap()).map(|p| p.z);
+    assert_eq!(z(None), [0.25; 3]);
+    assert_eq!(z(at("still", 1.0)), [0.25; 3]);
+    assert_eq!(z(at("go", -1.0)), [0.0; 3]);
+    assert_eq!(z(at("go", 1.5)), [0.75; 3]);
+    assert_eq!(z(at("1", 99.0)), [1.0; 3]);
+    let model = posed(None, nodes).unwrap();
+    assert_eq!(model.animations, ["still", "go"]);
+    let missing = posed(at("run", 0.0), nodes).unwrap_err().to_string();
+    assert!(missing.contains("no animation `run`: still, go"), "{missing}");
+    assert!(posed(at("go", f64::NAN), nodes).is_err());
+}
+
+#[test]
+fn skins_ignore_their_nodes_place() {
+    // Joint 0 at x + 10, joint 1 its child at y + 2 (the animation: 4 from second 2 on).
+    let nodes = r#""nodes": [{"mesh": 0, "skin": 0, "translation": [99, 0, 0]},
+        {"translation": [10, 0, 0], "children": [2]}, {"translation": [0, 2, 0]}],
+        "skins": [{"joints": [1, 2]}]"#;
+    let corners = |pose| corners(&posed(pose, nodes).unwrap());
+    let expected = |y: f64, z: f64| {
+        // Weights 1 | ½ ½ | 2 (of joint 1, normalized).
+        [DVec3::new(10.0, 0.0, z), DVec3::new(11.0, y / 2.0, z), DVec3::new(10.0, 1.0 + y, z)]
+    };
+    assert_eq!(corners(None), expected(2.0, 0.0));
+    assert_eq!(corners(at("go", 1.0)), expected(0.0, 0.5));
+    assert_eq!(corners(at("go", 2.0)), expected(4.0, 1.0));
+    let one_joint = nodes.replace("[1, 2]}]", "[1]}]");
+    let message = posed(None, &one_joint).unwrap_err().to_string();
+    assert!(
+        message.starts_with("meshes[0].primitives[0].attributes.JOINTS_0: vertex 1"),
+        "{message}"
+    );
+}
+
+#[test]
+fn limits_are_kept() {
+    let text = triangle(r#""nodes": [{"mesh": 0}, {"mesh": 0}]"#);
+    let with = |limits: Limits| {
+        let options = ReadOptions { limits, ..ReadOptions::default() };
+        gltf::read(text.as_bytes(), &NoResources, &options)
+    };
+    let limited = |limits| matches!(with(limits), Err(Error::Limit { .. }));
+    assert!(with(Limits { instances: 2, primitives: 1, ..Limits::default() }).is_ok());
+    assert!(limited(Limits { instances: 1, ..Limits::default() }));
+    assert!(limited(Limits { primitives: 0, ..Limits::default() }));
+    assert!(limited(Limits { decoded_bytes: 35, ..Limits::default() }));
+    assert!(limited(Limits { depth: 0, ..Limits::default() }));
+}
+
+#[test]
+fn several_sets_of_texture_coordinates_are_kept() {
+    let mut data = triangle_bytes();
+    data.extend(bytes![u16: [0, 65535, 13107, 0, 65535, 65535, 1, 2, 3, 4, 5, 6]]);
+    let set = |offset: u32, normalized: bool| {
+        format!(
+            r#"{{"bufferView": 0, "byteOffset": {offset}, "componentType": 5123,
+            "normalized": {normalized}, "count": 3, "type": "VEC2"}}"#
+        )
+    };
+    let scene = scene(&file(
+        &data,
+        &format!(
+            r#""accessors": [{ACCESSOR}, {}, {}], "meshes": [{{"primitives": [{{"attributes":
+            {{"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2}}}}]}}], "nodes": [{{"mesh": 0}}]"#,
+            set(36, true),
+            set(48, false)
+        ),
+    ));
+    let sets = &scene.meshes[0].tex_coords;
+    assert_eq!(sets[0], [Vec2::new(0.0, 1.0), Vec2::new(0.2, 0.0), Vec2::ONE]);
+    assert_eq!(sets[1], [Vec2::new(1.0, 2.0), Vec2::new(3.0, 4.0), Vec2::new(5.0, 6.0)]);
+}
