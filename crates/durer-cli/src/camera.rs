@@ -2,15 +2,18 @@
 
 use crate::args::{PictureArgs, ViewArgs};
 use crate::failure::Failure;
-use crate::fit::{self, Fit};
+use crate::fit;
 use crate::values::{Size, positive};
 use durer::math::{DQuat, DVec3};
 use durer::scene::{Camera, Projection, Scene};
 use durer::view::layout::Layout;
-use durer::view::projection::{NamedView, ViewDirection};
+use durer::view::projection::{FitOptions, Lens, NamedView, ViewDirection};
 
 /// Angle of view of a fitted camera, degrees: like a lens of 70 mm on a full frame.
 const FOV: f64 = 30.0;
+
+/// The part of the picture that a fitted model leaves free at each border.
+const MARGIN: f64 = 0.03;
 
 /// `--ortho`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -177,11 +180,15 @@ fn fitted(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure
     let azimuth = azimuth + shot.turned();
     let direction = ViewDirection::from_angles(azimuth, elevation, scene.up_axis)
         .map_err(|e| Failure::Usage(format!("--{e}")))?;
-    let around = shot.turn.map(|_| NamedView::Front.direction(scene.up_axis).up());
-    let fit = Fit { direction, around, aspect: shot.aspect() };
-    Ok(match args.ortho {
-        Some(Ortho::Height(height)) => fit.orthographic(scene, Some(height)),
-        Some(Ortho::Fit) => fit.orthographic(scene, None),
-        None => fit.perspective(scene, args.fov.unwrap_or(FOV).to_radians()),
-    })
+    let lens = match args.ortho {
+        Some(_) => Lens::Orthographic,
+        None => Lens::Perspective { fov_y: args.fov.unwrap_or(FOV).to_radians() },
+    };
+    let options = FitOptions { lens, aspect: shot.aspect(), margin: MARGIN };
+    let fit = if shot.turn.is_some() { fit::turning } else { fit::still };
+    let mut camera = fit(scene, &direction, &options).map_err(|e| Failure::Data(e.to_string()))?;
+    if let Some(Ortho::Height(height)) = args.ortho {
+        camera.projection = Projection::Orthographic { height };
+    }
+    Ok(camera)
 }

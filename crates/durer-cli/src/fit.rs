@@ -1,18 +1,18 @@
-//! Cameras that see the whole model.
+//! What cameras have to see of a scene.
 
 use durer::math::DVec3;
 use durer::scene::{Camera, Mesh, Projection, Scene, UpAxis};
-use durer::view::projection::{NamedView, ViewDirection};
-
-/// The part of the picture's width and height that the model may fill.
-const FILL: f64 = 0.94;
+use durer::view::projection::{FitOptions, NamedView, ViewDirection, fit_points};
+use std::f64::consts::TAU;
 
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
 const NEAREST: f64 = 1e-4;
 
-/// The eye keeps this part of the model's depth from it: a needle that points at the eye is not looked
-/// at from within.
-const CLOSEST: f64 = 0.02;
+/// A turning model is taken for so many discs, one above another.
+const SLABS: usize = 512;
+
+/// Points on the rim of each disc; at 64 the rim is at most 0.12 % outside of them.
+const AROUND: usize = 64;
 
 /// What is up for a line of sight; the back's direction where that looks along the up axis.
 pub fn up_for(sight: DVec3, up_axis: UpAxis) -> DVec3 {
@@ -21,153 +21,63 @@ pub fn up_for(sight: DVec3, up_axis: UpAxis) -> DVec3 {
     if sideways < 1e-6 { -front.to_eye() } else { front.up() }
 }
 
-/// What a fitted camera has to see, and from where.
-#[derive(Debug, Clone, Copy)]
-pub struct Fit {
-    /// From where.
-    pub direction: ViewDirection,
-    /// The axis around which the model turns while it must stay in the picture: world space, unit
-    /// length, in one plane with the line of sight and the picture's up.
-    pub around: Option<DVec3>,
-    /// Width / height of the picture.
-    pub aspect: f64,
+/// The camera that sees the model as large as can be.
+pub fn still(
+    scene: &Scene,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> durer::Result<Camera> {
+    let mut points = Vec::new();
+    for_each_point(scene, |p| points.push(p));
+    fit_points(points, direction, options)
 }
 
-/// How far the model reaches, seen from its middle. For side slopes s (half of the view's width over
-/// the distance) the reach to the right is the largest x + s·z: the distance and the shift of the eye
-/// follow from the reaches to both sides. Parallel views have s = 0.
-#[derive(Debug, Clone, Copy)]
-struct Reach {
-    right: f64,
-    left: f64,
-    up: f64,
-    down: f64,
-    front: f64,
-    back: f64,
+/// The camera that sees the model as large as can be while it turns around the up axis: at the same
+/// distance and height for all azimuths.
+pub fn turning(
+    scene: &Scene,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> durer::Result<Camera> {
+    let axis = NamedView::Front.direction(scene.up_axis).up();
+    // Level directions, to the viewer and to the right: rims begin there, so that they look the same
+    // from all azimuths.
+    let outward = direction.to_eye() * axis.dot(direction.up())
+        - direction.up() * axis.dot(direction.to_eye());
+    let side = direction.right();
+    let center = center(scene).unwrap_or(DVec3::ZERO);
+    let mut points = Vec::new();
+    for (radius, height) in circles(scene, center, axis) {
+        for (sin, cos) in (0..AROUND).map(|i| libm::sincos(TAU * i as f64 / AROUND as f64)) {
+            points.push(center + axis * height + (outward * cos + side * sin) * radius);
+        }
+    }
+    fit_points(points, direction, options)
 }
 
-impl Fit {
-    /// The nearest perspective camera from which the whole model is seen.
-    pub fn perspective(&self, scene: &Scene, fov_y: f64) -> Camera {
-        let slope_y = libm::tan(fov_y * 0.5) * FILL;
-        let slope_x = slope_y * self.aspect;
-        let (center, reach) = self.reach(scene, slope_x, slope_y);
-        let across = (reach.right + reach.left) / (2.0 * slope_x);
-        let upright = (reach.up + reach.down) / (2.0 * slope_y);
-        let closest = reach.front + (reach.front + reach.back) * CLOSEST;
-        let distance = across.max(upright).max(closest);
-        let camera = self.place(center, &reach, distance, Projection::Perspective { fov_y });
-        let (near, far) = perspective_range(distance - reach.front, distance + reach.back);
-        Camera { near, far, ..camera }
-    }
-
-    /// A parallel view from outside of the model; without a height, one that shows all of it.
-    pub fn orthographic(&self, scene: &Scene, height: Option<f64>) -> Camera {
-        let (center, reach) = self.reach(scene, 0.0, 0.0);
-        let needed = (reach.up + reach.down).max((reach.right + reach.left) / self.aspect) / FILL;
-        let depth = reach.front + reach.back;
-        // A line seen end-on has no extent in the picture, but a neighbourhood.
-        let height = height.unwrap_or(needed.max(depth * 1e-3));
-        let distance = reach.front + depth * 0.5 + height * 0.5;
-        let camera = self.place(center, &reach, distance, Projection::Orthographic { height });
-        let (near, far) = (distance - reach.front, distance + reach.back);
-        let margin = (far - near) * 0.01;
-        Camera { near: near - margin, far: far + margin, ..camera }
-    }
-
-    fn place(&self, center: DVec3, reach: &Reach, distance: f64, projection: Projection) -> Camera {
-        let [right, up, back] = self.axes();
-        let target = center
-            + right * ((reach.right - reach.left) * 0.5)
-            + up * ((reach.up - reach.down) * 0.5);
-        let eye = target + back * distance;
-        Camera { eye, target, up, projection, near: 1.0, far: 2.0 }
-    }
-
-    /// The middle of the model and how far it reaches from there; something to look at for a model
-    /// without extent.
-    fn reach(&self, scene: &Scene, slope_x: f64, slope_y: f64) -> (DVec3, Reach) {
-        let found = center(scene);
-        let center = found.unwrap_or(DVec3::ZERO);
-        let nothing = f64::NEG_INFINITY;
-        let mut reach = Reach {
-            right: nothing,
-            left: nothing,
-            up: nothing,
-            down: nothing,
-            front: nothing,
-            back: nothing,
-        };
-        for_each_point(scene, |p| {
-            let point = match self.around {
-                Some(axis) => self.swept(p - center, axis, slope_x, slope_y),
-                None => self.seen(p - center, slope_x, slope_y),
-            };
-            reach.join(&point);
-        });
-        let extent =
-            (reach.right + reach.left).max(reach.up + reach.down).max(reach.front + reach.back);
-        // A point, or nothing at all: a unit around it, or more where coordinates are coarse.
-        let least = center.length().max(1.0) * if found.is_some() { 1e-6 } else { 1.0 };
-        if extent <= least * 1e-6 {
-            reach = Reach {
-                right: least,
-                left: least,
-                up: least,
-                down: least,
-                front: least,
-                back: least,
-            };
-        }
-        (center, reach)
-    }
-
-    /// Right, up and backward of the camera, unit vectors.
-    fn axes(&self) -> [DVec3; 3] {
-        [self.direction.right(), self.direction.up(), self.direction.to_eye()]
-    }
-
-    /// The reach of one point.
-    fn seen(&self, p: DVec3, slope_x: f64, slope_y: f64) -> Reach {
-        let [x, y, z] = self.axes().map(|axis| axis.dot(p));
-        Reach {
-            right: x + slope_x * z,
-            left: slope_x * z - x,
-            up: y + slope_y * z,
-            down: slope_y * z - y,
-            front: z,
-            back: -z,
-        }
-    }
-
-    /// The reach of the circle that a point runs through on a turntable.
-    fn swept(&self, p: DVec3, axis: DVec3, slope_x: f64, slope_y: f64) -> Reach {
-        // Sine and cosine of the eye's elevation.
-        let (sin, cos) = (axis.dot(self.direction.to_eye()), axis.dot(self.direction.up()));
-        let height = axis.dot(p);
-        let radius = (p - axis * height).length();
-        let aside = height * sin * slope_x + radius * (1.0 + (cos * slope_x).powi(2)).sqrt();
-        let (lift, depth) = (height * cos, height * sin);
-        Reach {
-            right: aside,
-            left: aside,
-            up: lift + depth * slope_y + radius * (cos * slope_y - sin).abs(),
-            down: depth * slope_y - lift + radius * (cos * slope_y + sin).abs(),
-            front: depth + radius * cos.abs(),
-            back: radius * cos.abs() - depth,
-        }
-    }
-}
-
-impl Reach {
-    fn join(&mut self, other: &Self) {
-        self.right = self.right.max(other.right);
-        self.left = self.left.max(other.left);
-        self.up = self.up.max(other.up);
-        self.down = self.down.max(other.down);
-        self.front = self.front.max(other.front);
-        self.back = self.back.max(other.back);
-    }
+/// Radii and heights of circles around an axis; the model, turned around it, stays within their hull.
+fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
+    let place = |p: DVec3| {
+        let height = axis.dot(p - center);
+        ((p - center - axis * height).length(), height)
+    };
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for_each_point(scene, |p| {
+        let (_, height) = place(p);
+        lowest = lowest.min(height);
+        highest = highest.max(height);
+    });
+    let slabs = SLABS as f64 / (highest - lowest);
+    // Radius, lowest and highest point of each slab.
+    let mut discs: Vec<Option<(f64, f64, f64)>> = vec![None; SLABS];
+    for_each_point(scene, |p| {
+        let (radius, height) = place(p);
+        // Where all heights are one, the product is no number and the cast gives slab 0.
+        let slab = &mut discs[(((height - lowest) * slabs) as usize).min(SLABS - 1)];
+        let (r, low, high) = slab.unwrap_or((radius, height, height));
+        *slab = Some((r.max(radius), low.min(height), high.max(height)));
+    });
+    discs.into_iter().flatten().flat_map(|(r, low, high)| [(r, low), (r, high)]).collect()
 }
 
 /// All finite vertices that something is drawn with, in world space.
@@ -239,6 +149,7 @@ mod tests {
     use super::*;
     use durer::math::{DMat4, Vec3};
     use durer::scene::Instance;
+    use durer::view::projection::Lens;
 
     /// Points of a skew, flat, off-centre box.
     fn scene(scale: f32, offset: f32) -> Scene {
@@ -266,24 +177,26 @@ mod tests {
         largest
     }
 
-    fn fit(azimuth: f64, elevation: f64, turning: bool, aspect: f64) -> Fit {
-        let direction = ViewDirection::from_angles(azimuth, elevation, UpAxis::Z).unwrap();
-        Fit { direction, around: turning.then_some(DVec3::Z), aspect }
+    fn direction(azimuth: f64, elevation: f64) -> ViewDirection {
+        ViewDirection::from_angles(azimuth, elevation, UpAxis::Y).unwrap()
     }
+
+    fn options(lens: Lens, aspect: f64) -> FitOptions {
+        FitOptions { lens, aspect, margin: 0.03 }
+    }
+
+    const LENSES: [Lens; 2] = [Lens::Perspective { fov_y: 0.6 }, Lens::Orthographic];
 
     #[test]
     fn a_fitted_model_fills_the_picture_and_no_more() {
         for (scale, offset) in [(1.0, 0.0), (1e-6, 0.0), (1e6, -5e6), (1e20, 0.0)] {
             let scene = scene(scale, offset);
             for (azimuth, elevation) in [(0.0, 0.0), (45.0, 35.0), (-200.0, -70.0), (10.0, 90.0)] {
-                for aspect in [1.0, 0.3, 2.5] {
-                    let fit = fit(azimuth, elevation, false, aspect);
-                    let camera = fit.perspective(&scene, 0.6);
+                for (lens, aspect) in [(LENSES[0], 0.3), (LENSES[0], 2.5), (LENSES[1], 1.0)] {
+                    let from = direction(azimuth, elevation);
+                    let camera = still(&scene, &from, &options(lens, aspect)).unwrap();
                     let share = seen_by(&camera, &scene, aspect);
-                    assert!((share - FILL).abs() < 1e-6, "{share} at {azimuth}, {elevation}");
-                    let camera = fit.orthographic(&scene, None);
-                    let share = seen_by(&camera, &scene, aspect);
-                    assert!((share - FILL).abs() < 1e-6, "{share} at {azimuth}, {elevation}");
+                    assert!((share - 0.94).abs() < 1e-6, "{share} at {azimuth}, {elevation}");
                 }
             }
         }
@@ -292,47 +205,54 @@ mod tests {
     #[test]
     fn a_turning_model_stays_in_the_picture_at_one_distance() {
         let scene = scene(1.0, 3.0);
-        for elevation in [0.0, 30.0, -60.0, 90.0] {
+        for (lens, elevation) in
+            LENSES.into_iter().flat_map(|l| [0.0, 30.0, -60.0, 90.0].map(|e| (l, e)))
+        {
             let mut largest: f64 = 0.0;
             let mut distances = Vec::new();
             for degrees in 0..360 {
-                let fit = fit(f64::from(degrees), elevation, true, 1.5);
-                let camera = fit.perspective(&scene, 0.6);
-                distances.push((camera.eye - camera.target).length());
+                let from = direction(f64::from(degrees), elevation);
+                let camera = turning(&scene, &from, &options(lens, 1.5)).unwrap();
+                // What sets the scale of the picture; a parallel view's eye may be anywhere.
+                distances.push(match camera.projection {
+                    Projection::Perspective { .. } => {
+                        (camera.eye - center(&scene).unwrap()).length()
+                    }
+                    Projection::Orthographic { height } => height,
+                });
                 largest = largest.max(seen_by(&camera, &scene, 1.5));
-                seen_by(&fit.orthographic(&scene, None), &scene, 1.5);
             }
-            assert!(largest <= FILL + 1e-9 && largest > FILL - 0.02, "{largest} at {elevation}");
-            assert!(distances.iter().all(|d| (d - distances[0]).abs() < 1e-9));
+            assert!((0.92..0.942).contains(&largest), "{largest} at {elevation}");
+            assert!(distances.iter().all(|d| (d - distances[0]).abs() < 1e-9 * d));
         }
     }
 
     #[test]
     fn vertices_that_nothing_uses_do_not_count() {
         let mut scene = scene(1.0, 0.0);
-        let expected = fit(45.0, 35.0, false, 1.0).perspective(&scene, 0.6);
+        let camera = |scene: &Scene| still(scene, &direction(45.0, 35.0), &options(LENSES[0], 1.0));
+        let expected = camera(&scene);
         scene.meshes[0].indices = Some((0..60).collect());
         scene.meshes[0].positions.push(Vec3::splat(1e9));
         scene.meshes[0].positions.push(Vec3::NAN);
-        assert_eq!(fit(45.0, 35.0, false, 1.0).perspective(&scene, 0.6), expected);
+        assert_eq!(camera(&scene), expected);
     }
 
     #[test]
     fn models_without_extent_have_a_camera_too() {
-        let point = Scene {
-            meshes: vec![Mesh { positions: vec![Vec3::splat(7.0)], ..Mesh::default() }],
-            ..scene(1.0, 0.0)
+        let of = |positions| {
+            let meshes = vec![Mesh { positions, ..Mesh::default() }];
+            Scene { meshes, ..scene(1.0, 0.0) }
         };
-        let line = Scene {
-            meshes: vec![Mesh { positions: vec![Vec3::ZERO, Vec3::Y], ..Mesh::default() }],
-            ..scene(1.0, 0.0)
-        };
+        let (point, line) = (of(vec![Vec3::splat(7.0)]), of(vec![Vec3::ZERO, Vec3::Z]));
         for scene in [Scene::default(), point, line] {
             // From the front, the line is seen end-on.
             for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0)] {
-                let fit = fit(azimuth, elevation, false, 1.0);
-                seen_by(&fit.perspective(&scene, 0.6), &scene, 1.0);
-                seen_by(&fit.orthographic(&scene, None), &scene, 1.0);
+                for lens in LENSES {
+                    let (from, options) = (direction(azimuth, elevation), options(lens, 1.0));
+                    seen_by(&still(&scene, &from, &options).unwrap(), &scene, 1.0);
+                    seen_by(&turning(&scene, &from, &options).unwrap(), &scene, 1.0);
+                }
             }
         }
     }
