@@ -1,1 +1,154 @@
 //! Outcodes: on which sides of a window or volume a point lies, one bit per border.
+//!
+//! Danny Cohen and Ivan Sutherland, 1967; in print in Newman & Sproull, *Principles of Interactive
+//! Computer Graphics* (1973). Two tests decide most cases: where the OR of all codes is empty,
+//! everything is inside; where the AND is not, everything lies beyond one border.
+
+use crate::math::{DVec2, DVec4, Rect};
+use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign};
+
+/// Which depths the clip volume holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum DepthRange {
+    /// −w ≤ z ≤ w, as in OpenGL; durer's own convention.
+    #[default]
+    NegativeOneToOne,
+    /// 0 ≤ z ≤ w, as in Direct3D, Vulkan, Metal.
+    ZeroToOne,
+}
+
+/// The borders beyond which a point lies; empty for a point inside or on the border.
+///
+/// y points up: `BOTTOM` is below the smallest y. A NaN coordinate sets both bits of its axis.
+///
+/// ```
+/// use durer::clip::outcode::Outcode;
+/// use durer::math::{DVec2, Rect};
+/// let window = Rect::new(DVec2::ZERO, DVec2::ONE).unwrap();
+/// let code = Outcode::of_point_2d(&window, DVec2::new(2.0, -1.0));
+/// assert_eq!(code, Outcode::RIGHT | Outcode::BOTTOM);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Outcode(pub u8);
+
+impl Outcode {
+    /// Inside all borders, or on them.
+    pub const INSIDE: Self = Self(0);
+    /// x below the smallest, or x < −w.
+    pub const LEFT: Self = Self(1);
+    /// x above the largest, or x > w.
+    pub const RIGHT: Self = Self(2);
+    /// y below the smallest, or y < −w.
+    pub const BOTTOM: Self = Self(4);
+    /// y above the largest, or y > w.
+    pub const TOP: Self = Self(8);
+    /// Before the near plane: z < −w, or z < 0.
+    pub const NEAR: Self = Self(16);
+    /// Behind the far plane: z > w.
+    pub const FAR: Self = Self(32);
+
+    /// The six borders in the order of their bits.
+    pub const BORDERS: [Self; 6] =
+        [Self::LEFT, Self::RIGHT, Self::BOTTOM, Self::TOP, Self::NEAR, Self::FAR];
+
+    /// The code of a point of the plane; its four bits are exact comparisons.
+    #[inline]
+    pub fn of_point_2d(window: &Rect, p: DVec2) -> Self {
+        let (min, max) = (window.min(), window.max());
+        let inside = [p.x >= min.x, p.x <= max.x, p.y >= min.y, p.y <= max.y];
+        Self::from_inside(inside)
+    }
+
+    /// The code of a homogeneous point (x, y, z, w) of clip space; any w, so that a point behind the
+    /// eye lies beyond several borders at once.
+    #[inline]
+    pub fn of_homogeneous(p: DVec4, depth: DepthRange) -> Self {
+        let near = match depth {
+            DepthRange::NegativeOneToOne => -p.w,
+            DepthRange::ZeroToOne => 0.0,
+        };
+        let inside = [p.x >= -p.w, p.x <= p.w, p.y >= -p.w, p.y <= p.w, p.z >= near, p.z <= p.w];
+        Self::from_inside(inside)
+    }
+
+    /// Bit k is set where `inside[k]` is false.
+    #[inline]
+    pub fn from_inside<const N: usize>(inside: [bool; N]) -> Self {
+        Self(inside.iter().rev().fold(0, |bits, &inside| bits << 1 | u8::from(!inside)))
+    }
+
+    /// Whether no bit is set.
+    #[inline]
+    pub fn is_inside(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether all bits of `other` are set.
+    #[inline]
+    pub fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+impl BitOr for Outcode {
+    type Output = Self;
+
+    #[inline]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl BitAnd for Outcode {
+    type Output = Self;
+
+    #[inline]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl BitOrAssign for Outcode {
+    #[inline]
+    fn bitor_assign(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}
+
+impl BitAndAssign for Outcode {
+    #[inline]
+    fn bitand_assign(&mut self, other: Self) {
+        self.0 &= other.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn borders_belong_to_the_window() {
+        let window = Rect::new(DVec2::new(-1.0, 2.0), DVec2::new(3.0, 5.0)).unwrap();
+        let code = |x, y| Outcode::of_point_2d(&window, DVec2::new(x, y));
+        assert_eq!(code(-1.0, 2.0), Outcode::INSIDE);
+        assert_eq!(code(3.0, 5.0), Outcode::INSIDE);
+        assert_eq!(code(-1.5, 3.0), Outcode::LEFT);
+        assert_eq!(code(3.5, 6.0), Outcode::RIGHT | Outcode::TOP);
+        assert_eq!(code(0.0, 1.0), Outcode::BOTTOM);
+        assert_eq!(code(f64::NAN, 3.0), Outcode::LEFT | Outcode::RIGHT);
+    }
+
+    #[test]
+    fn depth_ranges_differ_only_at_the_near_plane() {
+        let p = DVec4::new(0.0, 0.0, -0.5, 1.0);
+        assert_eq!(Outcode::of_homogeneous(p, DepthRange::NegativeOneToOne), Outcode::INSIDE);
+        assert_eq!(Outcode::of_homogeneous(p, DepthRange::ZeroToOne), Outcode::NEAR);
+    }
+
+    #[test]
+    fn a_point_behind_the_eye_is_never_inside() {
+        let p = DVec4::new(0.0, 0.0, 0.0, -1.0);
+        let all = Outcode::BORDERS.into_iter().fold(Outcode::INSIDE, |a, b| a | b);
+        assert_eq!(Outcode::of_homogeneous(p, DepthRange::NegativeOneToOne), all);
+    }
+}
