@@ -1,0 +1,172 @@
+//! Planes of pixels: colour, depth, item, normal, stencil.
+
+use crate::{Error, Result};
+
+/// Which row of a picture comes first in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Origin {
+    /// Row 0 is the top row, as in PNG; y grows downwards.
+    #[default]
+    TopLeft,
+    /// Row 0 is the bottom row, as in OpenGL; y grows upwards.
+    BottomLeft,
+}
+
+/// A rectangle of pixel values in rows, without padding.
+///
+/// # Guarantees
+/// `data.len() == width · height`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pixels<T> {
+    width: u32,
+    height: u32,
+    data: Vec<T>,
+}
+
+impl<T: Copy> Pixels<T> {
+    /// A plane filled with one value. Zero-size planes are allowed and empty.
+    pub fn new(width: u32, height: u32, value: T) -> Self {
+        Self { width, height, data: vec![value; width as usize * height as usize] }
+    }
+
+    /// A plane from rows laid one after the other.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless `data.len() == width · height`.
+    pub fn from_data(width: u32, height: u32, data: Vec<T>) -> Result<Self> {
+        if data.len() as u64 == u64::from(width) * u64::from(height) {
+            Ok(Self { width, height, data })
+        } else {
+            Err(Error::parameter("data length", data.len(), "width × height"))
+        }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The value at column x, row y; `None` outside.
+    pub fn get(&self, x: u32, y: u32) -> Option<T> {
+        (x < self.width && y < self.height)
+            .then(|| self.data[y as usize * self.width as usize + x as usize])
+    }
+
+    /// Sets the value at column x, row y; outside the plane nothing happens.
+    pub fn set(&mut self, x: u32, y: u32, value: T) {
+        if x < self.width && y < self.height {
+            self.data[y as usize * self.width as usize + x as usize] = value;
+        }
+    }
+
+    /// Row y, from left to right. Empty for a row that does not exist.
+    pub fn row(&self, y: u32) -> &[T] {
+        let start = (y as usize * self.width as usize).min(self.data.len());
+        let end = (start + self.width as usize).min(self.data.len());
+        &self.data[start..end]
+    }
+
+    /// Row y, to write to.
+    pub fn row_mut(&mut self, y: u32) -> &mut [T] {
+        let start = (y as usize * self.width as usize).min(self.data.len());
+        let end = (start + self.width as usize).min(self.data.len());
+        &mut self.data[start..end]
+    }
+
+    /// All values, row after row.
+    pub fn data(&self) -> &[T] {
+        &self.data
+    }
+
+    /// All values, to write to.
+    pub fn data_mut(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+
+    /// All values, by value.
+    pub fn into_data(self) -> Vec<T> {
+        self.data
+    }
+
+    /// Copies `source` with its first pixel at column x, row y; what falls outside is dropped.
+    pub fn paste(&mut self, source: &Self, x: u32, y: u32) {
+        let columns = source.width.min(self.width.saturating_sub(x)) as usize;
+        for row in 0..source.height.min(self.height.saturating_sub(y)) {
+            self.row_mut(y + row)[x as usize..x as usize + columns]
+                .copy_from_slice(&source.row(row)[..columns]);
+        }
+    }
+}
+
+/// The item of a pixel that nothing covers.
+pub const NO_ITEM: u32 = u32::MAX;
+
+/// The planes a picture is made in. Colour is always there; the others when asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Framebuffer {
+    /// Which row is first; the algorithms work from the top and a reader may turn it over.
+    pub origin: Origin,
+    /// 8-bit sRGB with straight (not premultiplied) alpha.
+    pub color: Pixels<[u8; 4]>,
+    /// Window depth 0 (near) … 1 (far) at the pixel centre; 1 where nothing is.
+    pub depth: Option<Pixels<f32>>,
+    /// Index of the visible item at the pixel centre, [`NO_ITEM`] where nothing is.
+    pub item: Option<Pixels<u32>>,
+    /// Unit normal in world space at the pixel centre; zero where nothing is.
+    pub normal: Option<Pixels<[f32; 3]>>,
+    /// Stencil values.
+    pub stencil: Option<Pixels<u8>>,
+}
+
+impl Framebuffer {
+    /// A framebuffer with a colour plane only, transparent black.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self {
+            origin: Origin::TopLeft,
+            color: Pixels::new(width, height, [0; 4]),
+            depth: None,
+            item: None,
+            normal: None,
+            stencil: None,
+        }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> u32 {
+        self.color.width()
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> u32 {
+        self.color.height()
+    }
+
+    /// The same framebuffer with a depth plane cleared to 1, the far end.
+    pub fn with_depth(mut self) -> Self {
+        self.depth = Some(Pixels::new(self.width(), self.height(), 1.0));
+        self
+    }
+
+    /// The same framebuffer with an item plane cleared to [`NO_ITEM`].
+    pub fn with_items(mut self) -> Self {
+        self.item = Some(Pixels::new(self.width(), self.height(), NO_ITEM));
+        self
+    }
+
+    /// The same framebuffer with a normal plane cleared to zero.
+    pub fn with_normals(mut self) -> Self {
+        self.normal = Some(Pixels::new(self.width(), self.height(), [0.0; 3]));
+        self
+    }
+
+    /// The same framebuffer with a stencil plane cleared to zero.
+    pub fn with_stencil(mut self) -> Self {
+        self.stencil = Some(Pixels::new(self.width(), self.height(), 0));
+        self
+    }
+}

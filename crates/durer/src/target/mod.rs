@@ -1,0 +1,5 @@
+//! Where pictures and drawings go.
+
+mod framebuffer;
+
+pub use framebuffer::{Framebuffer, NO_ITEM, Origin, Pixels};
