@@ -48,7 +48,7 @@ fn side_in_whole_numbers(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 
 /// An exact dyadic rational: ± magnitude · 2^exponent.
 #[derive(Debug, Clone)]
-pub(crate) struct Exact {
+pub struct Exact {
     negative: bool,
     /// Little-endian digits; no zero digit at the upper end, empty for zero.
     digits: Vec<u32>,

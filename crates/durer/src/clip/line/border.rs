@@ -3,7 +3,7 @@
 use super::Segment;
 use crate::clip::exact;
 use crate::clip::outcode::Outcode;
-use crate::math::{DVec2, DVec3, Rect};
+use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
@@ -64,6 +64,19 @@ impl ClipBox<3> {
     }
 }
 
+impl ClipBox<3> {
+    /// The six planes of the border, normals inwards: smallest and largest x, y, z.
+    pub fn planes(&self) -> [Plane; 6] {
+        std::array::from_fn(|i| {
+            let (axis, upper) = (i / 2, i % 2);
+            let sign = if upper == 0 { 1.0 } else { -1.0 };
+            let mut normal = [0.0; 3];
+            normal[axis] = sign;
+            Plane { normal: normal.into(), distance: -sign * self.borders[axis][upper] }
+        })
+    }
+}
+
 impl From<&Rect> for ClipBox<2> {
     #[inline]
     fn from(window: &Rect) -> Self {
@@ -101,11 +114,11 @@ impl<const N: usize> ClipBox<N> {
 
 /// A segment from its lexicographically smaller to its larger end point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Canonical<const N: usize> {
+pub(crate) struct Canonical<const N: usize> {
     pub(super) p: [f64; N],
     pub(super) q: [f64; N],
     /// Whether the caller's segment runs the other way.
-    pub(super) swapped: bool,
+    pub(crate) swapped: bool,
 }
 
 /// Where a canonical segment crosses a border: the point and its exact outcode.
@@ -119,7 +132,7 @@ impl<const N: usize> Canonical<N> {
     /// # Errors
     /// [`Error::NonFinite`], with index 0 for the start and 1 for the end.
     #[inline]
-    pub(super) fn new(start: [f64; N], end: [f64; N]) -> Result<Self> {
+    pub(crate) fn new(start: [f64; N], end: [f64; N]) -> Result<Self> {
         if !(finite(&start) && finite(&end)) {
             return Err(non_finite(&start));
         }
@@ -182,7 +195,7 @@ impl<const N: usize> Canonical<N> {
 
     /// p + (q − p)·t for 0 ≤ t ≤ 1; finite even where q − p is not.
     #[inline]
-    pub(super) fn at(&self, t: f64) -> [f64; N] {
+    pub(crate) fn at(&self, t: f64) -> [f64; N] {
         let (p, q) = (&self.p, &self.q);
         let point: [f64; N] = std::array::from_fn(|k| p[k] + (q[k] - p[k]) * t);
         if finite(&point) { point } else { self.at_huge(t) }

@@ -67,7 +67,7 @@ impl ConvexPolygon {
     }
 
     /// The edges, each with the inside on its left.
-    pub(crate) fn edges(&self) -> Vec<Edge> {
+    pub fn edges(&self) -> Vec<Edge> {
         pairs(&self.vertices).map(|(from, to)| Edge { from, to }).collect()
     }
 }
@@ -91,16 +91,20 @@ fn goes_round_once(ring: &[DVec2]) -> bool {
 
 /// A half-plane given by two points: the points on the left of from → to, or on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Edge {
-    pub(crate) from: DVec2,
-    pub(crate) to: DVec2,
+pub struct Edge {
+    /// Any point of the border.
+    pub from: DVec2,
+    /// Another point of it.
+    pub to: DVec2,
 }
 
-/// A closed half space E ≥ 0 that knows how far its rounded E can be off.
-pub(crate) trait HalfSpace<const N: usize> {
+/// A closed half space E ≥ 0 of N dimensions that knows how far its rounded E can be off:
+/// [`HalfPlane`], [`Edge`] or [`Plane`].
+pub trait HalfSpace<const N: usize> {
     /// E(p) rounded, and a bound of its error; both may be infinite or NaN for huge coordinates.
     fn value(&self, p: [f64; N]) -> (f64, f64);
     /// E(p) itself.
+    #[doc(hidden)]
     fn exact(&self, p: [f64; N]) -> Exact;
     /// The gradient of E, rounded.
     fn normal(&self) -> [f64; N];
@@ -348,7 +352,7 @@ fn nearest_corner<const N: usize, H: HalfSpace<N>>(
 }
 
 /// t of the crossing: 0 at p, 1 at q; to within a few ulp.
-fn parameter<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> f64 {
+pub(crate) fn parameter<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> f64 {
     let ((p, p_off), (q, q_off)) = (space.value(line.p), space.value(line.q));
     let accurate = |v: f64, off: f64| off <= v.abs() * 1e-14 && off > 1e-280 && v.is_finite();
     if accurate(p, p_off) && accurate(q, q_off) {

@@ -20,9 +20,9 @@
 //! ```
 
 pub mod batch;
-mod border;
+pub(crate) mod border;
 pub mod cohen_sutherland;
-mod convex;
+pub(crate) mod convex;
 pub mod cyrus_beck;
 pub mod liang_barsky;
 pub mod midpoint;
@@ -30,7 +30,7 @@ pub mod nicholl_lee_nicholl;
 pub mod polyline;
 
 pub use border::{ClipBox, End};
-pub use convex::{ConvexPolygon, HalfPlane, Relation};
+pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace, Relation};
 
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
@@ -92,6 +92,13 @@ impl LineClipper {
             }),
         }
     }
+}
+
+/// The part of a segment with finite ends in the closed rectangle, for other clippers.
+#[inline]
+pub(crate) fn cut_inside(window: &Rect, start: DVec2, end: DVec2) -> Option<Segment<DVec2>> {
+    let segment = Segment::new(start, end);
+    cohen_sutherland::clip(window, segment, &mut NoTrace).ok().flatten()
 }
 
 #[cfg(test)]

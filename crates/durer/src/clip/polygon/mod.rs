@@ -2,7 +2,10 @@
 //!
 //! `overlay()` is the robust door: any rings in, valid polygons out.
 
+pub mod naive;
+pub mod rectangle;
 mod shapes;
+pub mod sutherland_hodgman;
 
 pub use shapes::{Polygon, Ring, Shapes, signed_area};
 
