@@ -323,21 +323,21 @@ fn clip_lanes<S: Simd>(simd: S, w: &Borders<S>, [x0, y0, x1, y1]: [f64x4<S>; 4])
     let (entry_y, exit_y) = (down.select(w.top, w.bottom), down.select(w.bottom, w.top));
     let (enter_x, leave_x) = (w.left - px, w.right - px);
     let (enter_y, leave_y) = ((entry_y - py).abs(), (exit_y - py).abs());
-    let p_out_x = px.simd_lt(w.left);
-    let q_out_x = qx.simd_gt(w.right);
-    let p_out_y = down.select(py, w.bottom).simd_gt(down.select(w.top, py));
-    let q_out_y = down.select(w.bottom, qy).simd_gt(down.select(qy, w.top));
-    let beyond = qx.simd_lt(w.left)
-        | px.simd_gt(w.right)
-        | (py.simd_lt(w.bottom) & qy.simd_lt(w.bottom))
-        | (py.simd_gt(w.top) & qy.simd_gt(w.top));
+    // An end beyond the border on its own side of the segment is cut there; one beyond the border on
+    // the other end's side means that the whole segment is, and what else is computed is not used.
+    let (p_out_x, q_out_x) = (px.simd_lt(w.left), qx.simd_gt(w.right));
+    let (p_below, p_above) = (py.simd_lt(w.bottom), py.simd_gt(w.top));
+    let (q_below, q_above) = (qy.simd_lt(w.bottom), qy.simd_gt(w.top));
+    let (p_out_y, q_out_y) = (p_below | p_above, q_below | q_above);
+    let beyond =
+        qx.simd_lt(w.left) | px.simd_gt(w.right) | (p_below & q_below) | (p_above & q_above);
 
     // t of x borders against t of y borders, both multiplied by dx · |dy|.
     let (enter_tx, leave_tx) = (enter_x * rise, leave_x * rise);
     let (enter_ty, leave_ty) = (enter_y * dx, leave_y * dx);
     let in_doubt = |a: f64x4<S>, b: f64x4<S>| {
-        let bound = (a + b) * PRODUCT_DOUBT;
-        !((a - b).abs().simd_gt(bound) & bound.simd_gt(f64x4::splat(simd, 1e-280)))
+        let bound = (a + b) * PRODUCT_DOUBT + 1e-280;
+        !(a - b).abs().simd_gt(bound)
     };
     let enters_by_x = p_out_x & (!p_out_y | enter_tx.simd_gt(enter_ty));
     let leaves_by_x = q_out_x & (!q_out_y | leave_tx.simd_lt(leave_ty));
@@ -355,7 +355,8 @@ fn clip_lanes<S: Simd>(simd: S, w: &Borders<S>, [x0, y0, x1, y1]: [f64x4<S>; 4])
     let (p_out, q_out) = (p_out_x | p_out_y, q_out_x | q_out_y);
     let rejected = beyond | misses;
     let infinite = {
-        let zero = (x0 + y0 + x1 + y1) * 0.0 + (dx + dy) * 0.0;
+        // Differences are finite only if both numbers are.
+        let zero = (dx + dy) * 0.0;
         !zero.simd_eq(f64x4::splat(simd, 0.0))
     };
     let doubt_points = (p_out & entry.doubt) | (q_out & exit.doubt);

@@ -106,7 +106,8 @@ impl<const N: usize> ClipBox<N> {
         let mut code = 0;
         for k in 0..N {
             let [min, max] = self.borders[k];
-            code |= u8::from(p[k] < min) << (2 * k) | u8::from(p[k] > max) << (2 * k + 1);
+            // Negated, so that NaN is beyond both.
+            code |= u8::from(!(p[k] >= min)) << (2 * k) | u8::from(!(p[k] <= max)) << (2 * k + 1);
         }
         Outcode(code)
     }
@@ -136,15 +137,15 @@ impl<const N: usize> Canonical<N> {
         if !(finite(&start) && finite(&end)) {
             return Err(non_finite(&start));
         }
-        let swapped = (0..N).find(|&k| start[k] != end[k]).is_some_and(|k| start[k] > end[k]);
-        let (p, q) = if swapped { (end, start) } else { (start, end) };
+        let swapped = is_greater(&start, &end);
+        let [p, q] = exchanged_if(swapped, start, end);
         Ok(Self { p, q, swapped })
     }
 
     /// The two points in the caller's direction.
     #[inline]
     pub(super) fn in_order<P: From<[f64; N]>>(&self, p: [f64; N], q: [f64; N]) -> Segment<P> {
-        let (start, end) = if self.swapped { (q, p) } else { (p, q) };
+        let [start, end] = exchanged_if(self.swapped, p, q);
         Segment { start: start.into(), end: end.into() }
     }
 
@@ -155,22 +156,48 @@ impl<const N: usize> Canonical<N> {
     #[inline]
     pub(super) fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Cut<N> {
         let border = window.borders[axis][upper];
-        let mut point = self.interpolate(axis, border);
+        let length = self.q[axis] - self.p[axis];
+        let t = (border - self.p[axis]) / length;
+        let mut point = [border; N];
         let mut code = Outcode::INSIDE;
-        for k in (0..N).filter(|&k| k != axis) {
-            let [min, max] = window.borders[k];
-            match self.compare_cut((axis, border), (k, min), point[k]) {
-                Ordering::Less => code |= bit(k, 0),
-                Ordering::Equal => point[k] = min,
-                Ordering::Greater => match self.compare_cut((axis, border), (k, max), point[k]) {
-                    Ordering::Greater => code |= bit(k, 1),
-                    Ordering::Equal => point[k] = max,
-                    // Strictly between the two: rounding must not put it elsewhere.
-                    Ordering::Less => point[k] = clamped(point[k], min, max),
-                },
+        // The other axes, without a branch that depends on which axis it is.
+        for k in (1..N).map(|step| (axis + step) % N) {
+            let (p, q, [min, max]) = (self.p[k], self.q[k], window.borders[k]);
+            let near = p + (q - p) * t;
+            let margin = doubt(p, q);
+            point[k] = near;
+            // Huge coordinates make one of these infinite or NaN, and then the test fails.
+            let well_inside = near - min > margin && max - near > margin && length.abs() < f64::MAX;
+            if !well_inside {
+                code |= self.settle_cut(window, (axis, border), k, &mut point);
             }
         }
         Cut { point, code }
+    }
+
+    /// Decides exactly on which side of the borders of axis k the crossing with `border` is, and
+    /// puts the rounded point there.
+    #[inline(never)]
+    fn settle_cut(
+        &self,
+        window: &ClipBox<N>,
+        (axis, border): (usize, f64),
+        k: usize,
+        point: &mut [f64; N],
+    ) -> Outcode {
+        point[k] = self.interpolate(axis, border)[k];
+        let [min, max] = window.borders[k];
+        match self.compare_cut((axis, border), (k, min), point[k]) {
+            Ordering::Less => return bit(k, 0),
+            Ordering::Equal => point[k] = min,
+            Ordering::Greater => match self.compare_cut((axis, border), (k, max), point[k]) {
+                Ordering::Greater => return bit(k, 1),
+                Ordering::Equal => point[k] = max,
+                // Strictly between the two: rounding must not put it elsewhere.
+                Ordering::Less => point[k] = clamped(point[k], min, max),
+            },
+        }
+        Outcode::INSIDE
     }
 
     /// p + (q − p)·t with t = (border − p) / (q − p) on the axis.
@@ -216,10 +243,9 @@ impl<const N: usize> Canonical<N> {
         (k, other): (usize, f64),
         near: f64,
     ) -> Ordering {
-        // The rounded coordinate is off by less than 4 ulp of the larger end: 16 halves are safe.
-        let bound = (self.p[k].abs() + self.q[k].abs()) * (16.0 * exact::EPSILON);
+        let bound = doubt(self.p[k], self.q[k]);
         let gap = near - other;
-        if gap.abs() > bound && bound > 1e-290 {
+        if gap.abs() > bound {
             return if gap > 0.0 { Ordering::Greater } else { Ordering::Less };
         }
         self.compare_cut_exactly((axis, border), (k, other))
@@ -255,10 +281,36 @@ impl<const N: usize> Canonical<N> {
     }
 }
 
+/// Whether a comes after b lexicographically; no branches, which half of all segments would miss.
+#[inline]
+fn is_greater<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
+    (0..N).rev().fold(false, |rest, k| (a[k] > b[k]) | ((a[k] == b[k]) & rest))
+}
+
+/// [b, a] where `swap`, else [a, b]; by masks, for the same reason.
+#[inline]
+fn exchanged_if<const N: usize>(swap: bool, a: [f64; N], b: [f64; N]) -> [[f64; N]; 2] {
+    let mask = 0u64.wrapping_sub(u64::from(swap));
+    let (mut x, mut y) = (a, b);
+    for k in 0..N {
+        let (p, q) = (a[k].to_bits(), b[k].to_bits());
+        let difference = (p ^ q) & mask;
+        (x[k], y[k]) = (f64::from_bits(p ^ difference), f64::from_bits(q ^ difference));
+    }
+    [x, y]
+}
+
 /// Whether no coordinate is NaN or infinite; zero times anything else is zero.
 #[inline]
 pub(super) fn finite<const N: usize>(p: &[f64; N]) -> bool {
     p.iter().fold(0.0, |sum, &v| sum + v * 0.0) == 0.0
+}
+
+/// How far a coordinate computed between p and q can be off, with room to spare: it is less than
+/// 5 halves of an ulp of the larger of them, or what underflow costs.
+#[inline]
+pub(super) fn doubt(p: f64, q: f64) -> f64 {
+    (p.abs() + q.abs()) * (16.0 * exact::EPSILON) + 1e-290
 }
 
 /// Clamps without the platform's choice between 0.0 and −0.0.

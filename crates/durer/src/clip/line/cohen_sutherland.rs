@@ -118,20 +118,19 @@ fn run<const N: usize, P: From<[f64; N]>>(
     end: [f64; N],
     t: &mut impl Tracer<Step<P>>,
 ) -> Result<Option<Segment<P>>> {
-    let line = Canonical::new(start, end)?;
-    let mut ends = [line.p, line.q].map(|point| Cut { point, code: window.code(point) });
-    t.step(|| {
-        let [p, q] = ends.map(|e| e.code);
-        if line.swapped {
-            Step::Codes { start: q, end: p }
-        } else {
-            Step::Codes { start: p, end: q }
-        }
-    });
-    if (ends[0].code | ends[1].code).is_inside() {
+    let (code_start, code_end) = (window.code(start), window.code(end));
+    t.step(|| Step::Codes { start: code_start, end: code_end });
+    if (code_start | code_end).is_inside() {
         t.step(|| Step::Accepted);
         return Ok(Some(segment));
     }
+    let line = Canonical::new(start, end)?;
+    if !(code_start & code_end).is_inside() {
+        t.step(|| Step::Rejected);
+        return Ok(None);
+    }
+    let codes = if line.swapped { [code_end, code_start] } else { [code_start, code_end] };
+    let mut ends = [Cut { point: line.p, code: codes[0] }, Cut { point: line.q, code: codes[1] }];
     // Each turn clears at least one bit for good, so 2·N·2 turns would be the end in any case.
     while !(ends[0].code | ends[1].code).is_inside() {
         if !(ends[0].code & ends[1].code).is_inside() {
