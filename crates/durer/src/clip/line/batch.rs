@@ -89,7 +89,7 @@ impl Clipped {
         self.accepted.clear();
         self.accepted.resize(kept.len().div_ceil(64), u64::MAX);
         if let Some(last) = self.accepted.last_mut()
-            && kept.len() % 64 != 0
+            && !kept.len().is_multiple_of(64)
         {
             *last = (1 << (kept.len() % 64)) - 1;
         }

@@ -104,10 +104,10 @@ impl<const N: usize> ClipBox<N> {
     #[inline]
     pub(super) fn code(&self, p: [f64; N]) -> Outcode {
         let mut code = 0;
-        for k in 0..N {
-            let [min, max] = self.borders[k];
+        for (k, (v, [min, max])) in p.iter().zip(&self.borders).enumerate() {
             // Negated, so that NaN is beyond both.
-            code |= u8::from(!(p[k] >= min)) << (2 * k) | u8::from(!(p[k] <= max)) << (2 * k + 1);
+            let (above_min, below_max) = (v >= min, v <= max);
+            code |= u8::from(!above_min) << (2 * k) | u8::from(!below_max) << (2 * k + 1);
         }
         Outcode(code)
     }

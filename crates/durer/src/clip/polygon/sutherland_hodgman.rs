@@ -8,7 +8,7 @@
 //! **Bridging edges.** The result is one ring even where the part inside falls into several: the
 //! parts stay joined by edges that run to and fro along the border. Its area and every area integral
 //! are right and so is a fill; a stroke shows the bridges. [`super::rectangle`] and
-//! [`super::overlay`] give separate rings.
+//! the overlay give separate rings.
 //!
 //! Which side of a border a vertex is on is decided exactly. Cuts are computed from the
 //! lexicographically smaller end of an edge, so polygons that share an edge share its cuts.

@@ -55,7 +55,7 @@ impl BorderPoint {
     }
 
     fn order_on_side(&self, other: &Self) -> Ordering {
-        let along = |b: &Self| if b.side % 2 == 0 { b.point.x } else { b.point.y };
+        let along = |b: &Self| b.point[b.side % 2];
         let (a, b) = (along(self), along(other));
         // Cut points are off by less than 4 ulp of their edge's ends.
         let size = |e: &[DVec2; 2]| e[0].abs().max_element().max(e[1].abs().max_element());

@@ -273,7 +273,7 @@ impl<P: Provenance> Clipper<P> {
         for corner in corners(&self.window) {
             self.push(corner, || Source::Corner);
         }
-        vec![from..self.points.len()]
+        std::iter::once(from..self.points.len()).collect()
     }
 
     /// Joins chains along the border to rings, appended to the scratch buffer.
