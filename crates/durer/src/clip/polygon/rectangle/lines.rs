@@ -102,8 +102,23 @@ fn cut(
     };
     // Whether the piece being built ends with the point reached.
     let mut open = false;
-    for (k, pair) in part.windows(2).enumerate() {
-        let (a, b) = (pair[0], pair[1]);
+    let mut next = 1;
+    while next < part.len() {
+        if open {
+            // The whole run of points inside at once.
+            let run = part[next..].iter().position(|p| !window.contains(*p));
+            let end = run.map_or(part.len(), |length| next + length);
+            out.points.extend_from_slice(&part[next..end]);
+            if sources {
+                out.sources.extend((first + next..first + end).map(Source::Vertex));
+            }
+            next = end;
+            if next == part.len() {
+                break;
+            }
+        }
+        let (k, a, b) = (next - 1, part[next - 1], part[next]);
+        next += 1;
         if apart(a, b) {
             continue;
         }
@@ -113,10 +128,6 @@ fn cut(
                 out.sources.push(Source::on_edge(point, (first + k, a), (first + k + 1, b)));
             }
         };
-        if open && window.contains(b) {
-            push(b);
-            continue;
-        }
         let Some(visible) = cut_inside(window, a, b) else { continue };
         if !open {
             push(visible.start);
