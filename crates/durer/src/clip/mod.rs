@@ -1,5 +1,7 @@
 //! Clipping in two dimensions and in homogeneous coordinates.
 
+pub mod attribute;
+pub(crate) mod exact;
 pub mod line;
 pub mod outcode;
 pub mod place;

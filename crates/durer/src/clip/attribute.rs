@@ -1,0 +1,142 @@
+//! Where the vertices of a clipped shape come from, and values carried along: height, measure,
+//! colour, texture coordinates, any tuple of numbers.
+//!
+//! Clippers do not touch attributes; they tell the source of every output vertex, and
+//! [`interpolate`] or any callback makes the new values from it. Who needs none pays nothing.
+
+use crate::math::DVec2;
+
+/// Where an output vertex comes from; indices count the points of the input's flat buffer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// An input point, bit for bit.
+    Vertex(usize),
+    /// A cut of the edge between two input points.
+    Cut {
+        /// The edge's first point.
+        from: usize,
+        /// The edge's last point.
+        to: usize,
+        /// 0 at `from`, 1 at `to`.
+        t: f64,
+    },
+    /// A corner of the window inside the shape; it lies on no edge of the input.
+    Corner,
+}
+
+impl Source {
+    /// The source of a point on the edge between two input points, each given by index and place.
+    pub(crate) fn on_edge(
+        point: DVec2,
+        (from, a): (usize, DVec2),
+        (to, b): (usize, DVec2),
+    ) -> Self {
+        if point == a {
+            return Self::Vertex(from);
+        }
+        if point == b {
+            return Self::Vertex(to);
+        }
+        // Along the axis on which the edge is longer; quarters because a difference may overflow.
+        let (a, b, p) = (a * 0.25, b * 0.25, point * 0.25);
+        let d = b - a;
+        let t = if d.x.abs() > d.y.abs() { (p.x - a.x) / d.x } else { (p.y - a.y) / d.y };
+        Self::Cut { from, to, t }
+    }
+}
+
+/// A listener for the sources of output vertices: `Vec<Source>`, or [`NoSources`].
+pub trait Provenance: Default {
+    /// The source of the next vertex.
+    fn push(&mut self, source: impl FnOnce() -> Source);
+    /// Input points, one after the other.
+    fn push_vertices(&mut self, range: std::ops::Range<usize>);
+    /// A range of another list.
+    fn push_range(&mut self, other: &Self, range: std::ops::Range<usize>);
+    /// A range of this list once more.
+    fn repeat(&mut self, range: std::ops::Range<usize>);
+    /// Forgets everything from a length on.
+    fn truncate(&mut self, length: usize);
+}
+
+/// Keeps nothing and costs nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NoSources;
+
+impl Provenance for NoSources {
+    #[inline(always)]
+    fn push(&mut self, _source: impl FnOnce() -> Source) {}
+    #[inline(always)]
+    fn push_vertices(&mut self, _range: std::ops::Range<usize>) {}
+    #[inline(always)]
+    fn push_range(&mut self, _other: &Self, _range: std::ops::Range<usize>) {}
+    #[inline(always)]
+    fn repeat(&mut self, _range: std::ops::Range<usize>) {}
+    #[inline(always)]
+    fn truncate(&mut self, _length: usize) {}
+}
+
+impl Provenance for Vec<Source> {
+    fn push(&mut self, source: impl FnOnce() -> Source) {
+        self.push(source());
+    }
+
+    fn push_vertices(&mut self, range: std::ops::Range<usize>) {
+        self.extend(range.map(Source::Vertex));
+    }
+
+    fn push_range(&mut self, other: &Self, range: std::ops::Range<usize>) {
+        self.extend_from_slice(other.get(range).unwrap_or_default());
+    }
+
+    fn repeat(&mut self, range: std::ops::Range<usize>) {
+        if range.end <= self.len() {
+            self.extend_from_within(range);
+        }
+    }
+
+    fn truncate(&mut self, length: usize) {
+        self.truncate(length);
+    }
+}
+
+/// The values of all output vertices from those of the input.
+///
+/// `lerp(a, b, t)` mixes the values of an edge's two ends; `corner(i)` makes the value of output
+/// vertex i, a corner of the window, which no edge of the input determines.
+///
+/// ```
+/// use durer::clip::attribute::{Source, interpolate};
+///
+/// let sources = [Source::Vertex(1), Source::Cut { from: 1, to: 0, t: 0.25 }, Source::Corner];
+/// let heights = [10.0, 20.0];
+/// let clipped = interpolate(&sources, &heights, |a, b, t| a + (b - a) * t, |_| 0.0);
+/// assert_eq!(clipped, Some(vec![20.0, 17.5, 0.0]));
+/// ```
+///
+/// `None` where a source names a point that `values` does not have.
+pub fn interpolate<V: Copy>(
+    sources: &[Source],
+    values: &[V],
+    mut lerp: impl FnMut(V, V, f64) -> V,
+    mut corner: impl FnMut(usize) -> V,
+) -> Option<Vec<V>> {
+    let value = |i: usize| values.get(i).copied();
+    let mut output = |(i, source): (usize, &Source)| match *source {
+        Source::Vertex(k) => value(k),
+        Source::Cut { from, to, t } => Some(lerp(value(from)?, value(to)?, t)),
+        Source::Corner => Some(corner(i)),
+    };
+    sources.iter().enumerate().map(&mut output).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_points_are_noticed() {
+        let sources = [Source::Cut { from: 0, to: 2, t: 0.5 }];
+        assert_eq!(interpolate(&sources, &[1.0, 2.0], |a, _, _| a, |_| 0.0), None);
+    }
+}

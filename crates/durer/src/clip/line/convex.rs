@@ -1,0 +1,408 @@
+//! What the algorithms for convex windows share: half spaces, exact sides, order of crossings.
+
+use super::border::{Canonical, finite};
+use crate::clip::exact::{EPSILON, Exact};
+use crate::math::{DVec2, Orientation, Plane, Rect, orient2d};
+use crate::{Error, Result};
+use std::cmp::Ordering;
+
+/// A closed half-plane: the points p with E(p) = normal · (p − point) ≥ 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// Points to the inside; need not have unit length.
+    pub normal: DVec2,
+    /// Any point of the border.
+    pub point: DVec2,
+}
+
+impl HalfPlane {
+    /// The four half-planes whose intersection is the rectangle: left, right, bottom, top.
+    pub fn of_rect(window: &Rect) -> [Self; 4] {
+        let (min, max) = (window.min(), window.max());
+        [(DVec2::X, min), (-DVec2::X, max), (DVec2::Y, min), (-DVec2::Y, max)]
+            .map(|(normal, point)| Self { normal, point })
+    }
+}
+
+/// A convex polygon, its vertices counter-clockwise (y up).
+///
+/// # Guarantees
+/// All coordinates are finite; at least three vertices; no two neighbours coincide; every turn is
+/// to the left or straight on, and the ring goes round once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConvexPolygon {
+    vertices: Vec<DVec2>,
+}
+
+impl ConvexPolygon {
+    /// The polygon with these vertices, in either direction; repeated neighbours are dropped.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`]; [`Error::Parameter`] where the ring is not convex or has no area.
+    pub fn new(vertices: &[DVec2]) -> Result<Self> {
+        if let Some(index) = vertices.iter().position(|v| !v.is_finite()) {
+            return Err(Error::NonFinite { what: "vertex", index });
+        }
+        let mut ring = vertices.to_vec();
+        ring.dedup();
+        while ring.len() > 1 && ring.first() == ring.last() {
+            ring.pop();
+        }
+        if turns(&ring).any(|t| t == Orientation::Clockwise) {
+            ring.reverse();
+        }
+        let bends = turns(&ring).any(|t| t == Orientation::CounterClockwise);
+        let convex = bends && turns(&ring).all(|t| t != Orientation::Clockwise);
+        if convex && goes_round_once(&ring) {
+            Ok(Self { vertices: ring })
+        } else {
+            let value = format!("a ring of {} vertices", vertices.len());
+            Err(Error::parameter("polygon", value, "convex, with an area"))
+        }
+    }
+
+    /// The vertices, counter-clockwise.
+    pub fn vertices(&self) -> &[DVec2] {
+        &self.vertices
+    }
+
+    /// The edges, each with the inside on its left.
+    pub fn edges(&self) -> Vec<Edge> {
+        pairs(&self.vertices).map(|(from, to)| Edge { from, to }).collect()
+    }
+}
+
+fn pairs(ring: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+    ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| (*a, *b))
+}
+
+fn turns(ring: &[DVec2]) -> impl Iterator<Item = Orientation> + '_ {
+    pairs(ring).zip(ring.iter().cycle().skip(2)).map(|((a, b), c)| orient2d(a, b, *c))
+}
+
+/// A ring that only turns left goes round once if it goes up and down again only once, and does not
+/// turn back on itself.
+fn goes_round_once(ring: &[DVec2]) -> bool {
+    let ups: Vec<bool> =
+        pairs(ring).filter(|(a, b)| a != b).map(|(a, b)| (b.y, b.x) > (a.y, a.x)).collect();
+    let changes = ups.iter().zip(ups.iter().cycle().skip(1)).filter(|(a, b)| a != b).count();
+    changes == 2
+}
+
+/// A half-plane given by two points: the points on the left of from → to, or on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// Any point of the border.
+    pub from: DVec2,
+    /// Another point of it.
+    pub to: DVec2,
+}
+
+/// A closed half space E ≥ 0 of N dimensions that knows how far its rounded E can be off:
+/// [`HalfPlane`], [`Edge`] or [`Plane`].
+pub trait HalfSpace<const N: usize> {
+    /// E(p) rounded, and a bound of its error; both may be infinite or NaN for huge coordinates.
+    fn value(&self, p: [f64; N]) -> (f64, f64);
+    /// E(p) itself.
+    #[doc(hidden)]
+    fn exact(&self, p: [f64; N]) -> Exact;
+    /// The gradient of E, rounded.
+    fn normal(&self) -> [f64; N];
+    /// Axis and coordinate of a border that is parallel to all other axes and has such a number.
+    fn coordinate(&self) -> Option<(usize, f64)>;
+    /// Corners of the window on this border, if known.
+    fn corners(&self) -> Vec<[f64; N]> {
+        Vec::new()
+    }
+
+    /// The exact sign of E(p).
+    #[inline]
+    fn sign(&self, p: [f64; N]) -> Ordering {
+        let (value, bound) = self.value(p);
+        if value.abs() > bound && bound > 1e-280 {
+            return if value > 0.0 { Ordering::Greater } else { Ordering::Less };
+        }
+        self.exact(p).sign()
+    }
+}
+
+impl HalfSpace<2> for HalfPlane {
+    fn value(&self, p: [f64; 2]) -> (f64, f64) {
+        let x = self.normal.x * (p[0] - self.point.x);
+        let y = self.normal.y * (p[1] - self.point.y);
+        (x + y, (x.abs() + y.abs()) * (8.0 * EPSILON))
+    }
+
+    fn exact(&self, p: [f64; 2]) -> Exact {
+        let e = Exact::from;
+        e(self.normal.x) * (e(p[0]) - e(self.point.x))
+            + e(self.normal.y) * (e(p[1]) - e(self.point.y))
+    }
+
+    fn normal(&self) -> [f64; 2] {
+        self.normal.to_array()
+    }
+
+    fn coordinate(&self) -> Option<(usize, f64)> {
+        match self.normal.to_array() {
+            [_, 0.0] => Some((0, self.point.x)),
+            [0.0, _] => Some((1, self.point.y)),
+            _ => None,
+        }
+    }
+}
+
+impl HalfSpace<2> for Edge {
+    fn value(&self, p: [f64; 2]) -> (f64, f64) {
+        let along = self.to - self.from;
+        let left = along.x * (p[1] - self.from.y);
+        let right = along.y * (p[0] - self.from.x);
+        (left - right, (left.abs() + right.abs()) * (8.0 * EPSILON))
+    }
+
+    fn exact(&self, p: [f64; 2]) -> Exact {
+        let e = Exact::from;
+        (e(self.to.x) - e(self.from.x)) * (e(p[1]) - e(self.from.y))
+            - (e(self.to.y) - e(self.from.y)) * (e(p[0]) - e(self.from.x))
+    }
+
+    fn normal(&self) -> [f64; 2] {
+        (self.to - self.from).perp().to_array()
+    }
+
+    fn corners(&self) -> Vec<[f64; 2]> {
+        vec![self.from.to_array(), self.to.to_array()]
+    }
+
+    fn coordinate(&self) -> Option<(usize, f64)> {
+        if self.from.x == self.to.x {
+            Some((0, self.from.x))
+        } else {
+            (self.from.y == self.to.y).then_some((1, self.from.y))
+        }
+    }
+}
+
+impl HalfSpace<3> for Plane {
+    fn value(&self, p: [f64; 3]) -> (f64, f64) {
+        let [x, y, z] = (self.normal * crate::math::DVec3::from_array(p)).to_array();
+        let size = x.abs() + y.abs() + z.abs() + self.distance.abs();
+        (x + y + z + self.distance, size * (8.0 * EPSILON))
+    }
+
+    fn exact(&self, p: [f64; 3]) -> Exact {
+        let product = |n: f64, x: f64| Exact::from(n) * Exact::from(x);
+        product(self.normal.x, p[0])
+            + product(self.normal.y, p[1])
+            + (product(self.normal.z, p[2]) + Exact::from(self.distance))
+    }
+
+    fn normal(&self) -> [f64; 3] {
+        self.normal.to_array()
+    }
+
+    fn coordinate(&self) -> Option<(usize, f64)> {
+        let axis = match self.normal.to_array().map(|n| n != 0.0) {
+            [true, false, false] => 0,
+            [false, true, false] => 1,
+            [false, false, true] => 2,
+            _ => return None,
+        };
+        // Only a normal of unit length has a border that is certainly a floating-point number.
+        let n = self.normal.to_array()[axis];
+        (n.abs() == 1.0).then_some((axis, -self.distance * n))
+    }
+}
+
+/// How a canonical segment lies to one half space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Relation {
+    /// Both ends inside: nothing to do.
+    Inside,
+    /// Both ends outside: the segment is rejected.
+    Outside,
+    /// The start is outside, the end inside.
+    Entering,
+    /// The start is inside, the end outside.
+    Leaving,
+}
+
+/// The borders through which a segment enters and leaves; `None` for an end that is inside.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Passage {
+    pub(super) entering: Option<usize>,
+    pub(super) leaving: Option<usize>,
+}
+
+/// Finds the last border entered and the first one left; `None` where the segment misses the
+/// intersection of the half spaces. `report` hears of every half space looked at.
+pub(super) fn passage<const N: usize, H: HalfSpace<N>>(
+    spaces: &[H],
+    line: &Canonical<N>,
+    mut report: impl FnMut(usize, Relation),
+) -> Option<Passage> {
+    let mut passage = Passage::default();
+    for (i, space) in spaces.iter().enumerate() {
+        let relation = relate(space, line);
+        report(i, relation);
+        // Of several borders crossed at the same point, the first listed is named.
+        match relation {
+            Relation::Inside => {}
+            Relation::Outside => return None,
+            Relation::Entering => {
+                let later = |&e: &usize| crossing_order(&spaces[e], space, line) == Ordering::Less;
+                if passage.entering.is_none_or(|e| later(&e)) {
+                    passage.entering = Some(i);
+                }
+            }
+            Relation::Leaving => {
+                let sooner =
+                    |&l: &usize| crossing_order(&spaces[l], space, line) == Ordering::Greater;
+                if passage.leaving.is_none_or(|l| sooner(&l)) {
+                    passage.leaving = Some(i);
+                }
+            }
+        }
+    }
+    let missed = passage
+        .entering
+        .zip(passage.leaving)
+        .is_some_and(|(e, l)| crossing_order(&spaces[e], &spaces[l], line) == Ordering::Greater);
+    (!missed).then_some(passage)
+}
+
+fn relate<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> Relation {
+    let inside = [line.p, line.q].map(|p| space.sign(p) != Ordering::Less);
+    match inside {
+        [true, true] => Relation::Inside,
+        [false, false] => Relation::Outside,
+        [false, true] => Relation::Entering,
+        [true, false] => Relation::Leaving,
+    }
+}
+
+/// The exact order along the segment of its crossings with two borders, both of which it spans.
+fn crossing_order<const N: usize, H: HalfSpace<N>>(a: &H, b: &H, line: &Canonical<N>) -> Ordering {
+    let ((ap, ap_off), (aq, aq_off)) = (a.value(line.p), a.value(line.q));
+    let ((bp, bp_off), (bq, bq_off)) = (b.value(line.p), b.value(line.q));
+    // t = E(p) / (E(p) − E(q)), so the sign of a's t minus b's is that of this determinant, seen
+    // from the direction in which each border is crossed.
+    let (left, right) = (bp * aq, ap * bq);
+    let bound = bp_off * aq.abs()
+        + (bp.abs() + bp_off) * aq_off
+        + ap_off * bq.abs()
+        + (ap.abs() + ap_off) * bq_off
+        + (left.abs() + right.abs()) * (4.0 * EPSILON);
+    let det = left - right;
+    let order = if det.abs() > bound && bound > 1e-280 {
+        det.total_cmp(&0.0)
+    } else {
+        let left = b.exact(line.p) * a.exact(line.q);
+        (left - a.exact(line.p) * b.exact(line.q)).sign()
+    };
+    let entering = |h: &H| h.sign(line.p) == Ordering::Less;
+    if entering(a) == entering(b) { order } else { order.reverse() }
+}
+
+/// The point where the segment crosses the border of half space `index`, inside all half spaces if
+/// a floating-point point that close is.
+pub(super) fn crossing<const N: usize, H: HalfSpace<N>>(
+    spaces: &[H],
+    index: usize,
+    line: &Canonical<N>,
+) -> [f64; N] {
+    let space = &spaces[index];
+    let scale = size(line.p).max(size(line.q));
+    let on_border = |mut point: [f64; N]| {
+        if let Some((axis, border)) = space.coordinate() {
+            point[axis] = border;
+        }
+        point
+    };
+    let point = on_border(line.at(parameter(space, line)));
+    settled(spaces, point, scale)
+        .or_else(|| settled(spaces, on_border(exact_crossing(space, line)), scale))
+        .or_else(|| nearest_corner(space, point, scale))
+        .unwrap_or(point)
+}
+
+fn size<const N: usize>(v: [f64; N]) -> f64 {
+    v.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
+/// The crossing with every coordinate computed exactly and rounded once: for windows so thin that
+/// an ulp of the segment's ends is too much.
+fn exact_crossing<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> [f64; N] {
+    let (p, q) = (space.exact(line.p), space.exact(line.q));
+    let divisor = q.clone() - p.clone();
+    std::array::from_fn(|k| {
+        let (a, b) = (Exact::from(line.p[k]), Exact::from(line.q[k]));
+        (a * q.clone() - b * p.clone()).ratio(&divisor)
+    })
+}
+
+/// A corner that rounding cannot tell from the cut: in the tip of a needle no other number is inside.
+fn nearest_corner<const N: usize, H: HalfSpace<N>>(
+    space: &H,
+    cut: [f64; N],
+    scale: f64,
+) -> Option<[f64; N]> {
+    let offset = |c: &[f64; N]| size::<N>(std::array::from_fn(|k| c[k] - cut[k]));
+    space.corners().into_iter().find(|c| offset(c) <= scale * (64.0 * EPSILON))
+}
+
+/// t of the crossing: 0 at p, 1 at q; to within a few ulp.
+pub(crate) fn parameter<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> f64 {
+    let ((p, p_off), (q, q_off)) = (space.value(line.p), space.value(line.q));
+    let accurate = |v: f64, off: f64| off <= v.abs() * 1e-14 && off > 1e-280 && v.is_finite();
+    if accurate(p, p_off) && accurate(q, q_off) {
+        // A quarter of each, because the difference of two huge values overflows.
+        return p * 0.25 / (p * 0.25 - q * 0.25);
+    }
+    let (p, q) = (space.exact(line.p), space.exact(line.q));
+    p.ratio(&(p.clone() - q))
+}
+
+/// Moves a cut point that rounding has put outside to the inside, by a few ulp at most, so that
+/// clipping its segment again finds it inside and leaves it alone; `None` where that fails.
+fn settled<const N: usize, H: HalfSpace<N>>(
+    spaces: &[H],
+    mut point: [f64; N],
+    scale: f64,
+) -> Option<[f64; N]> {
+    for round in 0..SETTLE_ROUNDS {
+        let Some(space) = spaces.iter().find(|s| s.sign(point) == Ordering::Less) else {
+            return Some(point);
+        };
+        // Twice as far each time: the error may be an ulp of the point or of the segment's ends.
+        let step = size(point).max(scale * 1e-18) * libm::scalbn(1.0, round);
+        point = pushed(space, point, step.min(scale * 16.0));
+    }
+    None
+}
+
+/// Turns around the borders after which a window is taken to hold no floating-point point near the
+/// cut: enough for steps to grow from an ulp of the point to one of the segment's ends.
+const SETTLE_ROUNDS: i32 = 64;
+
+/// The point moved inwards by a quarter ulp of `scale`.
+fn pushed<const N: usize, H: HalfSpace<N>>(space: &H, point: [f64; N], scale: f64) -> [f64; N] {
+    if let Some((axis, border)) = space.coordinate() {
+        let mut point = point;
+        point[axis] = border;
+        return point;
+    }
+    let normal = space.normal();
+    let step = scale * (0.5 * EPSILON) / size(normal);
+    let moved: [f64; N] = std::array::from_fn(|k| {
+        let target = point[k] + normal[k] * step;
+        // A step below half an ulp of this coordinate would be lost.
+        match (target == point[k], normal[k] > 0.0) {
+            (false, _) => target,
+            (true, true) if normal[k].abs() * 2.0 > size(normal) => point[k].next_up(),
+            (true, false) if normal[k].abs() * 2.0 > size(normal) => point[k].next_down(),
+            (true, _) => target,
+        }
+    });
+    if finite(&moved) { moved } else { point }
+}

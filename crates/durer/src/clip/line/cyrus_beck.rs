@@ -1,0 +1,156 @@
+//! Cyrus–Beck line clipping.
+//!
+//! Mike Cyrus and Jay Beck, "Generalized two- and three-dimensional clipping", Computers & Graphics
+//! 3(1), 1978. Object space; O(n) for a window with n borders. Every border is crossed inwards or
+//! outwards; the last way in and the first way out bound the visible part.
+//!
+//! Rules in place of luck: a segment parallel to a border, or of length zero, crosses it nowhere and
+//! is judged by the side its ends are on. Sides and the order of crossings are exact; a cut point
+//! that rounding puts outside is moved inside by a few ulp.
+
+use super::border::Canonical;
+use super::convex::{self, HalfSpace, Relation};
+use super::{ConvexPolygon, End, HalfPlane, Segment};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::math::{DVec2, DVec3, Plane, Rect};
+use crate::trace::Tracer;
+
+/// The facts of Cyrus–Beck clipping.
+pub const INFO: Info = Info {
+    name: "cyrus-beck",
+    title: "Cyrus–Beck",
+    authors: "Mike Cyrus, Jay Beck",
+    year: 1978,
+    source: "Generalized two- and three-dimensional clipping, Computers & Graphics 3(1)",
+    class: Class::ObjectSpace,
+    cost: "O(n) per segment, n borders",
+    limits: "convex windows; cut points lie within a few ulp of a slanted border",
+};
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options;
+
+/// What the algorithm did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step<P> {
+    /// One border was looked at, from the lexicographically smaller end of the segment.
+    Border {
+        /// Its index in the window.
+        border: usize,
+        /// How the segment lies to it.
+        relation: Relation,
+    },
+    /// One end moves to a border.
+    Cut {
+        /// Which end.
+        end: End,
+        /// The border's index.
+        border: usize,
+        /// Where the end is now.
+        point: P,
+    },
+    /// What is left is inside.
+    Accepted,
+    /// Nothing is left.
+    Rejected,
+}
+
+/// The result that a list of steps leads to.
+pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Segment<P>> {
+    for step in steps {
+        match *step {
+            Step::Border { .. } => {}
+            Step::Cut { end, point, .. } => segment = segment.moved(end, point),
+            Step::Accepted => return Some(segment),
+            Step::Rejected => return None,
+        }
+    }
+    None
+}
+
+/// The part of a segment in the closed rectangle, taken as four half-planes.
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
+pub fn clip(
+    window: &Rect,
+    segment: Segment<DVec2>,
+    t: &mut impl Tracer<Step<DVec2>>,
+) -> Result<Option<Segment<DVec2>>> {
+    let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
+    Ok(run(&HalfPlane::of_rect(window), segment, &line, t))
+}
+
+/// The part of a segment in a closed convex polygon.
+///
+/// ```
+/// use durer::clip::line::{ConvexPolygon, Segment, cyrus_beck};
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let p = DVec2::new;
+/// let triangle = ConvexPolygon::new(&[p(0.0, 0.0), p(4.0, 0.0), p(0.0, 4.0)])?;
+/// let clipped = cyrus_beck::clip_polygon(&triangle, Segment::new(p(1.0, 1.0), p(5.0, 1.0)), &mut NoTrace)?;
+/// assert_eq!(clipped, Some(Segment::new(p(1.0, 1.0), p(3.0, 1.0))));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
+pub fn clip_polygon(
+    window: &ConvexPolygon,
+    segment: Segment<DVec2>,
+    t: &mut impl Tracer<Step<DVec2>>,
+) -> Result<Option<Segment<DVec2>>> {
+    let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
+    Ok(run(&window.edges(), segment, &line, t))
+}
+
+/// The part of a segment in the closed convex polyhedron that is the intersection of the positive
+/// sides of the planes; it may be unbounded.
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate; the same for a plane
+/// that has one.
+pub fn clip_polyhedron(
+    window: &[Plane],
+    segment: Segment<DVec3>,
+    t: &mut impl Tracer<Step<DVec3>>,
+) -> Result<Option<Segment<DVec3>>> {
+    for (index, plane) in window.iter().enumerate() {
+        if !(plane.normal.is_finite() && plane.distance.is_finite()) {
+            return Err(crate::Error::NonFinite { what: "plane", index });
+        }
+    }
+    let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
+    Ok(run(window, segment, &line, t))
+}
+
+fn run<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
+    spaces: &[H],
+    segment: Segment<P>,
+    line: &Canonical<N>,
+    t: &mut impl Tracer<Step<P>>,
+) -> Option<Segment<P>> {
+    let report = |border, relation| t.step(|| Step::Border { border, relation });
+    let Some(passage) = convex::passage(spaces, line, report) else {
+        t.step(|| Step::Rejected);
+        return None;
+    };
+    let mut cut = |border: Option<usize>, end: End| {
+        let point = border.map(|b| convex::crossing(spaces, b, line));
+        if let Some((border, point)) = border.zip(point) {
+            let end = end.swapped_if(line.swapped);
+            t.step(|| Step::Cut { end, border, point: point.into() });
+        }
+        point
+    };
+    let (p, q) = (cut(passage.entering, End::Start), cut(passage.leaving, End::End));
+    t.step(|| Step::Accepted);
+    if p.is_none() && q.is_none() {
+        return Some(segment);
+    }
+    Some(line.in_order(p.unwrap_or(line.p), q.unwrap_or(line.q)))
+}

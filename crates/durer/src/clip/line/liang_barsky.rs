@@ -1,0 +1,210 @@
+//! Liang–Barsky line clipping.
+//!
+//! You-Dong Liang and Brian Barsky, "A new concept and method for line clipping", ACM Transactions
+//! on Graphics 3(1), 1984. Object space; O(1) for rectangle and box, O(n) for n half-planes. The
+//! segment is p + t·(q − p); each border bounds t from below where it is crossed inwards and from
+//! above where it is crossed outwards; what is left between the bounds is visible.
+//!
+//! The bounds are compared as numbers where rounding cannot matter and exactly where it could.
+
+use super::border::{Canonical, bit};
+use super::convex::{self, HalfPlane, Relation};
+use super::{ClipBox, End, Segment};
+use crate::clip::outcode::Outcode;
+use crate::info::{Class, Info};
+use crate::math::{DVec2, DVec3, Rect};
+use crate::trace::Tracer;
+use crate::{Error, Result};
+use std::cmp::Ordering;
+
+/// The facts of Liang–Barsky clipping.
+pub const INFO: Info = Info {
+    name: "liang-barsky",
+    title: "Liang–Barsky",
+    authors: "You-Dong Liang, Brian A. Barsky",
+    year: 1984,
+    source: "A new concept and method for line clipping, ACM Transactions on Graphics 3(1)",
+    class: Class::ObjectSpace,
+    cost: "O(1) per segment; at most two cut points are computed",
+    limits: "rectangle, box, and intersections of half-planes",
+};
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options;
+
+/// What the algorithm did; parameters run from the lexicographically smaller end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step<P> {
+    /// A border was crossed inwards or outwards and now bounds the parameter on that side.
+    Bound {
+        /// [`Relation::Entering`] raises the lower bound, [`Relation::Leaving`] lowers the upper.
+        relation: Relation,
+        /// The border's number: 2·axis, plus 1 for the larger coordinate; or the half-plane's index.
+        border: usize,
+    },
+    /// One end moves to the border that bounds it.
+    Cut {
+        /// Which end.
+        end: End,
+        /// The border's number.
+        border: usize,
+        /// Where the end is now.
+        point: P,
+    },
+    /// What is left is inside.
+    Accepted,
+    /// The lower bound passed the upper, or a border has both ends beyond it.
+    Rejected,
+}
+
+/// The result that a list of steps leads to.
+pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Segment<P>> {
+    for step in steps {
+        match *step {
+            Step::Bound { .. } => {}
+            Step::Cut { end, point, .. } => segment = segment.moved(end, point),
+            Step::Accepted => return Some(segment),
+            Step::Rejected => return None,
+        }
+    }
+    None
+}
+
+/// The part of a segment in the closed rectangle.
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
+#[inline]
+pub fn clip(
+    window: &Rect,
+    segment: Segment<DVec2>,
+    t: &mut impl Tracer<Step<DVec2>>,
+) -> Result<Option<Segment<DVec2>>> {
+    run(&window.into(), segment, segment.start.to_array(), segment.end.to_array(), t)
+}
+
+/// The part of a segment in the closed box.
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
+pub fn clip_box(
+    window: &ClipBox<3>,
+    segment: Segment<DVec3>,
+    t: &mut impl Tracer<Step<DVec3>>,
+) -> Result<Option<Segment<DVec3>>> {
+    run(window, segment, segment.start.to_array(), segment.end.to_array(), t)
+}
+
+/// The part of a segment in the intersection of closed half-planes, which may be unbounded: with
+/// E(P) = n · (P − Q), the border is crossed at t = E(p) / (E(p) − E(q)).
+///
+/// ```
+/// use durer::clip::line::{HalfPlane, Segment, liang_barsky};
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let above = HalfPlane { normal: DVec2::Y, point: DVec2::ZERO };
+/// let segment = Segment::new(DVec2::new(0.0, -1.0), DVec2::new(2.0, 1.0));
+/// let clipped = liang_barsky::clip_half_planes(&[above], segment, &mut NoTrace)?;
+/// assert_eq!(clipped, Some(Segment::new(DVec2::new(1.0, 0.0), DVec2::new(2.0, 1.0))));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate, of the segment or a half-plane.
+pub fn clip_half_planes(
+    window: &[HalfPlane],
+    segment: Segment<DVec2>,
+    t: &mut impl Tracer<Step<DVec2>>,
+) -> Result<Option<Segment<DVec2>>> {
+    for (index, plane) in window.iter().enumerate() {
+        if !(plane.normal.is_finite() && plane.point.is_finite()) {
+            return Err(Error::NonFinite { what: "half-plane", index });
+        }
+    }
+    let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
+    let passage = convex::passage(window, &line, |border, relation| {
+        if matches!(relation, Relation::Entering | Relation::Leaving) {
+            t.step(|| Step::Bound { relation, border });
+        }
+    });
+    let Some(passage) = passage else {
+        t.step(|| Step::Rejected);
+        return Ok(None);
+    };
+    let cut = |border: Option<usize>| border.map(|b| (b, convex::crossing(window, b, &line)));
+    Ok(Some(finish(segment, &line, cut(passage.entering), cut(passage.leaving), t)))
+}
+
+#[inline]
+fn run<const N: usize, P: From<[f64; N]>>(
+    window: &ClipBox<N>,
+    segment: Segment<P>,
+    start: [f64; N],
+    end: [f64; N],
+    t: &mut impl Tracer<Step<P>>,
+) -> Result<Option<Segment<P>>> {
+    let line = Canonical::new(start, end)?;
+    // A border that neither end lies beyond bounds t outside 0 … 1; one that both lie beyond
+    // rejects, segments parallel to it included.
+    let (outside_p, outside_q) = (window.code(line.p), window.code(line.q));
+    if !(outside_p & outside_q).is_inside() {
+        t.step(|| Step::Rejected);
+        return Ok(None);
+    }
+    let lower = tightest(window, &line, outside_p, Ordering::Greater, t);
+    let upper = tightest(window, &line, outside_q, Ordering::Less, t);
+    let at = |b: usize| (b >> 1, window.borders[b >> 1][b & 1]);
+    if let Some((l, u)) = lower.zip(upper)
+        && line.compare_parameters(at(l), at(u)) == Ordering::Greater
+    {
+        t.step(|| Step::Rejected);
+        return Ok(None);
+    }
+    let cut = |border: Option<usize>| border.map(|b| (b, line.cut(window, b >> 1, b & 1).point));
+    Ok(Some(finish(segment, &line, cut(lower), cut(upper), t)))
+}
+
+/// Of the borders in `code`, the one with the largest (`Greater`) or smallest (`Less`) parameter.
+#[inline]
+fn tightest<const N: usize, P>(
+    window: &ClipBox<N>,
+    line: &Canonical<N>,
+    code: Outcode,
+    wanted: Ordering,
+    t: &mut impl Tracer<Step<P>>,
+) -> Option<usize> {
+    let mut best: Option<usize> = None;
+    let at = |b: usize| (b >> 1, window.borders[b >> 1][b & 1]);
+    let relation = if wanted == Ordering::Greater { Relation::Entering } else { Relation::Leaving };
+    for border in (0..2 * N).filter(|&b| code.contains(bit(b >> 1, b & 1))) {
+        if best.is_none_or(|b| line.compare_parameters(at(border), at(b)) == wanted) {
+            t.step(|| Step::Bound { relation, border });
+            best = Some(border);
+        }
+    }
+    best
+}
+
+/// Puts the cut points in place of the ends, in the caller's direction.
+#[inline]
+fn finish<const N: usize, P: From<[f64; N]>>(
+    segment: Segment<P>,
+    line: &Canonical<N>,
+    lower: Option<(usize, [f64; N])>,
+    upper: Option<(usize, [f64; N])>,
+    t: &mut impl Tracer<Step<P>>,
+) -> Segment<P> {
+    for (cut, end) in [(lower, End::Start), (upper, End::End)] {
+        if let Some((border, point)) = cut {
+            let end = end.swapped_if(line.swapped);
+            t.step(|| Step::Cut { end, border, point: point.into() });
+        }
+    }
+    t.step(|| Step::Accepted);
+    match (lower, upper) {
+        (None, None) => segment,
+        (p, q) => line.in_order(p.map_or(line.p, |p| p.1), q.map_or(line.q, |q| q.1)),
+    }
+}

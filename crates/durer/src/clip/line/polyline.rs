@@ -1,0 +1,402 @@
+//! Polylines against a polygon with holes: the part inside or outside, in pieces.
+//!
+//! Every piece remembers its polyline and runs in its direction; cuts lie where the polyline crosses
+//! the polygon's border and nowhere else, not where it crosses itself. The polygon is closed: a run
+//! along its border is inside. Attributes are carried by the sources of the vertices
+//! ([`crate::clip::attribute`]). For a rectangle call [`crate::clip::polygon::rectangle::clip_lines`],
+//! which is much faster.
+//!
+//! Which edges a segment meets is decided exactly, by orientations; the places of the cuts are
+//! rounded, and parts of a segment between two cuts that round to one point are ignored. Whether the
+//! part between two cuts is inside is told by its middle, exactly, by the even-odd rule.
+//!
+//! Object space. The border's edges are kept in horizontal slabs, so a segment looks only at edges of
+//! its own heights: O(n·e/s) for n segments, e edges, s ≈ √e slabs crossed by a segment's extent.
+
+use super::border::Canonical;
+use super::convex::{self, Edge, HalfSpace};
+use crate::clip::attribute::Source;
+use crate::clip::exact::side;
+use crate::clip::polygon::Shapes;
+use crate::clip::polygon::rectangle::ClippedLines;
+use crate::math::{DVec2, Rect};
+use crate::trace::Tracer;
+use crate::{Error, Result};
+use std::cmp::Ordering;
+
+/// Which part is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Part {
+    /// In the closed polygon.
+    #[default]
+    Inside,
+    /// Outside the closed polygon.
+    Outside,
+}
+
+/// What can be chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Which part is wanted.
+    pub part: Part,
+}
+
+/// What the algorithm did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A part of a segment, between cuts or ends, was judged.
+    Part {
+        /// The polyline.
+        line: usize,
+        /// The segment: the index of its first point in the flat buffer.
+        segment: usize,
+        /// Where the part begins.
+        start: DVec2,
+        /// Where it ends.
+        end: DVec2,
+        /// Whether it is in the closed polygon.
+        inside: bool,
+    },
+}
+
+/// The pieces that a list of steps leads to, each with its polyline.
+pub fn replay(options: &Options, steps: &[Step]) -> Vec<(usize, Vec<DVec2>)> {
+    let mut pieces: Vec<(usize, Vec<DVec2>)> = Vec::new();
+    let mut open = None;
+    for step in steps {
+        let Step::Part { line, start, end, inside, .. } = *step;
+        if inside != (options.part == Part::Inside) {
+            open = None;
+            continue;
+        }
+        match pieces.last_mut() {
+            Some((_, piece)) if open == Some(line) => piece.push(end),
+            _ => pieces.push((line, vec![start, end])),
+        }
+        open = Some(line);
+    }
+    pieces
+}
+
+/// The wanted part of polylines against a polygon with holes, given by all its rings (any direction,
+/// even-odd); `ends[i]` is where polyline i ends in `points`.
+///
+/// ```
+/// use durer::clip::line::polyline::{Options, clip};
+/// use durer::clip::polygon::Shapes;
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let p = DVec2::new;
+/// let diamond = Shapes::from_rings([[p(2.0, 0.0), p(4.0, 2.0), p(2.0, 4.0), p(0.0, 2.0)]]);
+/// let line = [p(-1.0, 2.0), p(2.0, 2.0), p(2.0, 9.0)];
+/// let clipped = clip(&diamond, &line, &[3], &Options::default(), &mut NoTrace)?;
+/// assert_eq!(clipped.points, [p(0.0, 2.0), p(2.0, 2.0), p(2.0, 4.0)]);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::NonFinite`] for a NaN or infinite coordinate; [`Error::Dangling`] for an end beyond the
+/// points or before the end of the polyline before.
+pub fn clip(
+    polygon: &Shapes,
+    points: &[DVec2],
+    ends: &[usize],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<ClippedLines> {
+    for (what, all) in [("polygon point", polygon.points()), ("point", points)] {
+        if let Some(index) = all.iter().position(|p| !p.is_finite()) {
+            return Err(Error::NonFinite { what, index });
+        }
+    }
+    let border = Border::new(polygon);
+    let mut out = ClippedLines::default();
+    let mut first = 0;
+    for (line, &end) in ends.iter().enumerate() {
+        let count = points.len();
+        let part =
+            points.get(first..end).ok_or(Error::Dangling { what: "point", index: end, count })?;
+        clip_one(&border, part, (line, first), options, &mut out, t);
+        first = end;
+    }
+    Ok(out)
+}
+
+fn clip_one(
+    border: &Border,
+    part: &[DVec2],
+    (line, first): (usize, usize),
+    options: &Options,
+    out: &mut ClippedLines,
+    t: &mut impl Tracer<Step>,
+) {
+    let mut open = false;
+    // Whether the polyline's last part was inside; known as long as no edge has been met since.
+    let mut known = None;
+    for (k, pair) in part.windows(2).enumerate() {
+        let (a, b) = (pair[0], pair[1]);
+        let segment = first + k;
+        let source = |p: DVec2| Source::on_edge(p, (segment, a), (segment + 1, b));
+        let cuts = border.cuts(a, b);
+        if !cuts.is_empty() {
+            known = None;
+        }
+        for (start, end) in cuts.parts(a, b) {
+            let inside = known.unwrap_or_else(|| {
+                cuts.on_border(start, end) || border.contains_middle(start, end)
+            });
+            t.step(|| Step::Part { line, segment, start, end, inside });
+            if inside != (options.part == Part::Inside) {
+                out.end_piece(line);
+                open = false;
+                continue;
+            }
+            if !open {
+                out.points.push(start);
+                out.sources.push(source(start));
+            }
+            out.points.push(end);
+            out.sources.push(source(end));
+            open = true;
+            if cuts.is_empty() {
+                known = Some(inside);
+            }
+        }
+    }
+    out.end_piece(line);
+}
+
+/// Where a segment meets the border: points in its order, and stretches that run along an edge.
+struct Cuts {
+    points: Vec<DVec2>,
+    along: Vec<(DVec2, DVec2)>,
+}
+
+impl Cuts {
+    fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// The parts between the cuts, those without length left out.
+    fn parts(&self, a: DVec2, b: DVec2) -> Vec<(DVec2, DVec2)> {
+        let stops: Vec<DVec2> =
+            std::iter::once(a).chain(self.points.iter().copied()).chain([b]).collect();
+        stops.windows(2).map(|w| (w[0], w[1])).filter(|(p, q)| p != q).collect()
+    }
+
+    /// Whether a part between two neighbouring cuts lies in a stretch along the border.
+    fn on_border(&self, start: DVec2, end: DVec2) -> bool {
+        let between = |p: DVec2, (from, to): (DVec2, DVec2)| {
+            let (low, high) = (from.min(to), from.max(to));
+            p.cmpge(low).all() && p.cmple(high).all()
+        };
+        self.along.iter().any(|&s| between(start, s) && between(end, s))
+    }
+}
+
+/// The polygon's edges in horizontal slabs of equal height.
+struct Border {
+    bounds: Option<Rect>,
+    slabs: Vec<Vec<[DVec2; 2]>>,
+}
+
+impl Border {
+    fn new(polygon: &Shapes) -> Self {
+        let count = libm::sqrt(polygon.points().len() as f64) as usize + 1;
+        let mut border = Self { bounds: polygon.bounds(), slabs: vec![Vec::new(); count] };
+        for ring in polygon.rings() {
+            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b) {
+                for slab in border.slabs_of(a.y.min(b.y), a.y.max(b.y)) {
+                    border.slabs[slab].push([*a, *b]);
+                }
+            }
+        }
+        border
+    }
+
+    /// The slabs that the heights from `low` to `high` touch.
+    fn slabs_of(&self, low: f64, high: f64) -> std::ops::RangeInclusive<usize> {
+        let index = |y: f64| {
+            let Some(bounds) = self.bounds else { return 0 };
+            // Halves, because the height of the whole may overflow.
+            let (from, height) = (bounds.min().y, bounds.max().y * 0.5 - bounds.min().y * 0.5);
+            let slab = (y * 0.5 - from * 0.5) / height * self.slabs.len() as f64;
+            (slab.max(0.0) as usize).min(self.slabs.len() - 1)
+        };
+        index(low)..=index(high)
+    }
+
+    /// All places where the closed segment meets the border, in the segment's direction.
+    fn cuts(&self, a: DVec2, b: DVec2) -> Cuts {
+        let mut cuts = Cuts { points: Vec::new(), along: Vec::new() };
+        let Some(extent) = Rect::around([a, b]) else { return cuts };
+        if self.bounds.is_none_or(|bounds| !bounds.overlaps(&extent)) {
+            return cuts;
+        }
+        for slab in self.slabs_of(extent.min().y, extent.max().y) {
+            for edge in &self.slabs[slab] {
+                meet([a, b], *edge, &mut cuts);
+            }
+        }
+        // Along the longer axis, so that rounding does not spoil the order.
+        let d = (b * 0.5 - a * 0.5).abs();
+        let axis = usize::from(d.y > d.x);
+        cuts.points
+            .sort_by(|p, q| p[axis].total_cmp(&q[axis]).then(p[1 - axis].total_cmp(&q[1 - axis])));
+        if a[axis] > b[axis] {
+            cuts.points.reverse();
+        }
+        cuts.points.dedup();
+        cuts
+    }
+
+    /// Whether the middle of a part that crosses no edge is inside, by the even-odd rule.
+    fn contains_middle(&self, start: DVec2, end: DVec2) -> bool {
+        let p = start * 0.5 + end * 0.5;
+        if self.bounds.is_none_or(|bounds| !bounds.contains(p)) {
+            return false;
+        }
+        let crosses = |[a, b]: &&[DVec2; 2]| {
+            let upwards = a.y <= p.y;
+            let wanted = if upwards { Ordering::Greater } else { Ordering::Less };
+            upwards != (b.y <= p.y) && side(*a, *b, p) == wanted
+        };
+        let slab = *self.slabs_of(p.y, p.y).start();
+        self.slabs[slab].iter().filter(crosses).count() % 2 == 1
+    }
+}
+
+/// Adds where a segment meets an edge; which case it is is decided exactly.
+fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2], cuts: &mut Cuts) {
+    let (low, high) = (a.min(b), a.max(b));
+    let apart = c.max(d).cmplt(low).any() || c.min(d).cmpgt(high).any();
+    if apart {
+        return;
+    }
+    let (sc, sd) = (side(a, b, c), side(a, b, d));
+    let within = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
+    // An end of the edge on the segment is met bit for bit, the segment's own ends likewise.
+    if a != b && sc == Ordering::Equal && sd == Ordering::Equal {
+        cuts.points.extend([c, d].into_iter().filter(|p| within(*p)));
+        let clamp = |p: DVec2| p.clamp(low, high);
+        cuts.points.extend([a, b].into_iter().filter(|p| on_edge(*p, c, d)));
+        cuts.along.push((clamp(c), clamp(d)));
+        return;
+    }
+    if sc == Ordering::Equal || sd == Ordering::Equal {
+        let end = if sc == Ordering::Equal { c } else { d };
+        cuts.points.extend(within(end).then_some(end));
+        cuts.points.extend([a, b].into_iter().filter(|p| on_edge(*p, c, d)));
+        return;
+    }
+    if sc == sd {
+        return;
+    }
+    match (side(c, d, a), side(c, d, b)) {
+        (Ordering::Equal, _) => cuts.points.push(a),
+        (_, Ordering::Equal) => cuts.points.push(b),
+        (sa, sb) if sa == sb => {}
+        _ => cuts.points.push(crossing([a, b], [c, d]).clamp(low, high)),
+    }
+}
+
+/// Whether p lies on the closed edge.
+fn on_edge(p: DVec2, c: DVec2, d: DVec2) -> bool {
+    side(c, d, p) == Ordering::Equal && p.cmpge(c.min(d)).all() && p.cmple(c.max(d)).all()
+}
+
+/// The rounded crossing of two segments that cross; the same from either end of the first.
+fn crossing([a, b]: [DVec2; 2], [from, to]: [DVec2; 2]) -> DVec2 {
+    let Ok(line) = Canonical::new(a.to_array(), b.to_array()) else { return a };
+    let edge = Edge { from, to };
+    let mut point = line.at(convex::parameter(&edge, &line));
+    if let Some((axis, border)) = edge.coordinate() {
+        point[axis] = border;
+    }
+    point.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::polygon::rectangle::clip_lines;
+    use crate::trace::{NoTrace, Recorder};
+    use proptest::prelude::*;
+
+    fn p(x: i32, y: i32) -> DVec2 {
+        DVec2::new(x.into(), y.into())
+    }
+
+    fn frame() -> Shapes {
+        Shapes::from_rings([
+            [p(0, 0), p(6, 0), p(6, 6), p(0, 6)],
+            [p(2, 2), p(2, 4), p(4, 4), p(4, 2)],
+        ])
+    }
+
+    #[test]
+    fn a_hole_splits_and_a_crossing_of_itself_does_not() {
+        let line = [p(-1, 1), p(5, 1), p(5, 5), p(1, 5), p(1, -1)];
+        let out = clip(&frame(), &line, &[5], &Options::default(), &mut NoTrace).unwrap();
+        assert_eq!(out.points, [p(0, 1), p(5, 1), p(5, 5), p(1, 5), p(1, 0)]);
+        let across = [p(-1, 3), p(7, 3)];
+        let out = clip(&frame(), &across, &[2], &Options::default(), &mut NoTrace).unwrap();
+        let pieces: Vec<_> = out.pieces().map(|(_, piece)| piece.to_vec()).collect();
+        assert_eq!(pieces, [vec![p(0, 3), p(2, 3)], vec![p(4, 3), p(6, 3)]]);
+        assert_eq!(out.sources[1], Source::Cut { from: 0, to: 1, t: 0.375 });
+    }
+
+    #[test]
+    fn runs_along_the_border_are_inside() {
+        for line in [[p(-1, 0), p(7, 0)], [p(2, 1), p(2, 5)]] {
+            let inside = clip(&frame(), &line, &[2], &Options::default(), &mut NoTrace).unwrap();
+            let ends = (inside.points[0], inside.points[inside.points.len() - 1]);
+            assert_eq!(
+                (inside.ends.len(), ends),
+                (1, (line[0].max(p(0, 0)), line[1].min(p(6, 6))))
+            );
+            let part = Part::Outside;
+            let outside = clip(&frame(), &line, &[2], &Options { part }, &mut NoTrace).unwrap();
+            assert_eq!(outside.ends.len(), if line[0].y == 0.0 { 2 } else { 0 });
+        }
+    }
+
+    fn length(lines: &ClippedLines) -> f64 {
+        lines
+            .pieces()
+            .map(|(_, piece)| piece.windows(2).map(|w| (w[1] - w[0]).length()).sum::<f64>())
+            .sum()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(10_000))]
+
+        #[test]
+        fn inside_and_outside_make_the_whole(points in prop::collection::vec((-2i32..=8, -2i32..=8), 2..8)) {
+            let line: Vec<DVec2> = points.iter().map(|&(x, y)| p(x, y)).collect();
+            let whole: f64 = line.windows(2).map(|w| (w[1] - w[0]).length()).sum();
+            let mut sum = 0.0;
+            for part in [Part::Inside, Part::Outside] {
+                let mut steps = Recorder::default();
+                let options = Options { part };
+                let out = clip(&frame(), &line, &[line.len()], &options, &mut steps).unwrap();
+                let pieces: Vec<_> = out.pieces().map(|(line, piece)| (line, piece.to_vec())).collect();
+                prop_assert_eq!(replay(&options, steps.steps()), pieces);
+                sum += length(&out);
+            }
+            prop_assert!((sum - whole).abs() < 1e-9, "{} {}", sum, whole);
+        }
+
+        #[test]
+        fn a_square_agrees_with_the_rectangle_clip(points in prop::collection::vec((-2i32..=8, -2i32..=8), 2..8)) {
+            let line: Vec<DVec2> = points.iter().map(|&(x, y)| p(x, y)).collect();
+            let square = Shapes::from_rings([[p(0, 0), p(6, 0), p(6, 6), p(0, 6)]]);
+            let out = clip(&square, &line, &[line.len()], &Options::default(), &mut NoTrace).unwrap();
+            let window = Rect::new(p(0, 0), p(6, 6)).unwrap();
+            let fast = clip_lines(&window, &line, &[line.len()], false).unwrap();
+            prop_assert!((length(&out) - length(&fast)).abs() < 1e-9);
+            prop_assert_eq!(out.ends.len(), fast.ends.len());
+        }
+    }
+}

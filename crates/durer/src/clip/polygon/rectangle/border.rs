@@ -1,0 +1,112 @@
+//! Points on the window's border and their exact order around it.
+
+use crate::clip::exact::Exact;
+use crate::math::{DVec2, Rect};
+use std::cmp::Ordering;
+
+/// The corner with which each side of the window begins, counter-clockwise: bottom, right, top, left.
+pub(super) fn corners(window: &Rect) -> [DVec2; 4] {
+    let (min, max) = (window.min(), window.max());
+    [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+}
+
+/// Where a chain touches the border, with what is needed to order it exactly.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BorderPoint {
+    pub(super) point: DVec2,
+    /// The side it counts for; a corner counts for the side that begins there.
+    pub(super) side: usize,
+    /// Whether rounding, or its own place, has moved it to the corner from the side before.
+    from_side_before: bool,
+    /// The edge that touches the border here, from outside or the border to the inside.
+    edge: [DVec2; 2],
+}
+
+impl BorderPoint {
+    /// A point of the border at which `edge` goes to the inside.
+    pub(super) fn new(window: &Rect, point: DVec2, edge: [DVec2; 2]) -> Self {
+        let (min, max) = (window.min(), window.max());
+        let side = if point.y == min.y && point.x < max.x {
+            0
+        } else if point.x == max.x && point.y < max.y {
+            1
+        } else if point.y == max.y && point.x > min.x {
+            2
+        } else {
+            3
+        };
+        let outside = edge[0];
+        // At a corner the side that was crossed is the one the edge's outer end lies beyond.
+        let from_side_before = point == corners(window)[side]
+            && match side {
+                0 => outside.x < min.x && outside.y >= min.y,
+                1 => outside.y < min.y && outside.x <= max.x,
+                2 => outside.x > max.x && outside.y <= max.y,
+                _ => outside.y > max.y && outside.x >= min.x,
+            };
+        Self { point, side, from_side_before, edge }
+    }
+
+    /// The order in which a walk around the border, counter-clockwise from the lower left corner,
+    /// meets the points; of edges that meet in one point, the one turned furthest back comes first.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let by_side = self.side.cmp(&other.side);
+        by_side.then_with(|| self.order_on_side(other))
+    }
+
+    fn order_on_side(&self, other: &Self) -> Ordering {
+        let along = |b: &Self| b.point[b.side % 2];
+        let (a, b) = (along(self), along(other));
+        // Cut points are off by less than 4 ulp of their edge's ends.
+        let size = |e: &[DVec2; 2]| e[0].abs().max_element().max(e[1].abs().max_element());
+        let bound = (size(&self.edge) + size(&other.edge)) * (8.0 * f64::EPSILON);
+        if (a - b).abs() > bound {
+            // The lower and right sides are walked upwards, the others downwards.
+            let ascending = a.total_cmp(&b);
+            return if self.side < 2 { ascending } else { ascending.reverse() };
+        }
+        self.order_exactly(other)
+    }
+
+    #[cold]
+    fn order_exactly(&self, other: &Self) -> Ordering {
+        if self.from_side_before != other.from_side_before {
+            return other.from_side_before.cmp(&self.from_side_before);
+        }
+        let crossed = if self.from_side_before { (self.side + 3) % 4 } else { self.side };
+        let (a, b) = (self.crossing(crossed % 2), other.crossing(crossed % 2));
+        let ascending = (a.0 * b.1 - b.0 * a.1).sign();
+        let walked = if crossed < 2 { ascending } else { ascending.reverse() };
+        walked.then_with(|| self.turned_back(other))
+    }
+
+    /// The coordinate on `axis` of the exact point where the edge crosses the side: numerator and
+    /// positive denominator.
+    fn crossing(&self, axis: usize) -> (Exact, Exact) {
+        let e = Exact::from;
+        let across = 1 - axis;
+        let (mut p, mut q) = (self.edge[0], self.edge[1]);
+        if p[across] > q[across] {
+            (p, q) = (q, p);
+        }
+        let border = self.point[across];
+        if p[across] == q[across] || self.edge[0] == self.point {
+            return (e(self.point[axis]), e(1.0));
+        }
+        let length = e(q[across]) - e(p[across]);
+        let near = e(p[axis]) * (e(q[across]) - e(border));
+        let far = e(q[axis]) * (e(border) - e(p[across]));
+        (near + far, length)
+    }
+
+    /// Edges from one point of the border, the one nearest to the way back first.
+    fn turned_back(&self, other: &Self) -> Ordering {
+        let e = Exact::from;
+        let direction = |b: &Self| {
+            let [from, to] = b.edge;
+            (e(to.x) - e(from.x), e(to.y) - e(from.y))
+        };
+        let ((ax, ay), (bx, by)) = (direction(self), direction(other));
+        (ax * by - ay * bx).sign()
+    }
+}

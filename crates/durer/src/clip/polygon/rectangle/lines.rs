@@ -1,0 +1,144 @@
+//! Polylines against the rectangle.
+
+use super::{Extent, extent, non_finite};
+use crate::Result;
+use crate::clip::attribute::Source;
+use crate::clip::line::cut_inside;
+use crate::math::{DVec2, Rect};
+
+/// Pieces of polylines in one flat buffer, in the order and direction of the input.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ClippedLines {
+    /// All points, piece after piece.
+    pub points: Vec<DVec2>,
+    /// Where each piece ends in `points`.
+    pub ends: Vec<usize>,
+    /// Of which polyline of the input each piece is a part.
+    pub lines: Vec<usize>,
+    /// The source of each point; empty unless asked for.
+    pub sources: Vec<Source>,
+}
+
+impl ClippedLines {
+    /// The pieces, each with the index of its polyline.
+    pub fn pieces(&self) -> impl Iterator<Item = (usize, &[DVec2])> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        let ranges = starts.zip(self.ends.iter().copied());
+        self.lines.iter().copied().zip(ranges.map(|(a, b)| &self.points[a..b]))
+    }
+
+    fn begin(&self) -> usize {
+        self.ends.last().copied().unwrap_or(0)
+    }
+
+    /// Ends the piece being built; one without length is dropped.
+    pub(crate) fn end_piece(&mut self, line: usize) {
+        let from = self.begin();
+        let piece = self.points.get(from..).unwrap_or_default();
+        if piece.iter().any(|p| *p != piece[0]) {
+            self.ends.push(self.points.len());
+            self.lines.push(line);
+        } else {
+            self.points.truncate(from);
+            self.sources.truncate(from);
+        }
+    }
+}
+
+/// The parts of polylines in the closed rectangle; `ends[i]` is where polyline i ends in `points`.
+///
+/// A polyline is cut where it leaves the window and nowhere else, not where it crosses itself; parts
+/// along the border are kept; parts that are single points are dropped. With `sources`, the source of
+/// every point of the result is told.
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate;
+/// [`crate::Error::Dangling`] an end beyond the points or before the end of the polyline before.
+pub fn clip_lines(
+    window: &Rect,
+    points: &[DVec2],
+    ends: &[usize],
+    sources: bool,
+) -> Result<ClippedLines> {
+    let mut out = ClippedLines::default();
+    let mut first = 0;
+    for (line, &end) in ends.iter().enumerate() {
+        let part = points.get(first..end).ok_or(crate::Error::Dangling {
+            what: "point",
+            index: end,
+            count: points.len(),
+        })?;
+        match extent(window, part) {
+            Extent::Outside => {}
+            Extent::Inside => {
+                out.points.extend_from_slice(part);
+                if sources {
+                    out.sources.extend((first..end).map(Source::Vertex));
+                }
+                out.end_piece(line);
+            }
+            Extent::Crossing => cut(window, part, first, line, sources, &mut out),
+            Extent::NonFinite => return Err(non_finite(points)),
+        }
+        first = end;
+    }
+    Ok(out)
+}
+
+fn cut(
+    window: &Rect,
+    part: &[DVec2],
+    first: usize,
+    line: usize,
+    sources: bool,
+    out: &mut ClippedLines,
+) {
+    let (min, max) = (window.min(), window.max());
+    let apart = |a: DVec2, b: DVec2| {
+        (a.x < min.x && b.x < min.x)
+            || (a.x > max.x && b.x > max.x)
+            || (a.y < min.y && b.y < min.y)
+            || (a.y > max.y && b.y > max.y)
+    };
+    // Whether the piece being built ends with the point reached.
+    let mut open = false;
+    let mut next = 1;
+    while next < part.len() {
+        if open {
+            // The whole run of points inside at once.
+            let run = part[next..].iter().position(|p| !window.contains(*p));
+            let end = run.map_or(part.len(), |length| next + length);
+            out.points.extend_from_slice(&part[next..end]);
+            if sources {
+                out.sources.extend((first + next..first + end).map(Source::Vertex));
+            }
+            next = end;
+            if next == part.len() {
+                break;
+            }
+        }
+        let (k, a, b) = (next - 1, part[next - 1], part[next]);
+        next += 1;
+        if apart(a, b) {
+            continue;
+        }
+        let mut push = |point: DVec2| {
+            out.points.push(point);
+            if sources {
+                out.sources.push(Source::on_edge(point, (first + k, a), (first + k + 1, b)));
+            }
+        };
+        let Some(visible) = cut_inside(window, a, b) else { continue };
+        if !open {
+            push(visible.start);
+        }
+        push(visible.end);
+        open = visible.end == b;
+        if !open {
+            out.end_piece(line);
+        }
+    }
+    if open {
+        out.end_piece(line);
+    }
+}

@@ -1,0 +1,204 @@
+//! The production rectangle clip for windows and map tiles: polygons with holes, and polylines.
+//!
+//! The reassembly is that of Weiler and Atherton ("Hidden surface removal using polygon area
+//! sorting", SIGGRAPH 1977) with a rectangle as the clip polygon: the parts of all rings inside the
+//! open window are chains that begin and end on its border; walking the border counter-clockwise
+//! from the end of each to the beginning of the next closes them to rings. Separate parts become
+//! separate rings, no edge runs along the border but where the shape does, and a corner appears only
+//! where the shape covers it. The order of chain ends on the border is decided exactly.
+//!
+//! Object space. O(n) for n vertices, plus O(k log k) for k border crossings; bounding boxes accept
+//! and reject first.
+//!
+//! Input polygons must be valid (simple rings, holes inside the outer ring, interiors connected);
+//! direction of rings does not matter. On others nothing panics, but the region is unspecified.
+//! Polygons that lie wholly in the closed window are copied bit for bit; those that are cut come out
+//! with counter-clockwise outer rings and clockwise holes (y up).
+
+mod border;
+mod lines;
+mod rings;
+
+pub use lines::{ClippedLines, clip_lines};
+
+use super::Shapes;
+use crate::clip::attribute::{NoSources, Provenance, Source};
+use crate::info::{Class, Info};
+use crate::math::{DVec2, Rect};
+use crate::trace::Tracer;
+use crate::{Error, Result};
+use rings::Clipper;
+
+/// The facts of the rectangle clip.
+pub const INFO: Info = Info {
+    name: "rectangle",
+    title: "Rectangle clip",
+    authors: "Kevin Weiler, Peter Atherton",
+    year: 1977,
+    source: "Hidden surface removal using polygon area sorting, SIGGRAPH; clip polygon a rectangle",
+    class: Class::ObjectSpace,
+    cost: "O(n + k log k), n vertices, k border crossings",
+    limits: "axis-parallel windows; valid polygons",
+};
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options;
+
+/// What the algorithm did; the vertices are reported as they go to the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A polygon's bounding box lies in the window: it is copied.
+    Inside {
+        /// Its index in the input.
+        polygon: usize,
+    },
+    /// A polygon's bounding box misses the window.
+    Outside {
+        /// Its index in the input.
+        polygon: usize,
+    },
+    /// A part of a ring inside the window was found, between two points of the border.
+    Chain {
+        /// Where it enters.
+        entry: DVec2,
+        /// Where it leaves.
+        exit: DVec2,
+    },
+    /// A vertex of the ring being put out.
+    Vertex {
+        /// Where it lies.
+        point: DVec2,
+    },
+    /// The ring is complete.
+    RingDone,
+    /// The polygon is complete.
+    PolygonDone,
+}
+
+/// The result that a list of steps leads to.
+pub fn replay(input: &Shapes, steps: &[Step]) -> Shapes {
+    let (mut output, mut ring) = (Shapes::new(), Vec::new());
+    for step in steps {
+        match *step {
+            Step::Inside { polygon } => {
+                for source in input.polygons().nth(polygon).iter().flat_map(|p| p.rings()) {
+                    output.push_ring(source.iter().copied());
+                }
+                output.end_polygon();
+            }
+            Step::Outside { .. } | Step::Chain { .. } => {}
+            Step::Vertex { point } => ring.push(point),
+            Step::RingDone => output.push_ring(ring.drain(..)),
+            Step::PolygonDone => output.end_polygon(),
+        }
+    }
+    output
+}
+
+/// The part of all polygons in the window; regions only, so parts without area are dropped.
+///
+/// ```
+/// use durer::clip::polygon::{Shapes, rectangle};
+/// use durer::math::{DVec2, Rect};
+/// use durer::trace::NoTrace;
+///
+/// // A U whose arms reach into the window from below gives two rings, and no edge between them.
+/// let p = DVec2::new;
+/// let u = [p(0., 0.), p(5., 0.), p(5., 5.), p(4., 5.), p(4., 1.), p(1., 1.), p(1., 5.), p(0., 5.)];
+/// let window = Rect::new(p(-1.0, 2.0), p(6.0, 4.0))?;
+/// let shapes = Shapes::from_rings([&u[..]]);
+/// let clipped = rectangle::clip(&window, &shapes, &rectangle::Options, &mut NoTrace)?;
+/// assert_eq!((clipped.polygon_count(), clipped.area()), (2, 4.0));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::NonFinite`] names the first point with a NaN or infinite coordinate.
+pub fn clip(
+    window: &Rect,
+    shapes: &Shapes,
+    _options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Shapes> {
+    run::<NoSources>(window, shapes, t).map(|(clipped, _)| clipped)
+}
+
+/// The same, with the source of every output vertex, from which attributes are interpolated by
+/// [`crate::clip::attribute::interpolate`].
+///
+/// # Errors
+/// As [`clip`].
+pub fn clip_with_sources(
+    window: &Rect,
+    shapes: &Shapes,
+    _options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<(Shapes, Vec<Source>)> {
+    run(window, shapes, t)
+}
+
+fn run<P: Provenance>(
+    window: &Rect,
+    shapes: &Shapes,
+    t: &mut impl Tracer<Step>,
+) -> Result<(Shapes, P)> {
+    let mut clipper = Clipper::<P>::new(window);
+    for (index, polygon) in shapes.polygons().enumerate() {
+        let rings = polygon.ring_indices();
+        match extent(window, polygon.outer()) {
+            Extent::Outside => t.step(|| Step::Outside { polygon: index }),
+            Extent::Inside => {
+                t.step(|| Step::Inside { polygon: index });
+                clipper.copy(shapes, rings);
+            }
+            Extent::Crossing => clipper.cut(shapes, rings, t),
+            Extent::NonFinite => return Err(non_finite(shapes.points())),
+        }
+    }
+    Ok(clipper.finish())
+}
+
+/// How a bounding box lies to the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Extent {
+    Inside,
+    Outside,
+    Crossing,
+    NonFinite,
+}
+
+fn extent(window: &Rect, points: &[DVec2]) -> Extent {
+    let first = points.first().copied().unwrap_or_default();
+    let (mut min, mut max, mut zero) = (first, first, DVec2::ZERO);
+    for &p in points {
+        min = DVec2::new(
+            if p.x < min.x { p.x } else { min.x },
+            if p.y < min.y { p.y } else { min.y },
+        );
+        max = DVec2::new(
+            if p.x > max.x { p.x } else { max.x },
+            if p.y > max.y { p.y } else { max.y },
+        );
+        zero += p * 0.0;
+    }
+    let (low, high) = (window.min(), window.max());
+    if zero != DVec2::ZERO {
+        Extent::NonFinite
+    } else if max.x < low.x || max.y < low.y || min.x > high.x || min.y > high.y {
+        Extent::Outside
+    } else if min.cmpge(low).all() && max.cmple(high).all() {
+        Extent::Inside
+    } else {
+        Extent::Crossing
+    }
+}
+
+#[cold]
+fn non_finite(points: &[DVec2]) -> Error {
+    let index = points.iter().position(|p| !p.is_finite()).unwrap_or(0);
+    Error::NonFinite { what: "point", index }
+}
+
+#[cfg(test)]
+mod tests;

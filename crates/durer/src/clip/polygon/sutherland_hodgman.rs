@@ -1,0 +1,412 @@
+//! Sutherland–Hodgman polygon clipping, as re-entrant stages.
+//!
+//! Ivan Sutherland and Gary Hodgman, "Reentrant polygon clipping", Communications of the ACM 17(1),
+//! 1974. Object space; O(n·m) for n vertices and m borders. One stage per border takes vertices one
+//! at a time and hands on those of the part inside; stages are chained, so no ring is stored between
+//! them and the memory per stage is two vertices.
+//!
+//! **Bridging edges.** The result is one ring even where the part inside falls into several: the
+//! parts stay joined by edges that run to and fro along the border. Its area and every area integral
+//! are right and so is a fill; a stroke shows the bridges. [`super::rectangle`] and
+//! the overlay give separate rings.
+//!
+//! Which side of a border a vertex is on is decided exactly. Cuts are computed from the
+//! lexicographically smaller end of an edge, so polygons that share an edge share its cuts.
+
+use crate::clip::line::border::Canonical;
+use crate::clip::line::convex::{self, HalfSpace};
+use crate::clip::line::{ClipBox, ConvexPolygon, HalfPlane};
+use crate::info::{Class, Info};
+use crate::math::{DVec2, DVec3, Plane, Rect};
+use crate::trace::Tracer;
+use crate::{Error, Result};
+use std::cmp::Ordering;
+
+/// The facts of Sutherland–Hodgman clipping.
+pub const INFO: Info = Info {
+    name: "sutherland-hodgman",
+    title: "Sutherland–Hodgman",
+    authors: "Ivan E. Sutherland, Gary W. Hodgman",
+    year: 1974,
+    source: "Reentrant polygon clipping, Communications of the ACM 17(1)",
+    class: Class::ObjectSpace,
+    cost: "O(n·m), n vertices, m borders; two vertices of memory per border",
+    limits: "convex windows; a subject that falls apart keeps bridging edges along the border",
+};
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options;
+
+/// What a vertex must know: its place, and how to mix two vertices of an edge.
+pub trait Vertex<const N: usize>: Copy {
+    /// Coordinates, in the space of the window.
+    fn position(&self) -> [f64; N];
+    /// The vertex at `position` on the edge from self (t = 0) to `other` (t = 1).
+    fn cut(&self, other: &Self, t: f64, position: [f64; N]) -> Self;
+}
+
+impl Vertex<2> for DVec2 {
+    fn position(&self) -> [f64; 2] {
+        self.to_array()
+    }
+
+    fn cut(&self, _other: &Self, _t: f64, position: [f64; 2]) -> Self {
+        position.into()
+    }
+}
+
+impl Vertex<3> for DVec3 {
+    fn position(&self) -> [f64; 3] {
+        self.to_array()
+    }
+
+    fn cut(&self, _other: &Self, _t: f64, position: [f64; 3]) -> Self {
+        position.into()
+    }
+}
+
+/// A vertex with a tuple of K numbers that are interpolated at cuts: colour, measure, texture.
+impl<const K: usize> Vertex<2> for (DVec2, [f64; K]) {
+    fn position(&self) -> [f64; 2] {
+        self.0.to_array()
+    }
+
+    fn cut(&self, other: &Self, t: f64, position: [f64; 2]) -> Self {
+        let mix = |k: usize| self.1[k] + (other.1[k] - self.1[k]) * t;
+        (position.into(), std::array::from_fn(mix))
+    }
+}
+
+/// The same in three dimensions.
+impl<const K: usize> Vertex<3> for (DVec3, [f64; K]) {
+    fn position(&self) -> [f64; 3] {
+        self.0.to_array()
+    }
+
+    fn cut(&self, other: &Self, t: f64, position: [f64; 3]) -> Self {
+        let mix = |k: usize| self.1[k] + (other.1[k] - self.1[k]) * t;
+        (position.into(), std::array::from_fn(mix))
+    }
+}
+
+/// One stage: takes the vertices of a ring one at a time, hands on those of the part inside.
+#[derive(Debug, Clone)]
+pub struct Stage<H, V> {
+    border: H,
+    first: Option<(V, bool)>,
+    previous: Option<(V, bool)>,
+}
+
+impl<H, V> Stage<H, V> {
+    /// A stage that has seen nothing.
+    pub fn new(border: H) -> Self {
+        Self { border, first: None, previous: None }
+    }
+
+    /// The next vertex; up to two come out: the cut of the edge that leads to it, and itself.
+    fn take<const N: usize>(&mut self, vertex: V) -> [Option<V>; 2]
+    where
+        H: HalfSpace<N>,
+        V: Vertex<N>,
+    {
+        let inside = self.border.sign(vertex.position()) != Ordering::Less;
+        let cut = self.previous.and_then(|from| self.cut(from, (vertex, inside)));
+        self.first.get_or_insert((vertex, inside));
+        self.previous = Some((vertex, inside));
+        [cut, inside.then_some(vertex)]
+    }
+
+    /// The end of the ring: the cut of the edge that closes it, if there is one. Afterwards the stage
+    /// is as new.
+    fn close<const N: usize>(&mut self) -> Option<V>
+    where
+        H: HalfSpace<N>,
+        V: Vertex<N>,
+    {
+        let (from, to) = self.previous.take().zip(self.first.take())?;
+        self.cut(from, to)
+    }
+
+    /// The cut of an edge whose ends are on different sides; none where one end is on the border.
+    fn cut<const N: usize>(&self, (a, a_in): (V, bool), (b, b_in): (V, bool)) -> Option<V>
+    where
+        H: HalfSpace<N>,
+        V: Vertex<N>,
+    {
+        let on_border = |v: &V| self.border.sign(v.position()) == Ordering::Equal;
+        if a_in == b_in || on_border(&a) || on_border(&b) {
+            return None;
+        }
+        // Segments made of vertices that came through a window are finite, but be safe.
+        let line = Canonical::new(a.position(), b.position()).ok()?;
+        let t = convex::parameter(&self.border, &line);
+        let mut position = line.at(t);
+        if let Some((axis, border)) = self.border.coordinate() {
+            position[axis] = border;
+        }
+        let (from, to) = if line.swapped { (b, a) } else { (a, b) };
+        Some(from.cut(&to, t, position))
+    }
+}
+
+/// What the algorithm did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step<V> {
+    /// A vertex came into a stage.
+    Enters {
+        /// The stage, that is the border's index.
+        stage: usize,
+        /// The vertex.
+        vertex: V,
+    },
+    /// A vertex came out of the last stage.
+    Leaves {
+        /// The vertex.
+        vertex: V,
+    },
+}
+
+/// The result that a list of steps leads to.
+pub fn replay<V: Copy>(steps: &[Step<V>]) -> Vec<V> {
+    let leaves = |step: &Step<V>| match *step {
+        Step::Leaves { vertex } => Some(vertex),
+        Step::Enters { .. } => None,
+    };
+    steps.iter().filter_map(leaves).collect()
+}
+
+/// Stages one behind the other: the streaming form of the algorithm.
+///
+/// ```
+/// use durer::clip::line::HalfPlane;
+/// use durer::clip::polygon::sutherland_hodgman::Pipeline;
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let right = HalfPlane { normal: DVec2::X, point: DVec2::ZERO };
+/// let mut pipeline = Pipeline::new([right]);
+/// let mut ring = Vec::new();
+/// for v in [DVec2::new(-1.0, 0.0), DVec2::new(1.0, 0.0), DVec2::new(1.0, 2.0)] {
+///     pipeline.push(v, &mut |v| ring.push(v), &mut NoTrace);
+/// }
+/// pipeline.close(&mut |v| ring.push(v), &mut NoTrace);
+/// assert_eq!(ring, [DVec2::new(0., 0.), DVec2::new(1., 0.), DVec2::new(1., 2.), DVec2::new(0., 1.)]);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Pipeline<H, V> {
+    stages: Vec<Stage<H, V>>,
+}
+
+impl<H, V> Pipeline<H, V> {
+    /// One stage for each border, in this order.
+    pub fn new(borders: impl IntoIterator<Item = H>) -> Self {
+        Self { stages: borders.into_iter().map(Stage::new).collect() }
+    }
+
+    /// Hands a vertex of the ring to the first stage; `out` gets what comes out of the last.
+    pub fn push<const N: usize>(
+        &mut self,
+        vertex: V,
+        out: &mut impl FnMut(V),
+        t: &mut impl Tracer<Step<V>>,
+    ) where
+        H: HalfSpace<N>,
+        V: Vertex<N>,
+    {
+        self.push_at(0, vertex, out, t);
+    }
+
+    /// Ends the ring; the pipeline is then ready for the next.
+    pub fn close<const N: usize>(&mut self, out: &mut impl FnMut(V), t: &mut impl Tracer<Step<V>>)
+    where
+        H: HalfSpace<N>,
+        V: Vertex<N>,
+    {
+        for stage in 0..self.stages.len() {
+            if let Some(vertex) = self.stages[stage].close() {
+                self.push_at(stage + 1, vertex, out, t);
+            }
+        }
+    }
+
+    fn push_at<const N: usize>(
+        &mut self,
+        stage: usize,
+        vertex: V,
+        out: &mut impl FnMut(V),
+        t: &mut impl Tracer<Step<V>>,
+    ) where
+        H: HalfSpace<N>,
+        V: Vertex<N>,
+    {
+        let Some(current) = self.stages.get_mut(stage) else {
+            t.step(|| Step::Leaves { vertex });
+            return out(vertex);
+        };
+        t.step(|| Step::Enters { stage, vertex });
+        for vertex in current.take(vertex).into_iter().flatten() {
+            self.push_at(stage + 1, vertex, out, t);
+        }
+    }
+}
+
+/// The part of a ring in a rectangle, as one ring; empty where there is none.
+///
+/// # Errors
+/// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
+pub fn clip<V: Vertex<2>>(
+    window: &Rect,
+    ring: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Result<Vec<V>> {
+    run(HalfPlane::of_rect(window), ring, t)
+}
+
+/// The part of a ring in a convex polygon, as one ring; empty where there is none.
+///
+/// # Errors
+/// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
+pub fn clip_polygon<V: Vertex<2>>(
+    window: &ConvexPolygon,
+    ring: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Result<Vec<V>> {
+    run(window.edges(), ring, t)
+}
+
+/// The part of a planar polygon of space in a box: left, right, bottom, top, and the two planes in
+/// front and at the back (smallest and largest z).
+///
+/// # Errors
+/// [`Error::NonFinite`] for a vertex with a NaN or infinite coordinate.
+pub fn clip_box<V: Vertex<3>>(
+    window: &ClipBox<3>,
+    ring: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Result<Vec<V>> {
+    run(window.planes(), ring, t)
+}
+
+/// The part of a planar polygon of space on the positive side of all planes.
+///
+/// # Errors
+/// [`Error::NonFinite`] for a vertex or plane with a NaN or infinite number.
+pub fn clip_polyhedron<V: Vertex<3>>(
+    window: &[Plane],
+    ring: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Result<Vec<V>> {
+    let finite = |p: &Plane| p.normal.is_finite() && p.distance.is_finite();
+    if let Some(index) = window.iter().position(|p| !finite(p)) {
+        return Err(Error::NonFinite { what: "plane", index });
+    }
+    run(window.iter().copied(), ring, t)
+}
+
+fn run<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+    borders: impl IntoIterator<Item = H>,
+    ring: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Result<Vec<V>> {
+    let finite = |v: &V| v.position().iter().all(|c| c.is_finite());
+    if let Some(index) = ring.iter().position(|v| !finite(v)) {
+        return Err(Error::NonFinite { what: "vertex", index });
+    }
+    let (mut pipeline, mut out) = (Pipeline::new(borders), Vec::new());
+    for &vertex in ring {
+        pipeline.push(vertex, &mut |v| out.push(v), t);
+    }
+    pipeline.close(&mut |v| out.push(v), t);
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::polygon::signed_area;
+    use crate::trace::{NoTrace, Recorder};
+    use proptest::prelude::*;
+
+    fn p(x: f64, y: f64) -> DVec2 {
+        DVec2::new(x, y)
+    }
+
+    #[test]
+    fn a_subject_that_falls_apart_keeps_bridging_edges() {
+        let window = Rect::new(p(0.0, 2.0), p(9.0, 9.0)).unwrap();
+        let u = [
+            p(1.0, 0.0),
+            p(6.0, 0.0),
+            p(6.0, 4.0),
+            p(5.0, 4.0),
+            p(5.0, 1.0),
+            p(2.0, 1.0),
+            p(2.0, 4.0),
+            p(1.0, 4.0),
+        ];
+        let ring = clip(&window, &u, &mut NoTrace).unwrap();
+        assert_eq!(signed_area(&ring), 4.0);
+        let bridges = ring.iter().zip(ring.iter().cycle().skip(1));
+        let along: Vec<_> = bridges.filter(|(a, b)| a.y == 2.0 && b.y == 2.0).collect();
+        assert_eq!(along, [(&p(5.0, 2.0), &p(2.0, 2.0)), (&p(1.0, 2.0), &p(6.0, 2.0))]);
+    }
+
+    #[test]
+    fn attributes_follow_the_cut() {
+        let window = Rect::new(p(0.0, 0.0), p(4.0, 4.0)).unwrap();
+        let ring =
+            [(p(-1.0, 1.0), [10.0, 0.0]), (p(3.0, 1.0), [50.0, 4.0]), (p(3.0, 3.0), [50.0, 4.0])];
+        let clipped = clip(&window, &ring, &mut NoTrace).unwrap();
+        assert!(clipped.contains(&(p(0.0, 1.0), [20.0, 1.0])), "{clipped:?}");
+        assert!(clipped.contains(&(p(0.0, 1.5), [20.0, 1.0])), "{clipped:?}");
+    }
+
+    #[test]
+    fn front_and_back_cut_in_space() {
+        let window = ClipBox::<3>::new(DVec3::splat(-1.0), DVec3::splat(1.0)).unwrap();
+        let q = DVec3::new;
+        let upright = [q(0.0, -0.5, -3.0), q(0.0, -0.5, 3.0), q(0.0, 0.5, 3.0), q(0.0, 0.5, -3.0)];
+        let clipped = clip_box(&window, &upright, &mut NoTrace).unwrap();
+        assert_eq!(clipped.len(), 4);
+        assert!(clipped.iter().all(|v| v.z.abs() == 1.0 && v.y.abs() == 0.5), "{clipped:?}");
+        assert_eq!(clip_polyhedron(&window.planes(), &upright, &mut NoTrace).unwrap(), clipped);
+    }
+
+    #[test]
+    fn triangles_that_share_an_edge_share_its_cut() {
+        let window = Rect::new(p(0.1, 0.1), p(0.9, 0.9)).unwrap();
+        let (a, b) = (p(-0.3, 0.2), p(1.7, 0.7));
+        let cuts = |ring: [DVec2; 3]| {
+            let ring = clip(&window, &ring, &mut NoTrace).unwrap();
+            ring.into_iter().filter(|v| v.x == 0.1 || v.x == 0.9).collect::<Vec<_>>()
+        };
+        let (upper, lower) = (cuts([a, b, p(0.5, 3.0)]), cuts([b, a, p(0.5, -3.0)]));
+        assert_eq!(upper.iter().filter(|v| lower.contains(v)).count(), 2);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(10_000))]
+
+        #[test]
+        fn parts_inside_and_outside_make_the_whole(
+            ring in prop::collection::vec((-4i32..=4, -4i32..=4), 3..9),
+            n in (-3i32..=3, -3i32..=3),
+        ) {
+            let ring: Vec<DVec2> = ring.iter().map(|&(x, y)| p(x.into(), y.into())).collect();
+            let normal = p(n.0.into(), n.1.into());
+            let half = HalfPlane { normal, point: p(0.5, 0.0) };
+            let other = HalfPlane { normal: -normal, ..half };
+            prop_assume!(normal != DVec2::ZERO);
+            let mut steps = Recorder::default();
+            let inside = run([half], &ring, &mut steps).unwrap();
+            prop_assert_eq!(&replay(steps.steps()), &inside);
+            let outside = run([other], &ring, &mut NoTrace).unwrap();
+            let sum = signed_area(&inside) + signed_area(&outside);
+            prop_assert!((sum - signed_area(&ring)).abs() < 1e-12);
+            for v in &inside {
+                prop_assert!(normal.dot(*v - half.point) > -1e-14);
+            }
+        }
+    }
+}
