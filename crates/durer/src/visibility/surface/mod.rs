@@ -1,5 +1,8 @@
 //! Visible surfaces.
 
+pub(crate) mod attributes;
+pub mod input;
+pub(crate) mod lit;
 pub mod setup;
 pub mod z_buffer;
 

@@ -9,10 +9,8 @@
 //! triangle once per pixel. Equal depths are won by the lower item. Blended surfaces are sorted per
 //! pixel.
 
-mod attributes;
 mod bins;
 mod resolve;
-mod surface;
 mod tile;
 
 use crate::info::{Class, Info};
@@ -22,12 +20,12 @@ use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
+use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
 use resolve::{Area, Fragments, MaskTest, Mixed, Output, background_rows, resolve};
-use surface::{Lighting, Lit};
 use tile::{AllPass, FragmentTest, SamplePlane, TILE};
 
 /// The facts.

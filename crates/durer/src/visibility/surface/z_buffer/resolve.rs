@@ -1,12 +1,12 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
-use super::surface::{Lit, Queue};
 use super::tile::{FragmentTest, SamplePlane, TILE, TILE_PIXELS};
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, encode_srgb8, premultiply, unpremultiply};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::Background;
+use crate::visibility::surface::lit::{Lit, Queue};
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::Simd;
 use fearless_simd_macros::simd;

@@ -1,6 +1,5 @@
 //! Lighting visible items: one pixel with everything a material can have, or eight plain ones.
 
-use super::attributes::{Triangles, VisibleTriangle, Weights, blend, blend_x8, run_of};
 use crate::math::{Vec2, Vec3, Vec4};
 use crate::scene::{Mesh, Projection, Scene, Topology};
 use crate::shade::lane::Vec3Lane;
@@ -10,6 +9,9 @@ use crate::shade::{
 };
 use crate::target::NO_ITEM;
 use crate::view::View;
+use crate::visibility::surface::attributes::{
+    Triangles, VisibleTriangle, Weights, blend, blend_x8, run_of,
+};
 use crate::visibility::surface::setup::Run;
 use fearless_simd::{Simd, f32x8};
 

@@ -1,0 +1,46 @@
+//! The one scene that all visible-surface algorithms start from.
+
+use crate::scene::Scene;
+use crate::simd::Level;
+use crate::view::View;
+use crate::visibility::surface::setup::{Assembler, Counts, Filter, Run, ScreenTriangle, runs};
+
+/// The triangles of a scene on the screen, in item order; what each algorithm takes.
+///
+/// A triangle that was cut at the near plane stands there in several pieces with the same item.
+/// The production z-buffer does without this list; all others read it.
+#[derive(Debug, Clone)]
+pub struct SurfaceInput<'a> {
+    /// The scene, which has passed [`Scene::check`].
+    pub scene: &'a Scene,
+    /// The camera and the screen.
+    pub view: &'a View,
+    /// Runs of items that share an instance and a material.
+    pub runs: Vec<Run>,
+    /// All triangles that may cover a sample.
+    pub triangles: Vec<ScreenTriangle>,
+    /// What became of the scene's triangles.
+    pub counts: Counts,
+}
+
+impl<'a> SurfaceInput<'a> {
+    /// Transforms, clips and snaps the scene's triangles.
+    ///
+    /// # Errors
+    /// [`crate::Error::Limit`] where the scene has too many primitives to number.
+    pub fn new(scene: &'a Scene, view: &'a View, filter: Filter) -> crate::Result<Self> {
+        let runs = runs(scene)?;
+        let mut assembler = Assembler::new(scene, view, filter, Level::new());
+        let mut triangles = Vec::new();
+        for run in &runs {
+            assembler.primitives(run, run.range.clone(), |t| triangles.push(t));
+        }
+        let counts = assembler.counts;
+        Ok(Self { scene, view, runs, triangles, counts })
+    }
+
+    /// The run that a triangle of [`Self::triangles`] belongs to.
+    pub fn run_of(&self, item: u32) -> &Run {
+        &self.runs[crate::visibility::surface::attributes::run_of(&self.runs, item)]
+    }
+}
