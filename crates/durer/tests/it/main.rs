@@ -13,3 +13,4 @@ mod tidy;
 mod view_cull;
 mod view_projection;
 mod view_window;
+mod visible_surface;

@@ -1,14 +1,16 @@
 //! All ways to find visible surfaces: one scene in, the same picture out.
 
 use crate::math::Vec4;
+use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::{PreparedLights, Shading};
 use crate::simd::Level;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
+use crate::visibility::surface::a_buffer::Mask;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::setup::Filter;
 use crate::visibility::surface::{Background, Cull, Samples};
-use crate::visibility::surface::{picture, scan_line_z, z_buffer};
+use crate::visibility::surface::{a_buffer, picture, scan_line_z, spanning_scan_line, z_buffer};
 
 crate::info::family! {
     /// The algorithms that find visible surfaces.
@@ -17,6 +19,20 @@ crate::info::family! {
         ZBuffer => z_buffer::INFO,
         /// The z-buffer with one row of depth.
         ScanLineZ => scan_line_z::INFO,
+        /// Visibility span by span along the scan line.
+        SpanningScanLine => spanning_scan_line::INFO,
+        /// Fragment lists with coverage masks.
+        ABuffer => a_buffer::INFO,
+    }
+}
+
+impl SurfaceMethod {
+    /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
+    pub fn sample_reach(self) -> i32 {
+        match self {
+            Self::ZBuffer | Self::ABuffer => HALF_PIXEL,
+            Self::ScanLineZ | Self::SpanningScanLine => 0,
+        }
     }
 }
 
@@ -25,6 +41,8 @@ crate::info::family! {
 pub struct Options {
     /// Samples per pixel of the colour plane, for those methods that can take several.
     pub samples: Samples,
+    /// Sub-pixels of the A-buffer's masks.
+    pub mask: Mask,
     /// `None` = by material.
     pub shading: Option<Shading>,
     /// What is behind everything.
@@ -38,6 +56,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             samples: Samples::One,
+            mask: Mask::M16,
             shading: None,
             background: Background::Color(Vec4::ONE),
             level: Level::new(),
@@ -52,8 +71,13 @@ impl Options {
         picture::Options { shading, background, level }
     }
 
+    fn a_buffer(&self) -> a_buffer::Options {
+        let Self { mask, shading, background, level, .. } = *self;
+        a_buffer::Options { mask, shading, background, level, ..Default::default() }
+    }
+
     fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
-        let Self { samples, shading, background, level } = *self;
+        let Self { samples, shading, background, level, .. } = *self;
         let cull = if filter.cull_back { Cull::Back } else { Cull::None };
         z_buffer::Options { samples, cull, shading, background, level }
     }
@@ -64,6 +88,10 @@ impl Options {
 pub enum Step {
     /// Of the scan-line z-buffer.
     ScanLineZ(scan_line_z::Step),
+    /// Of the spanning scan line.
+    SpanningScanLine(spanning_scan_line::Step),
+    /// Of the A-buffer.
+    ABuffer(a_buffer::Step),
 }
 
 /// Hands the steps of one method on as [`Step`].
@@ -100,6 +128,14 @@ pub fn render_with(
         SurfaceMethod::ScanLineZ => {
             let t = &mut Wrapped(t, Step::ScanLineZ);
             scan_line_z::render(input, lights, &options.picture(), framebuffer, t);
+        }
+        SurfaceMethod::SpanningScanLine => {
+            let t = &mut Wrapped(t, Step::SpanningScanLine);
+            spanning_scan_line::render(input, lights, &options.picture(), framebuffer, t);
+        }
+        SurfaceMethod::ABuffer => {
+            let t = &mut Wrapped(t, Step::ABuffer);
+            a_buffer::render(input, lights, &options.a_buffer(), framebuffer, t);
         }
     }
     Ok(())

@@ -1,15 +1,18 @@
 //! Visible surfaces.
 
+pub mod a_buffer;
 pub(crate) mod active;
 pub(crate) mod attributes;
 pub(crate) mod background;
 pub mod input;
 pub(crate) mod lit;
 pub mod method;
+pub(crate) mod mixed;
 pub(crate) mod nearest;
 pub mod picture;
 pub mod scan_line_z;
 pub mod setup;
+pub mod spanning_scan_line;
 pub mod z_buffer;
 
 pub use method::{SurfaceMethod, render_with};
