@@ -2,7 +2,7 @@
 
 use crate::data;
 use durer::math::DVec3;
-use durer::pipeline::{RenderOptions, Samples, render};
+use durer::pipeline::{RenderOptions, Samples, SurfaceMethod, render};
 use durer::scene::{Camera, Projection, Scene};
 use durer::target::NO_ITEM;
 use durer::view::View;
@@ -76,14 +76,14 @@ fn exact_depth(scene: &Scene, view: &View, item: u32, x: u32, y: u32) -> f64 {
     panic!("item {item} does not exist")
 }
 
-fn compare(view: &Value, folder: &Path) -> Difference {
+fn compare(view: &Value, folder: &Path, method: SurfaceMethod) -> Difference {
     let mesh = view["mesh"].as_str().expect("mesh");
     let tag = view["tag"].as_str().expect("tag");
     let model = data::read_model(&folder.join(mesh));
     let mut options = RenderOptions::new(camera(&view["camera"]));
     options.width = view["width"].as_u64().expect("width") as u32;
     options.height = view["height"].as_u64().expect("height") as u32;
-    options.samples = Samples::Four;
+    (options.algorithm, options.samples) = (method, Samples::One);
     (options.item, options.depth) = (true, true);
     let (framebuffer, _) = render(&model.scene, &options).expect("picture");
     let exact_view = View::new(options.camera, options.width, options.height).expect("view");
@@ -128,9 +128,10 @@ fn items_coverage_and_depth_agree_with_vtk() {
     let views: Value = serde_json::from_str(&views.expect("views.json")).expect("JSON");
     let views = views["views"].as_array().expect("views");
     assert_eq!(views.len(), 22);
-    for view in views {
-        let d = compare(view, &folder);
-        let tag = &view["tag"];
+    for (view, &method) in views.iter().flat_map(|v| SurfaceMethod::ALL.iter().map(move |m| (v, m)))
+    {
+        let d = compare(view, &folder, method);
+        let tag = format!("{} by {method}", view["tag"]);
         assert!(d.items * 200 <= d.covered, "{tag}: {d:?}");
         assert!(d.coverage <= 3, "{tag}: {d:?}");
         assert!(d.worst_depth <= 2, "{tag}: {d:?}");

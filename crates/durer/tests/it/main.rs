@@ -1,5 +1,6 @@
 //! The one test binary of the library.
 
+mod a_buffer;
 mod clip_place;
 mod clip_volume;
 mod conformance_visible_surface;

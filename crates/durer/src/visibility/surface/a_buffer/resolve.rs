@@ -93,8 +93,22 @@ impl Pixel {
         }
         if covered == place.table.full() {
             left = self.give_to_half_hidden(left);
+            left = self.give_to_all(left);
         }
         self.background = left;
+    }
+
+    /// Where the masks leave no background, it gets no more than the areas leave; what small
+    /// fragments lost to neighbours goes to all that is seen.
+    fn give_to_all(&mut self, left: f32) -> f32 {
+        let areas: f32 = self.fragments.iter().map(|f| f.area).sum();
+        let background = (1.0 - areas).clamp(0.0, left);
+        if left > background && left < 1.0 {
+            let more = (1.0 - background) / (1.0 - left);
+            self.shares.iter_mut().for_each(|share| *share *= more);
+            return background;
+        }
+        left
     }
 
     /// Where the masks leave no background, what the areas leave belongs to fragments that go on
@@ -111,28 +125,39 @@ impl Pixel {
         left
     }
 
-    /// Fragments of which some are blended, by sub-pixel: each is weakened by all in front of it.
+    /// Fragments of which some are blended: composed front to back at each sub-pixel, in the order of
+    /// their depths there.
     ///
     /// `alphas` are those of the fragments, in their order; shares are of colour times alpha.
     pub fn resolve_blended(&mut self, alphas: &[f32], place: &Place<'_>) {
-        let full = place.table.full();
-        let share_of_bit = 1.0 / full.count_ones() as f32;
-        for (i, f) in self.fragments.iter().enumerate() {
-            let mut through = [1.0f32; 64];
-            for (j, other) in self.fragments.iter().enumerate() {
-                let common = f.mask & other.mask;
-                if j != i && common != 0 {
-                    weaken(&mut through, common & in_front(other, f, place), alphas[j]);
-                }
+        let share_of_bit = 1.0 / place.table.full().count_ones() as f32;
+        self.shares.resize(self.fragments.len(), 0.0);
+        self.background = 0.0;
+        let mut order: Vec<(f32, usize)> = Vec::with_capacity(self.fragments.len());
+        for (bit, center) in place.table.centers().enumerate() {
+            let here = self.fragments.iter().enumerate().filter(|(_, f)| f.mask >> bit & 1 == 1);
+            order.clear();
+            order.extend(here.map(|(i, f)| (depth_at(f, center, place), i)));
+            order.sort_by(|a, b| {
+                let item = |i: usize| self.fragments[i].item;
+                a.0.total_cmp(&b.0).then_with(|| item(a.1).cmp(&item(b.1)))
+            });
+            let mut through = share_of_bit;
+            for &(_, i) in &order {
+                self.shares[i] += through * alphas[i];
+                through *= 1.0 - alphas[i];
             }
-            self.shares.push(sum_of(&through, f.mask) * share_of_bit * alphas[i]);
+            self.background += through;
         }
-        let mut through = [1.0f32; 64];
-        for (f, &alpha) in self.fragments.iter().zip(alphas) {
-            weaken(&mut through, f.mask, alpha);
-        }
-        self.background = sum_of(&through, full) * share_of_bit;
     }
+}
+
+/// The depth of a fragment at a sub-pixel.
+fn depth_at(f: &Fragment, [u, v]: [f32; 2], place: &Place<'_>) -> f32 {
+    let t = &place.triangles[f.triangle as usize];
+    let [ox, oy] = t.origin();
+    let depth = plane_depth(t, (place.x - ox) as f32 + u, (place.y - oy) as f32 + v);
+    depth.clamp(f.z_min, f.z_max)
 }
 
 /// Puts a piece of the same face to another; says whether it did, which is always.
@@ -148,19 +173,6 @@ fn merge(kept: &mut Fragment, piece: &Fragment) -> bool {
     true
 }
 
-/// Multiplies what goes through some sub-pixels by 1 − alpha.
-fn weaken(through: &mut [f32; 64], mask: u64, alpha: f32) {
-    let mut bits = mask;
-    while bits != 0 {
-        through[bits.trailing_zeros() as usize] *= 1.0 - alpha;
-        bits &= bits - 1;
-    }
-}
-
-fn sum_of(through: &[f32; 64], mask: u64) -> f32 {
-    through.iter().enumerate().filter(|(bit, _)| mask >> bit & 1 == 1).map(|(_, t)| t).sum()
-}
-
 /// The priority mask of two fragments: the sub-pixels at which `a` lies in front of `b`.
 ///
 /// Where their depths overlap, the difference of the planes is itself a linear function on the pixel,
@@ -170,7 +182,9 @@ fn in_front(a: &Fragment, b: &Fragment, place: &Place<'_>) -> u64 {
     if a.z_max < b.z_min {
         return full;
     }
-    if b.z_max < a.z_min {
+    // A sliver without a sub-pixel of its own lies in the sub-pixels of its neighbours in the same
+    // surface: only what is clearly in front hides it.
+    if b.z_max < a.z_min || b.mask == 0 {
         return 0;
     }
     let plane = |f: &Fragment| {

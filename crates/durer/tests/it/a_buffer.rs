@@ -1,0 +1,252 @@
+//! The A-buffer: closer to the truth than samples, blending without order, bounded memory.
+
+use crate::{data, scenes};
+use durer::math::{DMat4, DVec3, Vec3, Vec4};
+use durer::pipeline::{RenderOptions, Samples};
+use durer::scene::{
+    AlphaMode, Camera, Instance, Material, Mesh, Part, Projection, Scene, ShadingModel,
+};
+use durer::shade::{PreparedLights, color};
+use durer::target::Framebuffer;
+use durer::trace::Recorder;
+use durer::view::View;
+use durer::visibility::surface::a_buffer::{self, Mask, Options, Step};
+use durer::visibility::surface::input::SurfaceInput;
+use durer::visibility::surface::setup::Filter;
+
+const FILTER: Filter = Filter { cull_back: false, sample_reach: 128 };
+
+fn flat(rgba: Vec4) -> Material {
+    let alpha_mode = if rgba.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
+    let model = ShadingModel::Unlit;
+    Material { model, base_color: rgba, alpha_mode, ..Material::default() }
+}
+
+fn camera() -> Camera {
+    scenes::options(&Scene::default(), 1, 1).camera
+}
+
+fn render(scene: &Scene, view: &View, options: &Options) -> (Framebuffer, Vec<Step>) {
+    let input = SurfaceInput::new(scene, view, FILTER).expect("input");
+    let lights = PreparedLights::of(scene, view.camera());
+    let mut framebuffer = Framebuffer::new(view.width(), view.height());
+    let mut steps = Recorder::default();
+    a_buffer::render(&input, &lights, options, &mut framebuffer, &mut steps);
+    assert_eq!(steps.dropped(), 0);
+    (framebuffer, steps.into_steps())
+}
+
+/// Linear grey of each pixel of a scene in black and white.
+fn linear(framebuffer: &Framebuffer) -> Vec<f64> {
+    let of = |rgba: &[u8; 4]| f64::from(color::decode_srgb8(rgba[0]));
+    framebuffer.color.data().iter().map(of).collect()
+}
+
+/// The z-buffer's picture with `scale`² times 16 samples in each pixel.
+fn sampled(scene: &Scene, camera: Camera, side: u32, scale: u32) -> Vec<f64> {
+    let mut options = RenderOptions::new(camera);
+    (options.width, options.height) = (side * scale, side * scale);
+    options.samples = Samples::Sixteen;
+    let (framebuffer, _) = durer::pipeline::render(scene, &options).expect("picture");
+    let fine = linear(&framebuffer);
+    let mut sums = vec![0.0; (side * side) as usize];
+    for (i, value) in fine.iter().enumerate() {
+        let (x, y) = (i as u32 % (side * scale), i as u32 / (side * scale));
+        sums[(y / scale * side + x / scale) as usize] += value;
+    }
+    sums.iter().map(|sum| sum / f64::from(scale * scale)).collect()
+}
+
+/// Mean absolute difference at the pixels where the truth is neither black nor white.
+fn error_at_edges(found: &[f64], truth: &[f64]) -> f64 {
+    let at_edges = |t: &f64| *t > 0.002 && *t < 0.998;
+    let edges = truth.iter().filter(|t| at_edges(t)).count();
+    assert!(edges > 100, "{edges} pixels at edges");
+    let pairs = found.iter().zip(truth).filter(|(_, t)| at_edges(t));
+    pairs.map(|(f, t)| (f - t).abs()).sum::<f64>() / edges as f64
+}
+
+/// Errors against 256 samples: mask 16, 16 samples, mask 64, 64 samples.
+fn errors(scene: &Scene, camera: Camera, side: u32) -> [f64; 4] {
+    let view = View::new(camera, side, side).expect("view");
+    let truth = sampled(scene, camera, side, 4);
+    let by_mask = |mask| {
+        let options = Options { mask, ..Options::default() };
+        error_at_edges(&linear(&render(scene, &view, &options).0), &truth)
+    };
+    let by_samples = |scale| error_at_edges(&sampled(scene, camera, side, scale), &truth);
+    [by_mask(Mask::M16), by_samples(1), by_mask(Mask::M64), by_samples(2)]
+}
+
+fn assert_better(errors: [f64; 4], what: &str) {
+    println!("{what}: mask 16, 16 samples, mask 64, 64 samples: {errors:.5?}");
+    let [mask_16, samples_16, mask_64, samples_64] = errors;
+    assert!(mask_16 < samples_16, "{what}: {errors:?}");
+    assert!(mask_64 < samples_64, "{what}: {errors:?}");
+}
+
+/// All of a scene in one black material.
+fn black(mut scene: Scene) -> Scene {
+    scene.materials = vec![flat(Vec3::ZERO.extend(1.0))];
+    for mesh in &mut scene.meshes {
+        let range = 0..mesh.triangle_count() as u32;
+        mesh.colors.clear();
+        mesh.parts = vec![Part { range, material: Some(0), name: String::new() }];
+    }
+    scene
+}
+
+/// Spheres, black and white by turns, that penetrate each other.
+fn spheres() -> Scene {
+    let mut scene = Scene::default();
+    scene.materials = [0.0, 1.0].map(|v| flat(Vec3::splat(v).extend(1.0))).to_vec();
+    for i in 0..4 {
+        scene.meshes.push(scenes::sphere(8, Some(i % 2)));
+        let place = DVec3::new(0.7 * i as f64 - 1.0, 0.3 * (i % 3) as f64, 0.2 * i as f64);
+        let world_from_mesh = DMat4::from_translation(place) * DMat4::from_rotation_z(i as f64);
+        scene.instances.push(Instance { mesh: i, world_from_mesh, name: String::new() });
+    }
+    scene
+}
+
+#[test]
+fn edges_are_closer_to_the_truth_than_by_as_many_samples() {
+    for side in [90, 131] {
+        assert_better(errors(&spheres(), camera(), side), "spheres");
+        assert_better(errors(&black(scenes::soup(24, 3)), camera(), side), "soup");
+    }
+}
+
+/// A camera that sees all of a model.
+fn around(scene: &Scene) -> Camera {
+    let points = scene.instances.iter().flat_map(|i| {
+        let place = |p: &Vec3| i.world_from_mesh.transform_point3(p.as_dvec3());
+        scene.meshes[i.mesh].positions.iter().map(place)
+    });
+    let (lo, hi) =
+        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+    let (middle, size) = ((lo + hi) * 0.5, (hi - lo).length());
+    let projection = Projection::Perspective { fov_y: 0.6 };
+    let eye = middle + DVec3::new(0.9, 0.6, 1.3) * size;
+    Camera { eye, target: middle, up: DVec3::Y, projection, near: 0.05 * size, far: 10.0 * size }
+}
+
+#[test]
+fn conformance_edges_of_models_are_closer_to_the_truth_than_by_as_many_samples() {
+    let Some(folder) = data::folder() else { return };
+    for name in ["meshes/spot/spot_triangulated.obj", "meshes/benchy_parts/wheel.stl"] {
+        let scene = black(data::read_model(&folder.join(name)).scene);
+        assert_better(errors(&scene, around(&scene), 160), name);
+    }
+}
+
+/// Panes one behind the other that fill the picture, in a muddled order; and from far to near.
+fn panes() -> (Scene, Vec<Vec4>) {
+    let depths = [0.3, -1.0, 0.9, 0.0, -0.4];
+    let colors: Vec<Vec4> = (0..5)
+        .map(|i| Vec4::new(0.2 * i as f32, 1.0 - 0.2 * i as f32, 0.5, 0.25 + 0.12 * i as f32))
+        .collect();
+    let mut scene =
+        Scene { materials: colors.iter().map(|&c| flat(c)).collect(), ..Scene::default() };
+    for (i, &z) in depths.iter().enumerate() {
+        let corner = |x: f32, y: f32| Vec3::new(x * 20.0, y * 20.0, z);
+        let positions = vec![corner(-1., -1.), corner(3., -1.), corner(-1., 3.)];
+        let parts = vec![Part { range: 0..1, material: Some(i), name: String::new() }];
+        scene.meshes.push(Mesh { positions, parts, ..Mesh::default() });
+        scene.instances.push(scenes::instance(i));
+    }
+    let mut order: Vec<usize> = (0..5).collect();
+    order.sort_by(|&a, &b| depths[a].total_cmp(&depths[b]));
+    let sorted = order.into_iter().map(|i| colors[i]).collect();
+    (scene, sorted)
+}
+
+#[test]
+fn blended_surfaces_are_composed_as_if_sorted() {
+    let (scene, far_to_near) = panes();
+    let eye = DVec3::new(0.4, 0.2, 4.0);
+    let view = View::new(Camera { eye, ..camera() }, 40, 30).expect("view");
+    let expected = far_to_near
+        .iter()
+        .fold(Vec4::ONE, |under, c| c.truncate().extend(1.0) * c.w + under * (1.0 - c.w));
+    for mask in [Mask::M16, Mask::M64] {
+        let (found, _) = render(&scene, &view, &Options { mask, ..Options::default() });
+        for pixel in found.color.data() {
+            for (found, expected) in pixel.iter().zip(color::encode_rgba8(expected)) {
+                assert!(found.abs_diff(expected) <= 1, "{pixel:?} {expected}");
+            }
+        }
+    }
+}
+
+/// A scene with opaque and blended faces in each other.
+fn glass() -> Scene {
+    let mut scene = spheres();
+    scene.materials[1] = flat(Vec4::new(0.9, 0.4, 0.2, 0.4));
+    scene
+}
+
+#[test]
+fn a_low_limit_of_fragments_changes_no_pixel() {
+    let view = View::new(camera(), 90, 70).expect("view");
+    let (expected, whole) = render(&glass(), &view, &Options::default());
+    let options = Options { max_fragments: 40, ..Options::default() };
+    let (found, parts) = render(&glass(), &view, &options);
+    assert!(found == expected);
+    let rows = |steps: &[Step]| steps.iter().filter(|s| matches!(s, Step::Row { .. })).count();
+    assert!(rows(&parts) > 2 * rows(&whole));
+}
+
+#[test]
+fn the_picture_is_rebuilt_from_its_steps() {
+    let scene = glass();
+    let view = View::new(camera(), 90, 70).expect("view");
+    let (found, steps) = render(&scene, &view, &Options::default());
+    let per_sphere = scene.meshes[0].triangle_count() as u32;
+    let color_of = |item: u32| scene.materials[(item / per_sphere) as usize % 2].base_color;
+    let mut sums = vec![Vec4::ZERO; found.color.data().len()];
+    let (mut row, mut blended) = (0, 0);
+    for step in steps {
+        let mut add = |x: i32, color: Vec4, share: f32| {
+            sums[row as usize * 90 + x as usize] += color.truncate().extend(1.0) * share;
+        };
+        match step {
+            Step::Row { y, .. } => row = y,
+            Step::Fragment { mask, area, depths, .. } => {
+                assert!(area > 0.0 && area <= 1.0 && mask <= 0xffff && depths[0] <= depths[1]);
+            }
+            Step::Share { x, item, share } => {
+                blended += u32::from(color_of(item).w < 1.0);
+                add(x, color_of(item), share);
+            }
+            Step::Background { x, share } => add(x, Vec4::ONE, share),
+        }
+    }
+    assert!(blended > 500, "{blended}");
+    for (pixel, sum) in found.color.data().iter().zip(sums) {
+        assert!((sum.w - 1.0).abs() < 1e-4, "{sum}");
+        for (found, expected) in pixel.iter().zip(color::encode_rgba8(sum)) {
+            assert!(found.abs_diff(expected) <= 1, "{pixel:?} {sum}");
+        }
+    }
+}
+
+/// Closed bodies leave no gap between their faces, nor do faces shine through each other.
+#[test]
+fn faces_that_meet_leave_no_gap() {
+    let scene = black(Scene {
+        meshes: vec![scenes::sphere(40, None)],
+        instances: vec![scenes::instance(0)],
+        ..Scene::default()
+    });
+    let view = View::new(camera(), 64, 64).expect("view");
+    let (found, _) = render(&scene, &view, &Options::default());
+    let mut black = 0;
+    for y in 24..40 {
+        for x in 24..40 {
+            assert!(found.color.get(x, y) == Some([0, 0, 0, 255]), "{x} {y}");
+            black += 1;
+        }
+    }
+    assert_eq!(black, 256);
+}
