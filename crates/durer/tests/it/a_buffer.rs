@@ -98,8 +98,8 @@ fn black(mut scene: Scene) -> Scene {
 
 /// Spheres, black and white by turns, that penetrate each other.
 fn spheres() -> Scene {
-    let mut scene = Scene::default();
-    scene.materials = [0.0, 1.0].map(|v| flat(Vec3::splat(v).extend(1.0))).to_vec();
+    let materials = [0.0, 1.0].map(|v| flat(Vec3::splat(v).extend(1.0))).to_vec();
+    let mut scene = Scene { materials, ..Scene::default() };
     for i in 0..4 {
         scene.meshes.push(scenes::sphere(8, Some(i % 2)));
         let place = DVec3::new(0.7 * i as f64 - 1.0, 0.3 * (i % 3) as f64, 0.2 * i as f64);

@@ -18,20 +18,28 @@ pub struct Areas {
 impl Areas {
     /// The first column of the pixels x0 … x1 − 1 of row y that a triangle touches, and the areas
     /// from there on, 0 … 1.
-    pub fn of(&mut self, t: &ScreenTriangle, y: i32, [x0, x1]: [i32; 2]) -> (i32, &[f32]) {
-        let edges = [0, 1, 2].map(|i| RowEdge::new(t, i, y));
+    pub fn of(
+        &mut self,
+        t: &ScreenTriangle,
+        slopes: &Slopes,
+        y: i32,
+        [x0, x1]: [i32; 2],
+    ) -> (i32, &[f32]) {
+        let edges = [0, 1, 2].map(|i| RowEdge::new(t, slopes, i, y));
         let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
         for edge in edges.iter().flatten() {
             lo = lo.min(edge.left);
             hi = hi.max(edge.right);
         }
         self.changes.clear();
-        let (from, end) = (lo.floor().max(x0 as f32), hi.ceil().min(x1 as f32));
-        if from >= end {
+        // Where lo is negative, rounding towards zero is as good: x0 is not.
+        let (first, end) = ((lo as i32).max(x0), (hi as i32).saturating_add(1).min(x1));
+        if first >= end {
             return (x0, &[]);
         }
-        self.first = from as i32;
-        let count = (end - from) as usize;
+        self.first = first;
+        let count = (end - first) as usize;
+        let (from, end) = (first as f32, end as f32);
         self.changes.resize(count + 1, 0.0);
         for edge in edges.iter().flatten() {
             self.add(edge, from, end);
@@ -62,7 +70,7 @@ impl Areas {
         let per_pixel = edge.height / width;
         let mut x = left;
         while x < right {
-            let next = (x.floor() + 1.0).min(right);
+            let next = ((x as i32 + 1) as f32).min(right);
             self.add_piece(x, next, per_pixel * (next - x));
             x = next;
         }
@@ -71,13 +79,34 @@ impl Areas {
     /// Adds a piece of an edge within one pixel, of this signed height.
     #[inline]
     fn add_piece(&mut self, x0: f32, x1: f32, height: f32) {
-        let pixel = (x0 as i32 - self.first).max(0) as usize;
-        let right_of_it = 0.5 * (x0 + x1) - x0.floor();
+        let column = x0 as i32;
+        let pixel = (column - self.first).max(0) as usize;
+        let right_of_it = 0.5 * (x0 + x1) - column as f32;
         if let Some([here, next]) = self.changes.get_mut(pixel..pixel + 2) {
             *here += height * (1.0 - right_of_it);
             *next += height * right_of_it;
         }
     }
+}
+
+/// How far each edge goes to the right per step down; 0 where it is horizontal.
+pub type Slopes = [f64; 3];
+
+/// The slopes of a triangle's edges.
+pub fn slopes(t: &ScreenTriangle) -> Slopes {
+    [0, 1, 2].map(|i| {
+        let [a, b] = upper_and_lower(t, i);
+        let down = t.y[b] - t.y[a];
+        if down == 0 { 0.0 } else { f64::from(t.x[b] - t.x[a]) / f64::from(down) }
+    })
+}
+
+/// The vertices of edge `i`: both triangles at an edge count from its upper end, so that they get
+/// the same numbers.
+#[inline(always)]
+fn upper_and_lower(t: &ScreenTriangle, i: usize) -> [usize; 2] {
+    let j = (i + 1) % 3;
+    if t.y[j] < t.y[i] { [j, i] } else { [i, j] }
 }
 
 /// The part of an edge within a row, from left to right.
@@ -91,24 +120,20 @@ struct RowEdge {
 
 impl RowEdge {
     /// Edge `i` of a triangle in row `y`; `None` where it is horizontal or elsewhere.
-    fn new(t: &ScreenTriangle, i: usize, y: i32) -> Option<Self> {
-        let j = (i + 1) % 3;
-        // From the upper end, so that both triangles at an edge get the same numbers.
-        let upwards = t.y[j] < t.y[i];
-        let (a, b) = if upwards { (j, i) } else { (i, j) };
+    fn new(t: &ScreenTriangle, slopes: &Slopes, i: usize, y: i32) -> Option<Self> {
+        let [a, b] = upper_and_lower(t, i);
         let (top, bottom) = (y * SUBPIXELS, (y + 1) * SUBPIXELS);
         let (y0, y1) = (t.y[a].max(top), t.y[b].min(bottom));
         if y0 >= y1 {
             return None;
         }
-        let slope = f64::from(t.x[b] - t.x[a]) / f64::from(t.y[b] - t.y[a]);
         let at = |y: i32| {
-            let x = f64::from(t.x[a]) + slope * f64::from(y - t.y[a]);
+            let x = f64::from(t.x[a]) + slopes[i] * f64::from(y - t.y[a]);
             (x / f64::from(SUBPIXELS)) as f32
         };
         let (x0, x1) = (at(y0), at(y1));
         let height = (y1 - y0) as f32 / SUBPIXELS as f32;
-        let height = if upwards { height } else { -height };
+        let height = if a != i { height } else { -height };
         Some(Self { left: x0.min(x1), right: x0.max(x1), height })
     }
 }

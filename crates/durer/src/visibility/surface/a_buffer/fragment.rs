@@ -1,6 +1,6 @@
 //! Fragments: what a triangle leaves in one pixel, in lists that share one pool.
 
-use super::coverage::Areas;
+use super::coverage::{Areas, Slopes, slopes};
 use super::mask::{Direction, MaskTable};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS};
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
@@ -38,6 +38,7 @@ pub struct Face {
     /// The last row that it touches.
     pub last_row: i32,
     edges: [Direction; 3],
+    slopes: Slopes,
     /// Change of depth over half a pixel in both directions.
     half_depth: f32,
     /// Towards the far plane, if that is near.
@@ -52,7 +53,7 @@ impl Face {
         });
         let half_depth = 0.5 * (t.depth_dx.abs() + t.depth_dy.abs());
         let far = (t.depth_max >= 1.0).then(|| Direction::new(-t.depth_dx, -t.depth_dy));
-        Self { triangle, coverage, last_row, edges, half_depth, far }
+        Self { triangle, coverage, last_row, edges, slopes: slopes(t), half_depth, far }
     }
 }
 
@@ -63,7 +64,8 @@ fn edge_slope(t: &ScreenTriangle, i: usize) -> [i64; 2] {
 }
 
 /// The fragments of a part of a row.
-pub struct Pool {
+pub struct Pool<'a> {
+    table: &'a MaskTable,
     fragments: Vec<Fragment>,
     /// The latest fragment of each pixel.
     heads: Vec<u32>,
@@ -73,10 +75,11 @@ pub struct Pool {
     areas: Areas,
 }
 
-impl Pool {
+impl<'a> Pool<'a> {
     /// For rows of this width and as many fragments at a time.
-    pub fn new(width: u32, max_fragments: usize) -> Self {
+    pub fn new(table: &'a MaskTable, width: u32, max_fragments: usize) -> Self {
         Self {
+            table,
             fragments: Vec::new(),
             heads: vec![END; width as usize],
             hidden_from: vec![f32::INFINITY; width as usize],
@@ -102,55 +105,72 @@ impl Pool {
         })
     }
 
-    /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y; calls `added` with the column of
-    /// each. Says whether there was room for all of them.
+    /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y, where `passes` says that it is
+    /// there; calls `added` with the column of each. Says whether there was room for all of them.
     pub fn add(
         &mut self,
         t: &ScreenTriangle,
         face: &Face,
-        table: &MaskTable,
         y: i32,
         columns: [i32; 2],
         mut passes: impl FnMut(i32) -> bool,
         mut added: impl FnMut(i32, &Fragment),
     ) -> bool {
-        let (first, areas) = self.areas.of(t, y, columns);
+        let (first, areas) = self.areas.of(t, &face.slopes, y, columns);
         let (edges, steps) = edges_at(t, first, y);
         let [ox, oy] = t.origin();
-        let blended = face.coverage == Coverage::Blended;
-        for (i, &area) in areas.iter().enumerate() {
+        for (i, &area) in areas.iter().enumerate().filter(|(_, area)| **area > 0.0) {
             let x = first + i as i32;
+            let column = x as usize;
             let depth = plane_depth(t, (x - ox) as f32, (y - oy) as f32);
             let z_min = (depth - face.half_depth).max(t.depth_min);
-            let z_max = (depth + face.half_depth).min(t.depth_max).max(z_min);
-            let column = x as usize;
-            if area <= 0.0 || z_min > self.hidden_from[column] || z_min >= 1.0 || !passes(x) {
+            if z_min > self.hidden_from[column] || z_min >= 1.0 || !passes(x) {
                 continue;
-            }
-            let at = [0, 1, 2].map(|k| (edges[k] + steps[k] * i as i64) as f32);
-            let mut mask = mask_of(table, face, at);
-            let mut area = area;
-            if let Some(far) = face.far {
-                let before = table.half_plane(&far, 1.0 - depth);
-                area *= (mask & before).count_ones() as f32 / mask.count_ones().max(1) as f32;
-                mask &= before;
-            }
-            let seen_by = if mask == 0 { nearest_sub_pixel(table, face, at) } else { mask };
-            if mask == table.full() && !blended {
-                self.hidden_from[column] = self.hidden_from[column].min(z_max);
             }
             if self.fragments.len() >= self.max_fragments && columns[1] - columns[0] > 1 {
                 return false;
             }
-            let next = self.heads[column];
-            let (item, triangle) = (t.item, face.triangle);
-            let fragment =
-                Fragment { item, triangle, mask, seen_by, area, z_min, z_max, blended, next };
+            let at = [0, 1, 2].map(|k| (edges[k] + steps[k] * i as i64) as f32);
+            let z_max = (depth + face.half_depth).min(t.depth_max).max(z_min);
+            let mut fragment = Fragment {
+                item: t.item,
+                triangle: face.triangle,
+                area,
+                z_min,
+                z_max,
+                blended: face.coverage == Coverage::Blended,
+                next: self.heads[column],
+                mask: 0,
+                seen_by: 0,
+            };
+            fragment.cover(self.table, face, at, depth);
+            if fragment.mask == self.table.full() && !fragment.blended {
+                self.hidden_from[column] = self.hidden_from[column].min(z_max);
+            }
             self.heads[column] = self.fragments.len() as u32;
             added(x, &fragment);
             self.fragments.push(fragment);
         }
         true
+    }
+}
+
+impl Fragment {
+    /// Finds the mask from the edge functions and the depth at the pixel's centre; what is beyond
+    /// the far plane goes.
+    #[inline(always)]
+    fn cover(&mut self, table: &MaskTable, face: &Face, at: [f32; 3], depth: f32) {
+        self.mask = mask_of(table, face, at);
+        if let Some(far) = face.far {
+            let before = self.mask & table.half_plane(&far, 1.0 - depth);
+            let all = self.mask.count_ones().max(1);
+            self.area *= before.count_ones() as f32 / all as f32;
+            self.mask = before;
+        }
+        self.seen_by = match self.mask {
+            0 => nearest_sub_pixel(table, face, at),
+            mask => mask,
+        };
     }
 }
 
@@ -193,7 +213,7 @@ fn nearest_sub_pixel(table: &MaskTable, face: &Face, at: [f32; 3]) -> u64 {
         along(0).min(along(1)).min(along(2))
     };
     let mut best = (f32::NEG_INFINITY, 0);
-    for (bit, center) in table.centers().enumerate() {
+    for (bit, &center) in table.centers().iter().enumerate() {
         let depth = depth_at(center);
         if depth > best.0 {
             best = (depth, 1 << bit);

@@ -17,6 +17,7 @@ const DISTANCES: usize = 128;
 pub struct MaskTable {
     /// Sub-pixels along the side of a pixel.
     side: u32,
+    centers: Vec<[f32; 2]>,
     /// By direction, then distance; upper half plane of directions only.
     masks: Vec<u64>,
 }
@@ -62,7 +63,7 @@ impl MaskTable {
                 if along <= 1.0 { (1.0 - along, along) } else { (1.0 - along, 2.0 - along) };
             masks_of_direction(side, a, b, &mut masks);
         }
-        Self { side, masks }
+        Self { side, centers: centers(side).collect(), masks }
     }
 
     /// The mask with all bits.
@@ -88,8 +89,8 @@ impl MaskTable {
     }
 
     /// The centres of the sub-pixels, from the pixel's, bit by bit.
-    pub fn centers(&self) -> impl Iterator<Item = [f32; 2]> + use<> {
-        centers(self.side)
+    pub fn centers(&self) -> &[[f32; 2]] {
+        &self.centers
     }
 }
 

@@ -165,9 +165,10 @@ pub fn render(
         table: &table,
         level,
         faces: Faces::new(input, height),
-        pool: Pool::new(width, options.max_fragments),
+        pool: Pool::new(&table, width, options.max_fragments),
         mixed: Mixed::new(width as usize),
         pixel: Pixel::default(),
+        in_pieces: input.triangles.windows(2).any(|two| two[0].item == two[1].item),
     };
     for y in 0..height as i32 {
         rows.faces.advance(y);
@@ -256,9 +257,11 @@ struct Rows<'a> {
     table: &'a MaskTable,
     level: Level,
     faces: Faces<'a>,
-    pool: Pool,
+    pool: Pool<'a>,
     mixed: Mixed,
     pixel: Pixel,
+    /// Whether some faces come in several pieces.
+    in_pieces: bool,
 }
 
 impl Rows<'_> {
@@ -286,7 +289,7 @@ impl Rows<'_> {
         lit: &mut Lit<'_>,
         t: &mut impl Tracer<Step>,
     ) -> bool {
-        let Self { input, table, faces, pool, .. } = self;
+        let Self { input, faces, pool, .. } = self;
         pool.clear(columns);
         faces.active.iter().all(|face| {
             let triangle = &input.triangles[face.triangle as usize];
@@ -297,7 +300,7 @@ impl Rows<'_> {
                 let (mask, area, depths) = (f.mask, f.area, [f.z_min, f.z_max]);
                 t.step(|| Step::Fragment { x, item, mask, area, depths });
             };
-            pool.add(triangle, face, table, y, columns, passes, added)
+            pool.add(triangle, face, y, columns, passes, added)
         })
     }
 
@@ -314,7 +317,7 @@ impl Rows<'_> {
         let level = self.level;
         for x in x0..x1 {
             let place = Place { triangles: &input.triangles, table, x, y };
-            pixel.begin(pool.of_pixel(x), table.full());
+            pixel.begin(pool.of_pixel(x), table.full(), self.in_pieces);
             mixed.sums[x as usize] = Vec4::ZERO;
             if pixel.is_blended() {
                 mixed.sums[x as usize] = blended(pixel, &place, lit, t);

@@ -29,12 +29,20 @@ pub struct Place<'a> {
 impl Pixel {
     /// Takes the fragments of a pixel: pieces of one face become one fragment, the rest is sorted
     /// front to back, and what lies wholly behind opaque fragments that cover all is dropped.
-    pub fn begin<'f>(&mut self, fragments: impl Iterator<Item = &'f Fragment>, full: u64) {
+    /// `in_pieces` says whether there are such pieces at all.
+    pub fn begin<'f>(
+        &mut self,
+        fragments: impl Iterator<Item = &'f Fragment>,
+        full: u64,
+        in_pieces: bool,
+    ) {
         self.fragments.clear();
         self.fragments.extend(fragments);
         if self.fragments.len() > 1 {
-            self.fragments.sort_unstable_by_key(|f| (f.item, f.triangle));
-            self.fragments.dedup_by(|next, kept| next.item == kept.item && merge(kept, next));
+            if in_pieces {
+                self.fragments.sort_unstable_by_key(|f| (f.item, f.triangle));
+                self.fragments.dedup_by(|next, kept| next.item == kept.item && merge(kept, next));
+            }
             self.fragments.sort_unstable_by(|a, b| {
                 let depths = a.z_min.total_cmp(&b.z_min).then(a.z_max.total_cmp(&b.z_max));
                 // Of equally far ones the order must not come from the order of the input.
@@ -134,7 +142,7 @@ impl Pixel {
         self.shares.resize(self.fragments.len(), 0.0);
         self.background = 0.0;
         let mut order: Vec<(f32, usize)> = Vec::with_capacity(self.fragments.len());
-        for (bit, center) in place.table.centers().enumerate() {
+        for (bit, &center) in place.table.centers().iter().enumerate() {
             let here = self.fragments.iter().enumerate().filter(|(_, f)| f.mask >> bit & 1 == 1);
             order.clear();
             order.extend(here.map(|(i, f)| (depth_at(f, center, place), i)));
