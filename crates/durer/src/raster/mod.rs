@@ -2,6 +2,7 @@
 //!
 //! Pixel (i, j) covers [i, i + 1) × [j, j + 1) with y growing downwards; its sample is the centre.
 
+pub mod coverage;
 pub mod fixed;
 pub mod interpolate;
 pub mod triangle;
