@@ -5,4 +5,5 @@
 pub mod coverage;
 pub mod fixed;
 pub mod interpolate;
+pub mod paint;
 pub mod triangle;
