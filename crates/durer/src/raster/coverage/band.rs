@@ -22,8 +22,8 @@ pub(crate) struct PathEdges {
     edges: Vec<Edge>,
     /// First row and one past the last row touched.
     pub rows: (i32, i32),
-    /// First pixel touched.
-    left: i32,
+    /// First and last pixel touched.
+    columns: (i32, i32),
     /// Indices of edges, band after band from the first one touched; empty for paths of few edges.
     by_band: Vec<u32>,
     /// Where each band's indices start.
@@ -33,13 +33,14 @@ pub(crate) struct PathEdges {
 impl PathEdges {
     /// The edges of contours within a target of the given size.
     pub fn new(contours: &Contours, width: u32, height: u32) -> Self {
-        let mut path = Self { rows: (i32::MAX, 0), left: i32::MAX, ..Self::default() };
+        let mut path = Self { rows: (i32::MAX, 0), columns: (i32::MAX, 0), ..Self::default() };
         path.edges.reserve(contours.points().len());
         EdgeBuilder::new(&mut path.edges, width, height).contours(contours);
         for edge in &path.edges {
             let (first, last) = edge.rows();
             path.rows = (path.rows.0.min(first), path.rows.1.max(last));
-            path.left = path.left.min(edge.x0.min(edge.x1) >> BITS);
+            path.columns.0 = path.columns.0.min(edge.x0.min(edge.x1) >> BITS);
+            path.columns.1 = path.columns.1.max(edge.x0.max(edge.x1) >> BITS);
         }
         if path.edges.len() > FEW_EDGES {
             path.sort_into_bands();
@@ -107,6 +108,7 @@ pub(crate) struct BandFiller {
     width: usize,
     coverage: Vec<u32>,
     runs: Vec<Run>,
+    patches: Vec<(usize, u8)>,
 }
 
 impl BandFiller {
@@ -118,6 +120,7 @@ impl BandFiller {
             width: width as usize,
             coverage: vec![0; (width as usize).next_multiple_of(64) + 64],
             runs: Vec::new(),
+            patches: Vec::new(),
         }
     }
 
@@ -128,7 +131,9 @@ impl BandFiller {
         cells.touches = 0;
         path.for_each(top, |edge| cells.add(edge, top));
         let rows = ((path.rows.0 - top).max(0), (path.rows.1 - top).min(BAND_ROWS));
-        let words = ((path.left.max(0) >> 6) as usize, self.width / 64 + 1);
+        // Edges also change the two cells after the last pixel they touch.
+        let last = (path.columns.1.max(0) as usize + 2).min(self.width + 2);
+        let words = ((path.columns.0.max(0) >> 6) as usize, (last >> 6) + 1);
         (rows, words)
     }
 
@@ -149,13 +154,15 @@ impl BandFiller {
             this.gather(path, top, shared);
         }
         for row in rows.0..rows.1 {
-            let patches =
-                if shared >> row & 1 != 0 { this.resolve(row, words, rule) } else { vec![] };
+            this.patches.clear();
+            if (shared >> row) & 1 != 0 {
+                this.resolve(row, words, rule);
+            }
             let (cells, marks) = this.cells.row(row);
             sweep(simd, cells, marks, words, this.width, rule, &mut this.coverage, &mut this.runs);
-            for (column, value) in patches {
-                if let Some(lane) = this.coverage.get_mut(column) {
-                    *lane = u32::from(value);
+            for (column, value) in &this.patches {
+                if let Some(lane) = this.coverage.get_mut(*column) {
+                    *lane = u32::from(*value);
                 }
             }
             if !this.runs.is_empty() {
@@ -189,18 +196,17 @@ impl BandFiller {
         }
     }
 
-    /// The shared pixels of a row whose coverage is not what the integral says.
-    fn resolve(&mut self, row: i32, words: (usize, usize), rule: FillRule) -> Vec<(usize, u8)> {
-        let mut patches = Vec::new();
-        let (cells, _) = self.cells.row(row);
+    /// Finds the shared pixels of a row whose coverage is not what the integral says.
+    fn resolve(&mut self, row: i32, words: (usize, usize), rule: FillRule) {
+        let Self { cells, resolver, patches, .. } = self;
+        let (cells, _) = cells.row(row);
         let (mut at, mut sum) = (words.0 * 64, 0_i32);
         let integral = |column: usize| {
             sum = cells[at..=column].iter().fold(sum, |s, c| s.wrapping_add(*c));
             at = column + 1;
             sum
         };
-        self.resolver.row_coverage(row, rule, integral, |x, value| patches.push((x, value)));
-        patches
+        resolver.row_coverage(row, rule, integral, |x, value| patches.push((x, value)));
     }
 
     /// Fills one face of a partition: calls `add(row of the band, first pixel, one past the last, area)`
@@ -211,14 +217,15 @@ impl BandFiller {
         for row in rows.0..rows.1 {
             let (cells, marks) = self.cells.row(row);
             let mut sum = 0_i32;
-            for (x, cell) in cells[words.0 * 64..].iter_mut().enumerate() {
+            let end = self.width.max(words.0 * 64);
+            for (x, cell) in cells[words.0 * 64..].iter_mut().enumerate().take(end + 64) {
                 sum = sum.wrapping_add(std::mem::take(cell));
                 let area = sum.saturating_abs().min(ONE);
                 if area != 0 && words.0 * 64 + x < width {
                     add(row, words.0 * 64 + x, area);
                 }
             }
-            marks[words.0..].fill(Marks::default());
+            marks[words.0..words.1].fill(Marks::default());
         }
     }
 }

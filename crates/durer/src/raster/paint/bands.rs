@@ -108,9 +108,15 @@ impl<P: Space> Painter<P> {
     {
         let mut copy = self.spare.pop().unwrap_or_default();
         if let Some(base) = P::in_place(rows) {
-            base.iter_mut().for_each(|p| *p = p.premultiplied());
+            // Nothing painted over opaque pixels makes them less so.
+            let opaque = P::all_opaque(base);
+            if !opaque {
+                base.iter_mut().for_each(|p| *p = p.premultiplied());
+            }
             self.commands(level, commands, top, base);
-            base.iter_mut().for_each(|p| *p = p.straight());
+            if !opaque {
+                base.iter_mut().for_each(|p| *p = p.straight());
+            }
         } else {
             copy.clear();
             copy.extend(rows.iter().map(|c| P::load(*c)));

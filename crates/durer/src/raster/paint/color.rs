@@ -32,6 +32,10 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     }
     /// Whether nothing behind shines through.
     fn is_opaque(self) -> bool;
+    /// Whether that holds for all pixels.
+    fn all_opaque(pixels: &[Self]) -> bool {
+        pixels.iter().all(|p| p.is_opaque())
+    }
     /// This with a coverage 0 … 255.
     fn scaled(self, coverage: u8) -> Self;
     /// `self` over `below`, after `self` has been scaled by the coverage.
@@ -102,6 +106,10 @@ impl Space for Srgb {
     #[inline(always)]
     fn is_opaque(self) -> bool {
         self[3] == 255
+    }
+
+    fn all_opaque(pixels: &[Self]) -> bool {
+        pixels.iter().fold(u32::MAX, |all, p| all & u32::from_le_bytes(*p)) >> 24 == 255
     }
 
     #[inline(always)]

@@ -76,9 +76,9 @@ pub enum Paint {
     /// One colour.
     Color(Color),
     /// A colour ramp.
-    Gradient(Gradient),
+    Gradient(Arc<Gradient>),
     /// An image.
-    Pattern(Pattern),
+    Pattern(Arc<Pattern>),
 }
 
 impl From<Color> for Paint {
@@ -94,8 +94,26 @@ const RAMP: usize = 512;
 #[derive(Debug, Clone)]
 pub(crate) enum Source<P> {
     Solid(P),
-    Ramp { shape: Shape, paint_from_pixel: DAffine2, spread: Spread, ramp: Vec<P> },
-    Image { pattern: Pattern, image_from_pixel: DAffine2, opacity: f64 },
+    Ramp(Box<Ramp<P>>),
+    Image(Box<Image>),
+}
+
+/// A gradient made ready.
+#[derive(Debug, Clone)]
+pub(crate) struct Ramp<P> {
+    shape: Shape,
+    paint_from_pixel: DAffine2,
+    spread: Spread,
+    /// Colours at equal steps of the parameter.
+    colors: Vec<P>,
+}
+
+/// A pattern made ready.
+#[derive(Debug, Clone)]
+pub(crate) struct Image {
+    pattern: Arc<Pattern>,
+    image_from_pixel: DAffine2,
+    opacity: f64,
 }
 
 impl<P: Space> Source<P> {
@@ -108,7 +126,7 @@ impl<P: Space> Source<P> {
             Paint::Gradient(g) => Self::gradient(g, pixel_from_path * g.transform, opacity),
             Paint::Pattern(p) => match inverse(pixel_from_path * p.transform) {
                 Some(image_from_pixel) if !p.image.data().is_empty() => {
-                    Self::Image { pattern: p.clone(), image_from_pixel, opacity }
+                    Self::Image(Box::new(Image { pattern: p.clone(), image_from_pixel, opacity }))
                 }
                 _ => Self::Solid(P::CLEAR),
             },
@@ -129,8 +147,8 @@ impl<P: Space> Source<P> {
         };
         let at =
             |i: usize| premultiply_f(stop_color(&g.stops, i as f64 / (RAMP - 1) as f64), opacity);
-        let ramp = (0..RAMP).map(at).collect();
-        Self::Ramp { shape: g.shape, paint_from_pixel, spread: g.spread, ramp }
+        let colors = (0..RAMP).map(at).collect();
+        Self::Ramp(Box::new(Ramp { shape: g.shape, paint_from_pixel, spread: g.spread, colors }))
     }
 
     /// The colours of the pixels of row `y` from column `x` on.
@@ -138,20 +156,22 @@ impl<P: Space> Source<P> {
         let center = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         match self {
             Self::Solid(color) => out.fill(*color),
-            Self::Ramp { shape, paint_from_pixel, spread, ramp } => {
+            Self::Ramp(ramp) => {
+                let Ramp { shape, paint_from_pixel, spread, colors } = &**ramp;
                 let start = paint_from_pixel.transform_point2(center);
                 let step = paint_from_pixel.matrix2.x_axis;
                 for (i, pixel) in out.iter_mut().enumerate() {
                     *pixel = match parameter(shape, start + step * i as f64) {
                         Some(t) => {
                             let place = spread_over(*spread, t) * (RAMP - 1) as f64 + 0.5;
-                            ramp.get(place as usize).copied().unwrap_or(P::CLEAR)
+                            colors.get(place as usize).copied().unwrap_or(P::CLEAR)
                         }
                         None => P::CLEAR,
                     };
                 }
             }
-            Self::Image { pattern, image_from_pixel, opacity } => {
+            Self::Image(image) => {
+                let Image { pattern, image_from_pixel, opacity } = &**image;
                 let start = image_from_pixel.transform_point2(center);
                 let step = image_from_pixel.matrix2.x_axis;
                 for (i, pixel) in out.iter_mut().enumerate() {
