@@ -1,7 +1,10 @@
 //! Curves, and how they become chains of straight lines.
 
+pub mod b_spline;
+pub mod bezier;
 mod flatten;
 mod path;
+pub mod text;
 
 pub use flatten::{Contours, flatten, segments_for};
 pub use path::{Path, PathElement};

@@ -5,5 +5,9 @@
 pub mod coverage;
 pub mod fixed;
 pub mod interpolate;
+pub mod line;
 pub mod paint;
+pub mod polygon;
+pub mod seed_fill;
 pub mod triangle;
+pub mod triangulate;

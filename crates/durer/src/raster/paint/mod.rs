@@ -14,6 +14,7 @@ use fearless_simd::Level;
 
 use super::coverage::band::PathEdges;
 use super::coverage::{FillRule, Overlap, check_size};
+use super::line::wide::{Stroke, outline};
 use crate::curve::{Contours, Path, flatten};
 use crate::math::DAffine2;
 use crate::target::Pixels;
@@ -38,8 +39,8 @@ pub struct Options {
     pub blending: Blending,
     /// What happens where a path overlaps itself inside a pixel.
     pub overlap: Overlap,
-    /// Largest distance between a curve and its chords in pixels. 0.1 is invisible under
-    /// anti-aliasing; cost grows with its inverse square root.
+    /// Largest distance between a curve and its chords in pixels. 0.05 is at most
+    /// 13/255 of coverage where a curve bends most; cost grows with its inverse square root.
     pub tolerance: f64,
     /// Whether edges are smoothed; otherwise a pixel is painted when at least half of it is covered.
     pub anti_alias: bool,
@@ -135,6 +136,23 @@ impl Canvas {
     /// Fills a path; open contours are closed. `opacity` 0 … 1 multiplies the paint's own.
     pub fn fill(&mut self, path: &Path, rule: FillRule, paint: &Paint, opacity: f64) {
         self.fill_contours(&self.flattened(path), rule, paint, opacity);
+    }
+
+    /// Strokes a path: its outline is made in the path's space, so that a transform shapes the pen too.
+    ///
+    /// # Errors
+    /// What [`outline`] finds wrong with the style.
+    pub fn stroke(
+        &mut self,
+        path: &Path,
+        stroke: &Stroke,
+        paint: &Paint,
+        opacity: f64,
+    ) -> Result<()> {
+        let scale = self.transform.matrix2.determinant().abs().sqrt();
+        let tolerance = self.options.tolerance / scale.max(1e-9);
+        self.fill(&outline(path, stroke, tolerance)?, FillRule::NonZero, paint, opacity);
+        Ok(())
     }
 
     /// Fills contours that are already straight and in pixels; the paint still follows the transform.
