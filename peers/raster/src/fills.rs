@@ -26,11 +26,11 @@ fn all() -> Vec<Box<dyn Fn() -> Scene>> {
 fn durer(scene: &Scene, overlap: Overlap, target: &mut Pixels<[u8; 4]>) {
     let options = Options { overlap, ..Options::default() };
     let mut canvas = Canvas::new(scene.size, scene.size, options).unwrap();
+    canvas.clear([255; 4]);
     for s in &scene.shapes {
         let rule = if s.even_odd { FillRule::EvenOdd } else { FillRule::NonZero };
         canvas.fill_contours(&s.contours, rule, &Paint::Color(s.color), 1.0);
     }
-    target.data_mut().fill([255; 4]);
     canvas.render(target).unwrap();
 }
 
@@ -84,20 +84,28 @@ fn skia_paths(scene: &Scene) -> Vec<Option<tiny_skia::Path>> {
     scene.shapes.iter().map(path).collect()
 }
 
-pub fn skia(scene: &Scene, paths: &[Option<tiny_skia::Path>], smooth: bool, pixmap: &mut tiny_skia::Pixmap) {
+pub fn skia(
+    scene: &Scene,
+    paths: &[Option<tiny_skia::Path>],
+    smooth: bool,
+    pixmap: &mut tiny_skia::Pixmap,
+) {
     pixmap.fill(tiny_skia::Color::WHITE);
     for (s, p) in scene.shapes.iter().zip(paths) {
         let Some(p) = p else { continue };
         let mut paint = tiny_skia::Paint { anti_alias: smooth, ..Default::default() };
         let [r, g, b, a] = s.color;
         paint.set_color_rgba8(r, g, b, a);
-        let rule = if s.even_odd { tiny_skia::FillRule::EvenOdd } else { tiny_skia::FillRule::Winding };
+        let rule =
+            if s.even_odd { tiny_skia::FillRule::EvenOdd } else { tiny_skia::FillRule::Winding };
         pixmap.fill_path(p, &paint, rule, tiny_skia::Transform::identity(), None);
     }
 }
 
 pub fn anti_aliased(filter: &str) {
-    println!("| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads |");
+    println!(
+        "| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|");
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
@@ -121,21 +129,56 @@ pub fn anti_aliased(filter: &str) {
             rounds,
             &mut [
                 ("exact", Box::new(|| one.install(|| durer(&scene, Overlap::Exact, t0)))),
-                ("accumulated", Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, t1)))),
+                (
+                    "accumulated",
+                    Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, t1))),
+                ),
                 ("two", Box::new(|| two.install(|| durer(&scene, Overlap::Exact, t2)))),
-                ("vello", Box::new(|| vello(&scene, &bez, &mut context, &mut resources, &mut pixmap))),
-                ("tiny-skia", Box::new(|| if !slow { skia(&scene, &skia_paths, true, &mut skia_map) })),
+                (
+                    "vello",
+                    Box::new(|| vello(&scene, &bez, &mut context, &mut resources, &mut pixmap)),
+                ),
+                (
+                    "tiny-skia",
+                    Box::new(|| {
+                        if !slow {
+                            skia(&scene, &skia_paths, true, &mut skia_map)
+                        }
+                    }),
+                ),
             ],
         );
         println!(
             "| {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} |",
-            scene.name, m[0], m[1], m[2], m[3], m[4],
-            m[3] / m[0], m[3] / m[1], m[4] / m[0], m[0] / m[2]
+            scene.name,
+            m[0],
+            m[1],
+            m[2],
+            m[3],
+            m[4],
+            m[3] / m[0],
+            m[3] / m[1],
+            m[4] / m[0],
+            m[0] / m[2]
         );
         if std::env::var("PICTURES").is_ok() {
             let name = scene.name.replace(' ', "_");
-            image::save_buffer(format!("{name}_durer.png"), targets[0].data().as_flattened(), side, side, image::ColorType::Rgba8).unwrap();
-            image::save_buffer(format!("{name}_vello.png"), pixmap.data_as_u8_slice(), side, side, image::ColorType::Rgba8).unwrap();
+            image::save_buffer(
+                format!("{name}_durer.png"),
+                targets[0].data().as_flattened(),
+                side,
+                side,
+                image::ColorType::Rgba8,
+            )
+            .unwrap();
+            image::save_buffer(
+                format!("{name}_vello.png"),
+                pixmap.data_as_u8_slice(),
+                side,
+                side,
+                image::ColorType::Rgba8,
+            )
+            .unwrap();
         }
     }
 }

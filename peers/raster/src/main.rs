@@ -1,6 +1,7 @@
 //! Side by side with other rasterizers: same paths, same run, medians, alternating.
 
 mod fills;
+mod lines;
 mod scenes;
 
 use std::time::Instant;
@@ -31,6 +32,8 @@ fn main() {
     let filter = args.get(2).cloned().unwrap_or_default();
     match args.get(1).map(String::as_str) {
         Some("fill") => fills::anti_aliased(&filter),
-        _ => eprintln!("usage: peers-raster fill [scene]"),
+        Some("lines") => lines::aliased(),
+        Some("flood") => lines::floods(),
+        _ => eprintln!("usage: peers-raster fill [scene] | lines | flood"),
     }
 }

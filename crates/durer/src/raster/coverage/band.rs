@@ -90,11 +90,11 @@ impl PathEdges {
 
     /// Calls `f` with the edges of the band in the order of the path.
     #[inline(always)]
-    fn for_each(&self, top: i32, mut f: impl FnMut(&Edge)) {
+    fn for_each(&self, top: i32, f: impl FnMut(&Edge)) {
         match self.band(top) {
             None => self.edges.iter().for_each(f),
             Some(indices) => {
-                indices.iter().filter_map(|i| self.edges.get(*i as usize)).for_each(|e| f(e));
+                indices.iter().filter_map(|i| self.edges.get(*i as usize)).for_each(f);
             }
         }
     }

@@ -70,6 +70,7 @@ struct Painter<P> {
     width: usize,
     exact: bool,
     anti_alias: bool,
+    background: Option<Color>,
     /// A layer for each open group.
     layers: Vec<Vec<P>>,
     /// Coverage of the open clip paths, each multiplied with those below it.
@@ -88,6 +89,7 @@ impl<P: Space> Painter<P> {
             width,
             exact: canvas.options.overlap == Overlap::Exact,
             anti_alias: canvas.options.anti_alias,
+            background: canvas.background,
             layers: Vec::new(),
             clips: Vec::new(),
             coverage: vec![0; width],
@@ -107,9 +109,12 @@ impl<P: Space> Painter<P> {
         P: 'a,
     {
         let mut copy = self.spare.pop().unwrap_or_default();
+        if let Some(color) = self.background {
+            rows.fill(color);
+        }
         if let Some(base) = P::in_place(rows) {
             // Nothing painted over opaque pixels makes them less so.
-            let opaque = P::all_opaque(base);
+            let opaque = self.background.map_or_else(|| P::all_opaque(base), |c| c[3] == 255);
             if !opaque {
                 base.iter_mut().for_each(|p| *p = p.premultiplied());
             }

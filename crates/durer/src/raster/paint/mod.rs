@@ -112,6 +112,8 @@ pub struct Canvas {
     height: u32,
     options: Options,
     transform: DAffine2,
+    /// What every pixel is set to first; `None` keeps the target's.
+    background: Option<Color>,
     commands: Vec<Command>,
     /// Clips and groups that are open, in order of opening: `true` for a group.
     open: Vec<bool>,
@@ -125,7 +127,16 @@ impl Canvas {
     pub fn new(width: u32, height: u32, options: Options) -> Result<Self> {
         check_size(width, height)?;
         let transform = DAffine2::IDENTITY;
-        Ok(Self { width, height, options, transform, commands: vec![], open: vec![] })
+        let (background, commands, open) = (None, vec![], vec![]);
+        Ok(Self { width, height, options, transform, background, commands, open })
+    }
+
+    /// Forgets what has been painted so far and sets every pixel to one colour instead, cheaper than
+    /// filling the target before.
+    pub fn clear(&mut self, color: Color) {
+        self.background = Some(color);
+        self.commands.clear();
+        self.open.clear();
     }
 
     /// Sets the map from the space of paths and paints to pixels, for what follows.
