@@ -5,10 +5,10 @@
 pub mod coverage;
 pub mod fixed;
 pub mod interpolate;
-pub mod span;
 pub mod line;
 pub mod paint;
 pub mod polygon;
 pub mod seed_fill;
+pub mod span;
 pub mod triangle;
 pub mod triangulate;
