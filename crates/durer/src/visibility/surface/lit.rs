@@ -256,16 +256,17 @@ impl<'a> Lit<'a> {
         colors: &mut [[f32; 8]; 3],
     ) {
         let mut batch = Batch::default();
-        let mut mine = [false; 8];
+        let mut mine = [0; 8];
         let parallel = self.parallel_view;
         for i in 0..8 {
             if done[i] || items[i].wrapping_sub(info.first_item) >= info.count {
                 continue;
             }
-            let mut lanes = [false; 8];
+            let mut lanes = [0; 8];
             for j in i..8 {
-                lanes[j] = items[j] == items[i];
-                done[j] |= lanes[j];
+                let same = items[j] == items[i];
+                done[j] |= same;
+                lanes[j] = u32::from(same).wrapping_neg();
                 mine[j] |= lanes[j];
             }
             let t = self.triangles.get(items[i], info.run);
@@ -273,9 +274,7 @@ impl<'a> Lit<'a> {
         }
         let shaded = shade_x8(simd, &batch, info.material, self.shared.lights, info.shading);
         for (to, from) in colors.iter_mut().zip(&shaded) {
-            for i in 0..8 {
-                to[i] = if mine[i] { from[i] } else { to[i] };
-            }
+            fill_axis(*from, &mine, to);
         }
     }
 
@@ -290,13 +289,7 @@ impl<'a> Lit<'a> {
         queue.first_item = info.first_item;
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, info.run);
-        let w = t.weights(x, y, [0.0; 2]);
-        let position = blend(&t.positions, w);
-        let lane = queue.count;
-        set_lane(&mut queue.batch.position, lane, position);
-        set_lane(&mut queue.batch.view, lane, parallel.unwrap_or(-position));
-        set_lane(&mut queue.batch.normal, lane, blend(&t.normals, w));
-        set_lane(&mut queue.batch.geometric_normal, lane, t.face_normal);
+        set_point(&mut queue.batch, queue.count, t, [x, y], parallel);
         queue.count += 1;
         true
     }
@@ -322,6 +315,24 @@ pub struct Queue {
     pub count: usize,
     /// The first item of their run.
     first_item: u32,
+}
+
+/// Puts the point of a triangle at a pixel into a lane of a batch; the bits are those of
+/// [`points_x8`].
+#[inline(always)]
+fn set_point(
+    batch: &mut Batch,
+    lane: usize,
+    t: &VisibleTriangle,
+    [x, y]: [i32; 2],
+    parallel_view: Option<Vec3>,
+) {
+    let w = t.weights(x, y, [0.0; 2]);
+    let position = blend(&t.positions, w);
+    set_lane(&mut batch.position, lane, position);
+    set_lane(&mut batch.view, lane, parallel_view.unwrap_or(-position));
+    set_lane(&mut batch.normal, lane, blend(&t.normals, w));
+    set_lane(&mut batch.geometric_normal, lane, t.face_normal);
 }
 
 #[inline(always)]
@@ -353,7 +364,7 @@ fn points_x8<S: Simd>(
 
 /// Copies the chosen lanes of points into a batch.
 #[inline(always)]
-fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &[bool; 8], batch: &mut Batch) {
+fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &Lanes, batch: &mut Batch) {
     fill_vector(&points.position, lanes, &mut batch.position);
     fill_vector(&points.view, lanes, &mut batch.view);
     fill_vector(&points.normal, lanes, &mut batch.normal);
@@ -361,18 +372,23 @@ fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &[bool; 8], batch: &mut
 }
 
 #[inline(always)]
-fn fill_vector<S: Simd>(from: &Vec3Lane<f32x8<S>>, lanes: &[bool; 8], to: &mut [[f32; 8]; 3]) {
+fn fill_vector<S: Simd>(from: &Vec3Lane<f32x8<S>>, lanes: &Lanes, to: &mut [[f32; 8]; 3]) {
     fill_axis(from.x.into(), lanes, &mut to[0]);
     fill_axis(from.y.into(), lanes, &mut to[1]);
     fill_axis(from.z.into(), lanes, &mut to[2]);
 }
 
 #[inline(always)]
-fn fill_axis(from: [f32; 8], lanes: &[bool; 8], to: &mut [f32; 8]) {
+fn fill_axis(from: [f32; 8], lanes: &Lanes, to: &mut [f32; 8]) {
+    // Bits instead of a choice, which would become a slow masked store.
     for i in 0..8 {
-        to[i] = if lanes[i] { from[i] } else { to[i] };
+        let old = to[i].to_bits();
+        to[i] = f32::from_bits(old ^ ((old ^ from[i].to_bits()) & lanes[i]));
     }
 }
+
+/// All bits set in the lanes that are meant.
+type Lanes = [u32; 8];
 
 /// Texture coordinates at a pixel, and their change to the pixels beside and below it.
 fn tex_coord(corners: &[Vec2; 3], w: Weights, right: Weights, down: Weights) -> TexCoord {
