@@ -1,1 +1,121 @@
-//! Polygon clipping: one file per algorithm.
+//! Polygons: their shape types, and the clippers that take and give them.
+//!
+//! `overlay()` is the robust door: any rings in, valid polygons out.
+
+mod shapes;
+
+pub use shapes::{Polygon, Ring, Shapes, signed_area};
+
+/// Which points a set of closed curves encloses, told by the winding number w around the point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FillRule {
+    /// w is odd.
+    #[default]
+    EvenOdd,
+    /// w ≠ 0.
+    NonZero,
+    /// w > 0: inside curves that run counter-clockwise (y up).
+    Positive,
+    /// w < 0: inside curves that run clockwise (y up).
+    Negative,
+}
+
+impl FillRule {
+    /// Every rule, in the order of the documentation.
+    pub const ALL: &'static [Self] =
+        &[Self::EvenOdd, Self::NonZero, Self::Positive, Self::Negative];
+
+    /// The name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::EvenOdd => "even-odd",
+            Self::NonZero => "non-zero",
+            Self::Positive => "positive",
+            Self::Negative => "negative",
+        }
+    }
+
+    /// Whether a point of this winding number is inside.
+    #[inline]
+    pub const fn fills(self, winding: i32) -> bool {
+        match self {
+            Self::EvenOdd => winding & 1 != 0,
+            Self::NonZero => winding != 0,
+            Self::Positive => winding > 0,
+            Self::Negative => winding < 0,
+        }
+    }
+}
+
+/// What to make of two regions, the subject A and the clip B.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BooleanOp {
+    /// A ∩ B: what is in both.
+    #[default]
+    Intersection,
+    /// A ∪ B: what is in one or both.
+    Union,
+    /// A ∖ B: what is in the subject only.
+    Difference,
+    /// A △ B: what is in exactly one.
+    Xor,
+}
+
+impl BooleanOp {
+    /// Every operation, in the order of the documentation.
+    pub const ALL: &'static [Self] =
+        &[Self::Intersection, Self::Union, Self::Difference, Self::Xor];
+
+    /// The name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Intersection => "intersection",
+            Self::Union => "union",
+            Self::Difference => "difference",
+            Self::Xor => "xor",
+        }
+    }
+
+    /// Whether a point belongs to the result, from whether it belongs to subject and clip.
+    #[inline]
+    pub const fn keeps(self, subject: bool, clip: bool) -> bool {
+        match self {
+            Self::Intersection => subject && clip,
+            Self::Union => subject || clip,
+            Self::Difference => subject && !clip,
+            Self::Xor => subject != clip,
+        }
+    }
+}
+
+impl std::fmt::Display for FillRule {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::fmt::Display for BooleanOp {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for FillRule {
+    type Err = crate::Error;
+
+    fn from_str(s: &str) -> crate::Result<Self> {
+        let expected = "even-odd, non-zero, positive or negative";
+        let found = Self::ALL.iter().copied().find(|r| r.name() == s);
+        found.ok_or_else(|| crate::Error::parameter("fill rule", s, expected))
+    }
+}
+
+impl std::str::FromStr for BooleanOp {
+    type Err = crate::Error;
+
+    fn from_str(s: &str) -> crate::Result<Self> {
+        let expected = "intersection, union, difference or xor";
+        let found = Self::ALL.iter().copied().find(|op| op.name() == s);
+        found.ok_or_else(|| crate::Error::parameter("operation", s, expected))
+    }
+}

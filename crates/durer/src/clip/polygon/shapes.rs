@@ -1,0 +1,190 @@
+//! Polygons in one flat buffer: points, where each ring ends, where each polygon ends.
+
+use crate::math::{DVec2, Rect};
+
+/// A closed curve of straight edges; the edge from the last point to the first is implied.
+///
+/// Units and space are the caller's; orientation is told with y up.
+pub type Ring = [DVec2];
+
+/// The shoelace sum: the signed area of a ring, positive where it runs counter-clockwise
+/// (y up), in squared units of its coordinates.
+///
+/// Taken relative to the first point, so that small rings far from the origin keep their digits.
+pub fn signed_area(ring: &Ring) -> f64 {
+    let Some((&origin, rest)) = ring.split_first() else { return 0.0 };
+    let twice: f64 = rest.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum();
+    twice * 0.5
+}
+
+/// Any number of polygons, each an outer ring with its holes, in one flat buffer.
+///
+/// What is read from a file may be a mere bag of rings: then each ring is its own polygon.
+/// Rings are open: the first point is not repeated at the end.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Shapes {
+    points: Vec<DVec2>,
+    ring_ends: Vec<usize>,
+    polygon_ends: Vec<usize>,
+}
+
+impl Shapes {
+    /// No polygon.
+    pub const fn new() -> Self {
+        Self { points: Vec::new(), ring_ends: Vec::new(), polygon_ends: Vec::new() }
+    }
+
+    /// Each ring as a polygon of its own.
+    pub fn from_rings<R: AsRef<Ring>>(rings: impl IntoIterator<Item = R>) -> Self {
+        let mut shapes = Self::new();
+        for ring in rings {
+            shapes.push_ring(ring.as_ref().iter().copied());
+            shapes.end_polygon();
+        }
+        shapes
+    }
+
+    /// Adds a ring to the polygon being built: first its outer ring, then its holes.
+    pub fn push_ring(&mut self, ring: impl IntoIterator<Item = DVec2>) {
+        self.points.extend(ring);
+        self.ring_ends.push(self.points.len());
+    }
+
+    /// Ends the polygon being built; does nothing where it has no ring.
+    pub fn end_polygon(&mut self) {
+        if self.polygon_ends.last().copied().unwrap_or(0) < self.ring_ends.len() {
+            self.polygon_ends.push(self.ring_ends.len());
+        }
+    }
+
+    /// All points, ring after ring.
+    pub fn points(&self) -> &[DVec2] {
+        &self.points
+    }
+
+    /// All points, to be moved in place.
+    pub fn points_mut(&mut self) -> &mut [DVec2] {
+        &mut self.points
+    }
+
+    /// How many rings there are, over all polygons.
+    pub fn ring_count(&self) -> usize {
+        self.ring_ends.len()
+    }
+
+    /// All rings, polygon after polygon.
+    pub fn rings(&self) -> impl ExactSizeIterator<Item = &Ring> {
+        (0..self.ring_ends.len()).map(|i| self.ring(i))
+    }
+
+    /// The indices into [`Shapes::points`] of a ring; empty where there is no such ring.
+    pub fn ring_range(&self, index: usize) -> std::ops::Range<usize> {
+        let Some(&end) = self.ring_ends.get(index) else { return 0..0 };
+        let start = index.checked_sub(1).and_then(|i| self.ring_ends.get(i)).copied();
+        start.unwrap_or(0)..end
+    }
+
+    /// A ring by its index over all polygons; empty where there is none.
+    pub fn ring(&self, index: usize) -> &Ring {
+        self.points.get(self.ring_range(index)).unwrap_or_default()
+    }
+
+    /// How many polygons there are; rings after the last [`Shapes::end_polygon`] are in none.
+    pub fn polygon_count(&self) -> usize {
+        self.polygon_ends.len()
+    }
+
+    /// All polygons.
+    pub fn polygons(&self) -> impl ExactSizeIterator<Item = Polygon<'_>> {
+        let starts = std::iter::once(0).chain(self.polygon_ends.iter().copied());
+        let pairs: Vec<_> = starts.zip(self.polygon_ends.iter().copied()).collect();
+        pairs.into_iter().map(move |(start, end)| Polygon { shapes: self, start, end })
+    }
+
+    /// Whether there is no point at all.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// The sum of the signed areas of all rings: the area of the region where the shapes are valid.
+    pub fn area(&self) -> f64 {
+        self.rings().map(signed_area).sum()
+    }
+
+    /// The smallest rectangle around all finite points; `None` where there is none.
+    pub fn bounds(&self) -> Option<Rect> {
+        Rect::around(self.points.iter().copied())
+    }
+
+    /// Adds all polygons of another collection.
+    pub fn append(&mut self, other: &Self) {
+        for polygon in other.polygons() {
+            for ring in polygon.rings() {
+                self.push_ring(ring.iter().copied());
+            }
+            self.end_polygon();
+        }
+    }
+}
+
+/// One polygon of [`Shapes`]: an outer ring and its holes.
+#[derive(Debug, Clone, Copy)]
+pub struct Polygon<'a> {
+    shapes: &'a Shapes,
+    start: usize,
+    end: usize,
+}
+
+impl<'a> Polygon<'a> {
+    /// The outer ring.
+    pub fn outer(&self) -> &'a Ring {
+        self.shapes.ring(self.start)
+    }
+
+    /// The holes.
+    pub fn holes(&self) -> impl ExactSizeIterator<Item = &'a Ring> {
+        let shapes = self.shapes;
+        (self.start + 1..self.end).map(move |i| shapes.ring(i))
+    }
+
+    /// The outer ring, then the holes.
+    pub fn rings(&self) -> impl ExactSizeIterator<Item = &'a Ring> {
+        let shapes = self.shapes;
+        (self.start..self.end).map(move |i| shapes.ring(i))
+    }
+
+    /// The indices of its rings, as [`Shapes::ring`] takes them.
+    pub fn ring_indices(&self) -> std::ops::Range<usize> {
+        self.start..self.end
+    }
+
+    /// The sum of the signed areas of its rings.
+    pub fn area(&self) -> f64 {
+        self.rings().map(signed_area).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(x: f64, size: f64) -> [DVec2; 4] {
+        [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)].map(|(a, b)| DVec2::new(x + a, x + b))
+    }
+
+    #[test]
+    fn flat_buffer_keeps_rings_and_polygons() {
+        let mut shapes = Shapes::new();
+        shapes.push_ring(square(0.0, 4.0));
+        shapes.push_ring(square(1.0, 1.0).into_iter().rev());
+        shapes.end_polygon();
+        shapes.push_ring(square(9.0, 1.0));
+        shapes.end_polygon();
+        shapes.end_polygon();
+        assert_eq!((shapes.polygon_count(), shapes.ring_count()), (2, 3));
+        let areas: Vec<f64> = shapes.polygons().map(|p| p.area()).collect();
+        assert_eq!(areas, [15.0, 1.0]);
+        assert_eq!(shapes.polygons().next().map(|p| p.holes().len()), Some(1));
+        assert_eq!(shapes.ring(7).len(), 0);
+    }
+}
