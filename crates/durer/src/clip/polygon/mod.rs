@@ -2,8 +2,10 @@
 //!
 //! `overlay()` is the robust door: any rings in, valid polygons out.
 
+pub mod overlay;
 mod shapes;
 
+pub use overlay::overlay;
 pub use shapes::{Polygon, Ring, Shapes, signed_area};
 
 /// Which points a set of closed curves encloses, told by the winding number w around the point.
