@@ -1,4 +1,5 @@
 //! `overlay()`: laws, hard cases, and validity by an independent judge.
 
 pub mod cases;
+mod laws;
 pub mod validity;

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use super::grid::{Block, Grid, Leaf};
+use super::grid::Grid;
 use super::lattice::{Coord, Point, Segment, cross};
 use super::noding::Noding;
 
@@ -294,19 +294,18 @@ impl<C: Coord> Search<'_, C> {
         let p = graph.nodes[node as usize];
         let (x, mut y) = (p.x.i64(), p.y.i64());
         let mut best = None;
-        while let Some(leaf) = self.grid.locate(x, y) {
-            self.highest(graph, leaf, p, &take, &mut best);
-            let bottom: Block = leaf.block;
+        while let Some((block, items)) = self.grid.locate(x, y) {
+            self.highest(graph, items, p, &take, &mut best);
             let reached = best.is_some_and(|e: usize| {
                 let edge = graph.edges[e];
-                let floor = Point { x: p.x, y: C::from_i64(bottom.min.1) };
+                let floor = Point { x: p.x, y: C::from_i64(block.min.1) };
                 let (a, b) = (graph.nodes[edge.low as usize], graph.nodes[edge.high as usize]);
                 cross(a, b, floor) <= C::Wide::default()
             });
             if reached {
                 break;
             }
-            y = bottom.min.1 - 1;
+            y = block.min.1 - 1;
         }
         best
     }
@@ -314,12 +313,12 @@ impl<C: Coord> Search<'_, C> {
     fn highest(
         &self,
         graph: &Arrangement<C>,
-        leaf: &Leaf,
+        items: &[u32],
         p: Point<C>,
         take: &impl Fn(usize) -> bool,
         best: &mut Option<usize>,
     ) {
-        for &i in self.grid.items(leaf) {
+        for &i in items {
             let s = &self.segments[i as usize];
             if s.a.x >= p.x || s.b.x < p.x || s.y_range().0 > p.y {
                 continue;

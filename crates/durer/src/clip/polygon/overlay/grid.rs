@@ -13,6 +13,10 @@ const SMALL_LEAF: usize = 24;
 /// sixteenths; long parallel segments do not come apart in squares.
 const GROWTH: usize = 40;
 
+/// Segments per square if they were spread evenly; curves leave most squares empty, and the full
+/// ones are divided again.
+const PER_SQUARE: f64 = 8.0;
+
 /// The sides of a cell are at least 2³ pixels, so that the margin of a pixel stays a margin.
 const SMALLEST_SHIFT: u32 = 3;
 
@@ -38,7 +42,11 @@ impl Block {
     /// Whether the pixel lies in the block.
     #[inline(always)]
     pub fn contains<C: Coord>(&self, p: Point<C>) -> bool {
-        let (x, y) = (p.x.i64(), p.y.i64());
+        self.holds(p.x.i64(), p.y.i64())
+    }
+
+    #[inline(always)]
+    fn holds(&self, x: i64, y: i64) -> bool {
         self.min.0 <= x && x <= self.max.0 && self.min.1 <= y && y <= self.max.1
     }
 }
@@ -54,6 +62,8 @@ pub struct Leaf {
 
 #[derive(Debug, Clone, Copy)]
 enum Node {
+    /// No segment comes near.
+    Empty(Block),
     Leaf(u32),
     Split(Frame, u32),
 }
@@ -88,8 +98,8 @@ impl Frame {
             })
             .sum();
         let count = items.len() as f64;
-        // About three segments per square, none much shorter than a mean segment.
-        let side = (width * height / count * 2.0).sqrt().max(total / count * 0.8);
+        // A few segments per square, none much shorter than a mean segment.
+        let side = (width * height / count * PER_SQUARE).sqrt().max(total / count * 0.8);
         let side = side.max(width.max(height) / count);
         let shift = (side.log2_floor()).max(SMALLEST_SHIFT);
         let columns = ((block.max.0 - block.min.0) >> shift) as usize + 1;
@@ -133,6 +143,12 @@ impl Frame {
         }
     }
 
+    /// The square of a pixel of the block.
+    fn index(&self, x: i64, y: i64) -> usize {
+        let (c, r) = ((x - self.block.min.0) >> self.shift, (y - self.block.min.1) >> self.shift);
+        r as usize * self.columns + c as usize
+    }
+
     fn square(&self, index: usize) -> Block {
         let (r, c) = ((index / self.columns) as i64, (index % self.columns) as i64);
         let min = (self.block.min.0 + (c << self.shift), self.block.min.1 + (r << self.shift));
@@ -173,6 +189,28 @@ impl Log2Floor for f64 {
     }
 }
 
+/// The order in which segments that start close together have close indices, so that all that
+/// follows finds its data in the cache.
+pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Vec<u32> {
+    let items: Vec<u32> = (0..segments.len() as u32).collect();
+    let Some(frame) = Frame::new(block, segments, &items) else { return items };
+    let square = |s: &Segment<C>| frame.index(s.a.x.i64(), s.a.y.i64());
+    let mut starts = vec![0u32; frame.columns * frame.rows + 1];
+    for s in segments {
+        starts[square(s) + 1] += 1;
+    }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut order = vec![0; segments.len()];
+    for (i, s) in segments.iter().enumerate() {
+        let next = &mut starts[square(s)];
+        order[*next as usize] = i as u32;
+        *next += 1;
+    }
+    order
+}
+
 impl Grid {
     /// Distributes the segments; `block` must hold them all.
     pub fn new<C: Coord>(segments: &[Segment<C>], block: Block) -> Self {
@@ -191,6 +229,10 @@ impl Grid {
         items: &[u32],
         top: bool,
     ) {
+        if items.is_empty() {
+            self.nodes[node] = Node::Empty(block);
+            return;
+        }
         let frame =
             (items.len() > SMALL_LEAF).then(|| Frame::new(block, segments, items)).flatten();
         let parts = frame.map(|frame| (frame, frame.distribute(segments, items)));
@@ -198,7 +240,7 @@ impl Grid {
             Some((frame, (starts, lists))) if top || lists.len() * 16 <= items.len() * GROWTH => {
                 let first = self.nodes.len();
                 self.nodes[node] = Node::Split(frame, first as u32);
-                self.nodes.resize(first + starts.len() - 1, Node::Leaf(0));
+                self.nodes.resize(first + starts.len() - 1, Node::Empty(block));
                 for square in 0..starts.len() - 1 {
                     let list = &lists[starts[square] as usize..starts[square + 1] as usize];
                     self.divide(segments, first + square, frame.square(square), list, false);
@@ -223,24 +265,22 @@ impl Grid {
         &self.items[leaf.start as usize..leaf.end as usize]
     }
 
-    /// The leaf of a pixel; `None` outside the block.
-    pub fn locate(&self, x: i64, y: i64) -> Option<&Leaf> {
+    /// The smallest block around a pixel, and the segments that come within a pixel of it; `None`
+    /// outside the grid.
+    pub fn locate(&self, x: i64, y: i64) -> Option<(Block, &[u32])> {
         let mut node = *self.nodes.first()?;
         loop {
             match node {
+                Node::Empty(block) => return block.holds(x, y).then_some((block, &[])),
                 Node::Leaf(index) => {
                     let leaf = self.leaves.get(index as usize)?;
-                    let (min, max) = (leaf.block.min, leaf.block.max);
-                    let inside = min.0 <= x && x <= max.0 && min.1 <= y && y <= max.1;
-                    return inside.then_some(leaf);
+                    return leaf.block.holds(x, y).then(|| (leaf.block, self.items(leaf)));
                 }
                 Node::Split(frame, first) => {
-                    let (dx, dy) = (x - frame.block.min.0, y - frame.block.min.1);
-                    if dx < 0 || dy < 0 || x > frame.block.max.0 || y > frame.block.max.1 {
+                    if !frame.block.holds(x, y) {
                         return None;
                     }
-                    let (c, r) = ((dx >> frame.shift) as usize, (dy >> frame.shift) as usize);
-                    node = self.nodes[first as usize + r * frame.columns + c];
+                    node = self.nodes[first as usize + frame.index(x, y)];
                 }
             }
         }

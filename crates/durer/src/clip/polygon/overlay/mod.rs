@@ -52,12 +52,14 @@ pub struct Options {
     /// possible, at about twice the time. Powers of two are best: other sizes make grid points that
     /// have to be rounded to f64.
     pub grid: Option<f64>,
+    /// Whether [`Output::origins`] is wanted.
+    pub origins: bool,
 }
 
 impl Options {
     /// The same fill rule for both.
     pub fn with_rule(rule: FillRule) -> Self {
-        Self { subject_rule: rule, clip_rule: rule, grid: None }
+        Self { subject_rule: rule, clip_rule: rule, ..Self::default() }
     }
 }
 
@@ -143,7 +145,7 @@ pub struct Output {
     /// Valid polygons: outer rings run counter-clockwise (y up), holes clockwise; every ring starts
     /// with its smallest point (by x, then y), polygons and holes are sorted by their points.
     pub shapes: Shapes,
-    /// The origin of each of the shapes' points.
+    /// The origin of each of the shapes' points, if [`Options::origins`] asked for them.
     pub origins: Vec<Origin>,
     /// The size of a grid cell.
     pub cell: f64,
@@ -270,6 +272,9 @@ impl Job<'_> {
         let Some(block) = Block::around(&segments) else {
             return Output { cell: self.lattice.cell(), ..Output::default() };
         };
+        let order = grid::spatial_order(&segments, block);
+        let segments: Vec<Segment<C>> = order.iter().map(|&i| segments[i as usize]).collect();
+        let sources: Vec<Source> = order.iter().map(|&i| sources[i as usize]).collect();
         let grid = Grid::new(&segments, block);
         let noding = noding::node(&segments, &grid);
         let mut graph = Arrangement::new(&noding, |i| sources[i].step());
@@ -324,7 +329,7 @@ impl Job<'_> {
         t: &mut impl Tracer<Step>,
     ) -> Output {
         let mut shapes = Shapes::new();
-        let mut origins = Vec::with_capacity(rings.nodes.len());
+        let mut origins = Vec::new();
         let origin = |n: u32| self.origin(n, noding, segments, sources);
         for polygon in &rings.polygons {
             for (k, &ring) in polygon.iter().enumerate() {
@@ -332,7 +337,9 @@ impl Job<'_> {
                 let points =
                     || nodes.iter().map(|&n| self.lattice.unsnap(noding.nodes[n as usize]));
                 shapes.push_ring(points());
-                origins.extend(nodes.iter().map(|&n| origin(n)));
+                if self.options.origins {
+                    origins.extend(nodes.iter().map(|&n| origin(n)));
+                }
                 t.step(|| Step::Ring { points: points().collect(), hole: k > 0 });
             }
             shapes.end_polygon();

@@ -113,8 +113,8 @@ impl<C: Coord> Workbench<C> {
         self.ends(items, leaf);
         if items.len() > CROWD {
             self.strips.build(&self.segments, leaf.block.min.0, leaf.block.max.0);
-            let (strips, pixels) = (&mut self.strips, &mut self.pixels);
-            strips.crossings(&self.segments, |i, j, p| push(pixels, leaf, items, (i, j), p));
+            let pixels = &mut self.pixels;
+            self.strips.crossings(|i, j, p| push(pixels, leaf, items, (i, j), p));
         } else {
             self.crossings(items, leaf);
         }

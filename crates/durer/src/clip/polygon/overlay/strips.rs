@@ -18,7 +18,7 @@ pub struct Strips<C> {
     strips: Vec<Strip<C>>,
     /// Indices of segments: of each strip its stairs, from low to high, and of the last ones all.
     lists: Vec<u32>,
-    /// (stair range or pair) candidates are tested as they are found; kept for `crossings`.
+    /// Pairs that cross, and where.
     found: Vec<(u32, u32, Point<C>)>,
 }
 
@@ -44,11 +44,7 @@ impl<C: Coord> Strips<C> {
     }
 
     /// All pairs that cross, with their pixels; some pairs more than once.
-    pub fn crossings(
-        &mut self,
-        _segments: &[Segment<C>],
-        mut f: impl FnMut(usize, usize, Point<C>),
-    ) {
+    pub fn crossings(&self, mut f: impl FnMut(usize, usize, Point<C>)) {
         for &(i, j, p) in &self.found {
             f(i as usize, j as usize, p);
         }
@@ -197,4 +193,51 @@ fn middle<C: Coord>(segments: &[Segment<C>], left: i64, right: i64, list: &[u32]
     }
     let half = ends.len() / 2;
     *ends.select_nth_unstable(half).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spread(seed: &mut u64, limit: i64) -> i64 {
+        *seed =
+            seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 33) as i64 % limit
+    }
+
+    #[test]
+    fn strips_find_what_all_pairs_find() {
+        for (round, limit) in [(1u64, 40), (2, 300), (3, 1 << 28)] {
+            let mut seed = round;
+            let mut point = |near: i64| {
+                Point::<i32>::new(near + spread(&mut seed, limit / 4), spread(&mut seed, limit))
+            };
+            let segments: Vec<Segment<i32>> = (0..400)
+                .map(|i| {
+                    let (a, b) = (point(0), point(if i % 3 == 0 { 0 } else { 3 * limit / 4 }));
+                    if a < b { Segment { a, b } } else { Segment { a: b, b: a } }
+                })
+                .filter(|s| s.a != s.b)
+                .collect();
+            let mut strips = Strips::default();
+            strips.build(&segments, 0, limit);
+            let mut found = Vec::new();
+            strips.crossings(|_, _, p| found.push(p));
+            let pairs = (0..segments.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+            let mut expected: Vec<_> =
+                pairs.filter_map(|(i, j)| segments[i].crossing(&segments[j])).collect();
+            for list in [&mut found, &mut expected] {
+                list.sort_unstable();
+                list.dedup();
+            }
+            assert_eq!(found, expected);
+            for &p in expected.iter().take(500) {
+                let mut hits = Vec::new();
+                strips.hits(&segments, p, |i| hits.push(i));
+                hits.sort_unstable();
+                let all = (0..segments.len()).filter(|&i| segments[i].hits_pixel(p));
+                assert_eq!(hits, all.collect::<Vec<_>>());
+            }
+        }
+    }
 }
