@@ -34,9 +34,24 @@ fn twice_area(ring: &[P]) -> i128 {
     (1..ring.len().saturating_sub(1)).map(|i| cross(ring[0], ring[i], ring[i + 1])).sum()
 }
 
+/// Whether the boxes around two rings have no point in common.
+fn apart(a: &[P], b: &[P]) -> bool {
+    let range = |ring: &[P], f: fn(&P) -> i128| {
+        let (low, high) = (ring.iter().map(f).min(), ring.iter().map(f).max());
+        (low.unwrap_or(0), high.unwrap_or(0))
+    };
+    [|p: &P| p.0, |p: &P| p.1].into_iter().any(|f| {
+        let ((a, b), (c, d)) = (range(a, f), range(b, f));
+        b < c || d < a
+    })
+}
+
 /// Where two rings touch; an error where they cross or share more than points.
 fn touches(a: &[P], b: &[P], same: bool) -> Result<Vec<P>, String> {
     let mut found = Vec::new();
+    if !same && apart(a, b) {
+        return Ok(found);
+    }
     for i in 0..a.len() {
         let (p, q) = (a[i], a[(i + 1) % a.len()]);
         for j in if same { i + 1..b.len() } else { 0..b.len() } {
@@ -77,6 +92,9 @@ fn touches(a: &[P], b: &[P], same: bool) -> Result<Vec<P>, String> {
 
 /// Whether `inner` lies within `outer`, where they touch at most in points.
 fn within(inner: &[P], outer: &[P]) -> bool {
+    if apart(inner, outer) {
+        return false;
+    }
     let twice = |p: &P| (2 * p.0, 2 * p.1);
     let doubled: Vec<P> = outer.iter().map(twice).collect();
     let corners = inner.iter().map(twice);
