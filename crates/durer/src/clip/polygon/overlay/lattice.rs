@@ -282,12 +282,12 @@ impl Lattice {
         self.reach <= C::LIMIT as f64
     }
 
-    /// The grid point nearest to `p`, ties to even.
+    /// The grid point whose pixel holds `p`.
     #[inline]
     pub fn snap<C: Coord>(&self, p: DVec2) -> Point<C> {
         let q = ((p - self.origin) / self.cell)
             .clamp(DVec2::splat(-self.reach), DVec2::splat(self.reach));
-        Point::new(q.x.round_ties_even() as i64, q.y.round_ties_even() as i64)
+        Point::new((q.x + 0.5).floor() as i64, (q.y + 0.5).floor() as i64)
     }
 
     /// The grid point in the caller's coordinates.
