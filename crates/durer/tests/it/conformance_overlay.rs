@@ -58,7 +58,9 @@ fn clipper2_polygons_are_valid_and_exact() {
 #[test]
 fn clipper2_polygons_within_its_own_tolerances() {
     let Some(text) = shared("geo2d/clipper2/Polygons.txt") else { return };
-    for case in ClipperCase::all(&text) {
+    let Some(exact) = shared("geo2d/exact/clipper2_polygons_exact_area.jsonl") else { return };
+    let (mut odd_areas, mut odd_counts) = (Vec::new(), Vec::new());
+    for (case, exact) in ClipperCase::all(&text).iter().zip(exact_areas(&exact)) {
         let options = Options::with_rule(case.rule);
         let name = format!("case {}", case.number);
         let out = run(&case.subject, &case.clip, case.op, &options);
@@ -73,11 +75,13 @@ fn clipper2_polygons_within_its_own_tolerances() {
         // Clipper2 may join rings that touch, which OGC forbids: its count lies between ours with
         // touching rings taken as one, and ours.
         let whole = Options { grid: Some(1.0), ..options };
-        let rounded = checked(&name, &case.subject, &case.clip, case.op, &whole).shapes;
-        let (joined, count) = (joined_rings(&rounded) as i64, rounded.ring_count() as i64);
-        if case.count > 0 {
-            let range = joined - count_within..=count + count_within;
-            if !range.contains(&case.count) { eprintln!("COUNT {name}: {range:?} {}", case.count); }
+        let rounded = checked(&name, &case.subject, &case.clip, case.op, &whole);
+        let fits = |shapes: &Shapes| {
+            let (joined, count) = (joined_rings(shapes) as i64, shapes.ring_count() as i64);
+            (joined - count_within..=count + count_within).contains(&case.count)
+        };
+        if case.count > 0 && !fits(&out.shapes) && !fits(&rounded.shapes) {
+            odd_counts.push(n);
         }
         let area_within = match n {
             19 | 22..=24 => 0.5,
@@ -89,10 +93,18 @@ fn clipper2_polygons_within_its_own_tolerances() {
             _ => 0.01,
         };
         if case.area > 0 {
-            let off = (area - case.area as f64).abs() / case.area as f64;
-            assert!(off <= area_within, "{name}: {area} {}", case.area);
+            let off = |area: f64| (area - case.area as f64).abs() / case.area as f64;
+            if off(exact) > area_within {
+                odd_areas.push(n);
+                continue;
+            }
+            assert!(off(area) <= area_within, "{name}: {area} {}", case.area);
         }
     }
+    // The stored areas of these are further from the exact areas than the tolerance allows.
+    assert_eq!(odd_areas, [44]);
+    // Slivers thinner than the unit grid, which truncation joined or parted.
+    assert_eq!(odd_counts, [0usize; 0]);
 }
 
 /// How many rings there are if those that share a vertex count as one.
@@ -193,8 +205,8 @@ fn martinez_fixtures() {
             let out = checked(&path, &a, &b, op, &options);
             let within = 2.0 * bound(&a, &b, out.cell);
             // The files themselves say of some results that they are wrong; GEOS agrees with ours.
-            let wrong =
-                feature["properties"]["comment"].as_str().is_some_and(|c| c.contains("wrong"));
+            let comment = feature["properties"]["comment"].as_str().unwrap_or_default();
+            let wrong = ["wrong", "broken", "for diff as well"].iter().any(|w| comment.contains(w));
             if wrong {
                 continue;
             }

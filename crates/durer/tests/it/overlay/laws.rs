@@ -32,15 +32,15 @@ fn ring(size: usize, grid: i32) -> impl Strategy<Value = Vec<DVec2>> {
     prop::collection::vec(point, 0..size)
 }
 
-fn soup(rings: usize, size: usize, grid: i32) -> impl Strategy<Value = Shapes> {
+pub fn soup(rings: usize, size: usize, grid: i32) -> impl Strategy<Value = Shapes> {
     prop::collection::vec(ring(size, grid), 0..rings).prop_map(Shapes::from_rings)
 }
 
-fn rule() -> impl Strategy<Value = FillRule> {
+pub fn rule() -> impl Strategy<Value = FillRule> {
     prop::sample::select(FillRule::ALL)
 }
 
-fn op() -> impl Strategy<Value = BooleanOp> {
+pub fn op() -> impl Strategy<Value = BooleanOp> {
     prop::sample::select(BooleanOp::ALL)
 }
 

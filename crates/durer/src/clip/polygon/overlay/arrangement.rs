@@ -197,6 +197,35 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         }
     }
 
+    /// Finds the winding numbers by a sweep from left to right with a list of the edges it cuts,
+    /// from low to high; `f` is told the list's length at each node.
+    pub fn sweep(&mut self, mut f: impl FnMut(Point<C>, usize)) {
+        let nodes = self.nodes;
+        let mut order: Vec<u32> = (0..nodes.len() as u32).collect();
+        order.sort_unstable_by_key(|&n| nodes[n as usize]);
+        let mut active: Vec<u32> = Vec::new();
+        for n in order {
+            let p = nodes[n as usize];
+            let side = |e: u32| {
+                let edge = &self.edges[e as usize];
+                cross(nodes[edge.low as usize], nodes[edge.high as usize], p)
+            };
+            // Edges strictly below the node come first, then those that end at it.
+            let start = active.partition_point(|&e| side(e) > C::Wide::default());
+            let end = start + self.ins(n).len();
+            let mut winding = match start.checked_sub(1).and_then(|i| active.get(i)) {
+                Some(&below) => self.edges[below as usize].left(),
+                None => Winding::default(),
+            };
+            for e in self.outs(n) {
+                self.edges[e].right = winding;
+                winding = self.edges[e].left();
+            }
+            active.splice(start..end.min(active.len()), self.outs(n).map(|e| e as u32));
+            f(p, active.len());
+        }
+    }
+
     /// Sets windings relative to some face of each connected part. Of each part: its first node
     /// and the relative winding to the left of that; and the part of each node.
     fn walk(&mut self) -> (Vec<(u32, Winding)>, Vec<u32>) {

@@ -76,6 +76,13 @@ pub enum Step {
         /// The centre of the cell.
         at: DVec2,
     },
+    /// The sweep line of [`super::vatti`] passed a node.
+    Sweep {
+        /// The node.
+        at: DVec2,
+        /// How many edges the sweep line cuts just after it.
+        active: usize,
+    },
     /// A ring of the result.
     Ring {
         /// Its points.
@@ -202,10 +209,30 @@ pub fn overlay(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Output> {
+    solve(subject, clip, op, options, Winder::Parts, t)
+}
+
+/// How winding numbers are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Winder {
+    /// By connected parts of the graph.
+    Parts,
+    /// By a sweep with a list of active edges.
+    Sweep,
+}
+
+pub(super) fn solve(
+    subject: &Shapes,
+    clip: &Shapes,
+    op: BooleanOp,
+    options: &Options,
+    winder: Winder,
+    t: &mut impl Tracer<Step>,
+) -> Result<Output> {
     let Some(bounds) = check(subject, clip)? else { return Ok(Output::default()) };
     let lattice = Lattice::new(bounds, options.grid)?;
     t.step(|| Step::Grid { cell: lattice.cell() });
-    let job = Job { subject, clip, op, options, lattice: &lattice };
+    let job = Job { subject, clip, op, options, lattice: &lattice, winder };
     if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
 }
 
@@ -263,6 +290,7 @@ struct Job<'a> {
     op: BooleanOp,
     options: &'a Options,
     lattice: &'a Lattice,
+    winder: Winder,
 }
 
 impl Job<'_> {
@@ -279,7 +307,15 @@ impl Job<'_> {
         let noding = noding::node(&segments, &grid);
         let mut graph = Arrangement::new(&noding, |i| sources[i].step());
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
-        graph.wind(&search);
+        match self.winder {
+            Winder::Parts => graph.wind(&search),
+            Winder::Sweep => {
+                let mut tell = |p, active| {
+                    t.step(|| Step::Sweep { at: self.lattice.unsnap(p), active });
+                };
+                graph.sweep(&mut tell);
+            }
+        }
         let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
         let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
         let rings = rings::link(&graph, &search, inside);

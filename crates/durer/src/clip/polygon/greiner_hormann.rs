@@ -1,0 +1,186 @@
+//! Greiner–Hormann: walk forwards on entering the other polygon, backwards on leaving it.
+//!
+//! G. Greiner, K. Hormann, *Efficient clipping of arbitrary polygons*, ACM Transactions on Graphics
+//! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019.
+
+use super::cyclic::{Lists, link, without_spikes};
+use super::locate::{Place, group, locate};
+use super::{BooleanOp, Shapes};
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::trace::Tracer;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "greiner-hormann",
+    title: "Greiner–Hormann",
+    authors: "G. Greiner, K. Hormann; E. L. Foster, K. Hormann, R. T. Popa",
+    year: 1998,
+    source: "Efficient clipping of arbitrary polygons, ACM Transactions on Graphics 17(2)",
+    class: Class::ObjectSpace,
+    cost: "O(n m) time for n and m edges, O(n + m + k) memory for k crossings",
+    limits: "polygons whose rings are simple and do not touch one another; \
+             crossings are rounded to f64",
+};
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {}
+
+/// What happens, step by step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// The borders cross here; the subject enters or leaves the clip.
+    Crossing {
+        /// Where.
+        at: DVec2,
+        /// Whether the subject enters.
+        entry: bool,
+    },
+    /// A ring of the result is complete.
+    Ring {
+        /// Its points, in the order of the walk.
+        points: Vec<DVec2>,
+    },
+}
+
+/// Rebuilds the result from its steps.
+pub fn replay(steps: &[Step]) -> Shapes {
+    let rings = steps.iter().filter_map(|step| match step {
+        Step::Ring { points } => Some(points.clone()),
+        Step::Crossing { .. } => None,
+    });
+    group(rings.collect())
+}
+
+/// Clips polygons with polygons; both with holes, by the even-odd rule.
+///
+/// ```
+/// use durer::clip::polygon::{BooleanOp, Shapes, greiner_hormann::greiner_hormann};
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let square = |x: f64| [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(|(u, v)| DVec2::new(x + u, x + v));
+/// let (a, b) = (Shapes::from_rings([square(0.0)]), Shapes::from_rings([square(1.0)]));
+/// let union = greiner_hormann(&a, &b, BooleanOp::Union, &Default::default(), &mut NoTrace);
+/// assert_eq!(union.area(), 7.0);
+/// ```
+pub fn greiner_hormann(
+    subject: &Shapes,
+    clip: &Shapes,
+    op: BooleanOp,
+    _options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Shapes {
+    let mut rings = Vec::new();
+    match op {
+        BooleanOp::Xor => {
+            walk(subject, clip, BooleanOp::Difference, &mut rings, t);
+            walk(clip, subject, BooleanOp::Difference, &mut rings, t);
+        }
+        _ => walk(subject, clip, op, &mut rings, t),
+    }
+    group(rings)
+}
+
+fn walk(
+    subject: &Shapes,
+    clip: &Shapes,
+    op: BooleanOp,
+    rings: &mut Vec<Vec<DVec2>>,
+    t: &mut impl Tracer<Step>,
+) {
+    let linked = link(subject, clip);
+    let mut entries = [
+        entries(&linked.subject, &linked.clip_rings),
+        entries(&linked.clip, &linked.subject_rings),
+    ];
+    for (vertex, &entry) in linked.subject.vertices.iter().zip(&entries[0]) {
+        if vertex.crosses {
+            t.step(|| Step::Crossing { at: vertex.at, entry });
+        }
+    }
+    // Union walks outside both, difference outside the clip and inside the subject.
+    let inverted = [op != BooleanOp::Intersection, op == BooleanOp::Union];
+    for (list, inverted) in entries.iter_mut().zip(inverted) {
+        list.iter_mut().for_each(|entry| *entry ^= inverted);
+    }
+    let lists = [&linked.subject, &linked.clip];
+    let mut visited = vec![false; linked.subject.vertices.len()];
+    for start in 0..visited.len() {
+        if linked.subject.vertices[start].crosses && !visited[start] {
+            emit(trace(lists, &entries, start, &mut visited), rings, t);
+        }
+    }
+    for ring in linked.whole_rings(op) {
+        emit(ring, rings, t);
+    }
+}
+
+/// Takes a ring without its spikes; rings that are nothing but spikes are left out.
+fn emit(points: Vec<DVec2>, rings: &mut Vec<Vec<DVec2>>, t: &mut impl Tracer<Step>) {
+    let points = without_spikes(&points);
+    if !points.is_empty() {
+        t.step(|| Step::Ring { points: points.clone() });
+        rings.push(points);
+    }
+}
+
+/// For each vertex that crosses: whether its list enters the other's region there. The first of a
+/// ring is told by a point on the ring, the others alternate.
+fn entries(lists: &Lists, other: &[Vec<DVec2>]) -> Vec<bool> {
+    let mut entries = vec![false; lists.vertices.len()];
+    for &start in &lists.starts {
+        let ring: Vec<usize> = lists.ring(start).collect();
+        let Some(first) = ring.iter().position(|&v| lists.vertices[v].crosses) else { continue };
+        // Between this crossing and the one before, some piece is off the other's border.
+        let before = ring[..first].iter().rev().chain(ring[first..].iter().rev());
+        let mut pieces = Vec::new();
+        for &v in before {
+            pieces.push((lists.vertices[v].at + lists.vertices[lists.vertices[v].next].at) * 0.5);
+            if lists.vertices[v].crosses {
+                break;
+            }
+        }
+        let places = pieces.iter().map(|&p| locate(other.iter().map(Vec::as_slice), p));
+        let inside = places.into_iter().find(|&p| p != Place::Border) == Some(Place::Inside);
+        let mut entry = !inside;
+        for &v in ring[first..].iter().chain(&ring[..first]) {
+            if lists.vertices[v].crosses {
+                entries[v] = entry;
+                entry = !entry;
+            }
+        }
+    }
+    entries
+}
+
+/// Walks from a crossing of the subject until it comes back.
+fn trace(
+    lists: [&Lists; 2],
+    entries: &[Vec<bool>; 2],
+    start: usize,
+    visited: &mut [bool],
+) -> Vec<DVec2> {
+    let mut points = Vec::new();
+    let (mut k, mut v) = (0, start);
+    loop {
+        let subject = if k == 0 { Some(v) } else { lists[1].vertices[v].twin };
+        if let Some(seen) = subject.and_then(|s| visited.get_mut(s)) {
+            if std::mem::replace(seen, true) {
+                return points;
+            }
+        }
+        let forward = entries[k][v];
+        loop {
+            points.push(lists[k].vertices[v].at);
+            let vertex = &lists[k].vertices[v];
+            v = if forward { vertex.next } else { vertex.previous };
+            if lists[k].vertices[v].crosses {
+                break;
+            }
+        }
+        let Some(twin) = lists[k].vertices[v].twin else { return points };
+        (k, v) = (1 - k, twin);
+    }
+}
