@@ -5,7 +5,7 @@
 //! and R. T. Popa (*Clipping simple polygons with degenerate intersections*, Computers & Graphics:
 //! X 2, 2019): where the lists run together, they cross only if they part to the other side.
 
-use super::locate::{Place, locate, on_segment};
+use super::locate::{Place, group, locate, on_segment};
 use super::{BooleanOp, Ring, Shapes, signed_area};
 use crate::math::{DVec2, Orientation, orient2d};
 
@@ -117,7 +117,7 @@ fn tidy(shapes: &Shapes) -> Vec<Vec<DVec2>> {
         ring
     });
     let rings = rings.filter(|r| r.len() > 2 && signed_area(r) != 0.0).collect();
-    let grouped = super::locate::group(rings);
+    let grouped = group(rings);
     grouped.rings().map(<[DVec2]>::to_vec).collect()
 }
 
@@ -330,8 +330,16 @@ fn same_side(lists: &Lists, start: usize, other: &Lists) -> bool {
     matches!(twins, (Some(a), Some(b)) if other.vertices[a].next == b)
 }
 
+/// Polygons of the rings walked, without spikes; `tell` hears of every ring that is left.
+pub(super) fn finish(found: Vec<Vec<DVec2>>, mut tell: impl FnMut(&Ring)) -> Shapes {
+    let mut rings: Vec<Vec<DVec2>> = found.iter().map(|ring| without_spikes(ring)).collect();
+    rings.retain(|ring| !ring.is_empty());
+    rings.iter().for_each(|ring| tell(ring));
+    group(rings)
+}
+
 /// A ring without the spikes that walks along common edges leave behind.
-pub(super) fn without_spikes(ring: &Ring) -> Vec<DVec2> {
+fn without_spikes(ring: &Ring) -> Vec<DVec2> {
     let mut out: Vec<DVec2> = Vec::with_capacity(ring.len());
     for &p in ring {
         out.push(p);

@@ -3,7 +3,7 @@
 //! G. Greiner, K. Hormann, *Efficient clipping of arbitrary polygons*, ACM Transactions on Graphics
 //! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019.
 
-use super::cyclic::{Lists, link, without_spikes};
+use super::cyclic::{Lists, finish, link};
 use super::locate::{Place, group, locate};
 use super::{BooleanOp, Shapes};
 use crate::info::{Class, Info};
@@ -41,16 +41,23 @@ pub enum Step {
     Ring {
         /// Its points, in the order of the walk.
         points: Vec<DVec2>,
+        /// Whether it is of the second half of an xor: clip without subject.
+        swapped: bool,
     },
 }
 
 /// Rebuilds the result from its steps.
 pub fn replay(steps: &[Step]) -> Shapes {
-    let rings = steps.iter().filter_map(|step| match step {
-        Step::Ring { points } => Some(points.clone()),
-        Step::Crossing { .. } => None,
-    });
-    group(rings.collect())
+    let half = |second: bool| {
+        let rings = steps.iter().filter_map(move |step| match step {
+            Step::Ring { points, swapped } if *swapped == second => Some(points.clone()),
+            _ => None,
+        });
+        group(rings.collect())
+    };
+    let mut shapes = half(false);
+    shapes.append(&half(true));
+    shapes
 }
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
@@ -72,24 +79,21 @@ pub fn greiner_hormann(
     _options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Shapes {
-    let mut rings = Vec::new();
-    match op {
-        BooleanOp::Xor => {
-            walk(subject, clip, BooleanOp::Difference, &mut rings, t);
-            walk(clip, subject, BooleanOp::Difference, &mut rings, t);
-        }
-        _ => walk(subject, clip, op, &mut rings, t),
+    if op != BooleanOp::Xor {
+        return walk(subject, clip, op, false, t);
     }
-    group(rings)
+    let mut shapes = walk(subject, clip, BooleanOp::Difference, false, t);
+    shapes.append(&walk(clip, subject, BooleanOp::Difference, true, t));
+    shapes
 }
 
 fn walk(
     subject: &Shapes,
     clip: &Shapes,
     op: BooleanOp,
-    rings: &mut Vec<Vec<DVec2>>,
+    swapped: bool,
     t: &mut impl Tracer<Step>,
-) {
+) -> Shapes {
     let linked = link(subject, clip);
     let mut entries = [
         entries(&linked.subject, &linked.clip_rings),
@@ -107,23 +111,14 @@ fn walk(
     }
     let lists = [&linked.subject, &linked.clip];
     let mut visited = vec![false; linked.subject.vertices.len()];
+    let mut found = Vec::new();
     for start in 0..visited.len() {
         if linked.subject.vertices[start].crosses && !visited[start] {
-            emit(trace(lists, &entries, start, &mut visited), rings, t);
+            found.push(trace(lists, &entries, start, &mut visited));
         }
     }
-    for ring in linked.whole_rings(op) {
-        emit(ring, rings, t);
-    }
-}
-
-/// Takes a ring without its spikes; rings that are nothing but spikes are left out.
-fn emit(points: Vec<DVec2>, rings: &mut Vec<Vec<DVec2>>, t: &mut impl Tracer<Step>) {
-    let points = without_spikes(&points);
-    if !points.is_empty() {
-        t.step(|| Step::Ring { points: points.clone() });
-        rings.push(points);
-    }
+    found.extend(linked.whole_rings(op));
+    finish(found, |points| t.step(|| Step::Ring { points: points.to_vec(), swapped }))
 }
 
 /// For each vertex that crosses: whether its list enters the other's region there. The first of a

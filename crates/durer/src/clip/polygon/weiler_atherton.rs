@@ -5,7 +5,7 @@
 //! (SIGGRAPH) 11(2), 1977. We tell touching vertices and common edges from crossings by the rule of
 //! Foster, Hormann and Popa (2019), and give union and difference by the same lists.
 
-use super::cyclic::{Linked, link, without_spikes};
+use super::cyclic::{Linked, finish, link};
 use super::locate::group;
 use super::{BooleanOp, Shapes};
 use crate::info::{Class, Info};
@@ -43,16 +43,23 @@ pub enum Step {
     Ring {
         /// Its points, in the order of the walk.
         points: Vec<DVec2>,
+        /// Whether it is of the second half of an xor: clip without subject.
+        swapped: bool,
     },
 }
 
 /// Rebuilds the result from its steps.
 pub fn replay(steps: &[Step]) -> Shapes {
-    let rings = steps.iter().filter_map(|step| match step {
-        Step::Ring { points } => Some(points.clone()),
-        Step::Turn { .. } => None,
-    });
-    group(rings.collect())
+    let half = |second: bool| {
+        let rings = steps.iter().filter_map(move |step| match step {
+            Step::Ring { points, swapped } if *swapped == second => Some(points.clone()),
+            _ => None,
+        });
+        group(rings.collect())
+    };
+    let mut shapes = half(false);
+    shapes.append(&half(true));
+    shapes
 }
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
@@ -74,24 +81,21 @@ pub fn weiler_atherton(
     _options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Shapes {
-    let mut rings = Vec::new();
-    match op {
-        BooleanOp::Xor => {
-            walk(subject, clip, BooleanOp::Difference, &mut rings, t);
-            walk(clip, subject, BooleanOp::Difference, &mut rings, t);
-        }
-        _ => walk(subject, clip, op, &mut rings, t),
+    if op != BooleanOp::Xor {
+        return walk(subject, clip, op, false, t);
     }
-    group(rings)
+    let mut shapes = walk(subject, clip, BooleanOp::Difference, false, t);
+    shapes.append(&walk(clip, subject, BooleanOp::Difference, true, t));
+    shapes
 }
 
 fn walk(
     subject: &Shapes,
     clip: &Shapes,
     op: BooleanOp,
-    rings: &mut Vec<Vec<DVec2>>,
+    swapped: bool,
     t: &mut impl Tracer<Step>,
-) {
+) -> Shapes {
     let linked = link(subject, clip);
     // Intersection follows the subject where it has come in, the others where it has gone out.
     let starts_in = op == BooleanOp::Intersection;
@@ -103,13 +107,8 @@ fn walk(
             found.push(trace(&linked, op, start, &mut visited, t));
         }
     }
-    for points in found.into_iter().chain(linked.whole_rings(op)) {
-        let points = without_spikes(&points);
-        if !points.is_empty() {
-            t.step(|| Step::Ring { points: points.clone() });
-            rings.push(points);
-        }
-    }
+    found.extend(linked.whole_rings(op));
+    finish(found, |points| t.step(|| Step::Ring { points: points.to_vec(), swapped }))
 }
 
 /// Walks from a crossing of the subject until it comes back. Orientation is the same all around,
