@@ -161,10 +161,9 @@ fn trace(
     let (mut k, mut v) = (0, start);
     loop {
         let subject = if k == 0 { Some(v) } else { lists[1].vertices[v].twin };
-        if let Some(seen) = subject.and_then(|s| visited.get_mut(s)) {
-            if std::mem::replace(seen, true) {
-                return points;
-            }
+        let seen = subject.and_then(|s| visited.get_mut(s));
+        if seen.is_some_and(|seen| std::mem::replace(seen, true)) {
+            return points;
         }
         let forward = entries[k][v];
         loop {

@@ -59,7 +59,7 @@ proptest! {
     fn all_algorithms_give_the_same_region(a in star(), b in star()) {
         for &op in BooleanOp::ALL {
             let expected = PolygonClipper::Overlay.clip(&a, &b, op).expect("finite");
-            for &clipper in PolygonClipper::ALL {
+            for clipper in [PolygonClipper::WeilerAtherton, PolygonClipper::GreinerHormann] {
                 let region = clipper.clip(&a, &b, op).expect("finite");
                 let (area, other) = (region.area(), expected.area());
                 prop_assert!((area - other).abs() < 1e-4, "{clipper} {op}: {area} {other}");

@@ -56,7 +56,7 @@ fn moved(shapes: &Shapes, f: impl Fn(DVec2) -> DVec2) -> Shapes {
 fn star(n: usize, turn: f64, x: f64) -> Shapes {
     let point = |i: usize| {
         let t = (i as f64 + turn) / n as f64;
-        let r = if i % 2 == 0 { 1.0 + (i % 7) as f64 * 0.01 } else { 0.2 };
+        let r = if i.is_multiple_of(2) { 1.0 + (i % 7) as f64 * 0.01 } else { 0.2 };
         // A square's border instead of a circle's: no sine is needed.
         let s = 4.0 * t.rem_euclid(1.0);
         let (side, along) = (s.floor() as i32, s.fract() * 2.0 - 1.0);

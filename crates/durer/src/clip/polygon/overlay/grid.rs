@@ -17,6 +17,10 @@ const GROWTH: usize = 40;
 /// ones are divided again.
 const PER_SQUARE: f64 = 8.0;
 
+/// The first division has at most this many times more squares than segments call for, so that
+/// empty squares cost little.
+const SPARSEST: f64 = 1.0 / 16.0;
+
 /// The sides of a cell are at least 2³ pixels, so that the margin of a pixel stays a margin.
 const SMALLEST_SHIFT: u32 = 3;
 
@@ -60,12 +64,15 @@ pub struct Leaf {
     end: u32,
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Node {
+/// A square, in one word, as most of them may be empty: a leaf, a division, or nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Node(u32);
+
+impl Node {
     /// No segment comes near.
-    Empty(Block),
-    Leaf(u32),
-    Split(Frame, u32),
+    const EMPTY: Self = Self(u32::MAX);
+    /// Below this, the word is the index of a leaf; from here on, that of a division.
+    const FIRST_SPLIT: u32 = 1 << 31;
 }
 
 /// How a block is divided into squares.
@@ -81,12 +88,19 @@ struct Frame {
 #[derive(Debug, Default)]
 pub struct Grid {
     nodes: Vec<Node>,
+    /// Divided blocks, and where the nodes of their squares start.
+    splits: Vec<(Frame, u32)>,
     leaves: Vec<Leaf>,
     items: Vec<u32>,
 }
 
 impl Frame {
-    fn new<C: Coord>(block: Block, segments: &[Segment<C>], items: &[u32]) -> Option<Self> {
+    fn new<C: Coord>(
+        block: Block,
+        segments: &[Segment<C>],
+        items: &[u32],
+        occupied: f64,
+    ) -> Option<Self> {
         let width = (block.max.0 - block.min.0 + 1) as f64;
         let height = (block.max.1 - block.min.1 + 1) as f64;
         let total: f64 = items
@@ -99,7 +113,7 @@ impl Frame {
             .sum();
         let count = items.len() as f64;
         // A few segments per square, none much shorter than a mean segment.
-        let side = (width * height / count * PER_SQUARE).sqrt().max(total / count * 0.8);
+        let side = (width * height * occupied / count * PER_SQUARE).sqrt().max(total / count * 0.8);
         let side = side.max(width.max(height) / count);
         let shift = (side.log2_floor()).max(SMALLEST_SHIFT);
         let columns = ((block.max.0 - block.min.0) >> shift) as usize + 1;
@@ -191,14 +205,17 @@ impl Log2Floor for f64 {
 
 /// The order in which segments that start close together have close indices, so that all that
 /// follows finds its data in the cache.
-pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Vec<u32> {
+///
+/// Also the share of squares of a rough grid in which a segment starts: small for curves.
+pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> (Vec<u32>, f64) {
     let items: Vec<u32> = (0..segments.len() as u32).collect();
-    let Some(frame) = Frame::new(block, segments, &items) else { return items };
+    let Some(frame) = Frame::new(block, segments, &items, 1.0) else { return (items, 1.0) };
     let square = |s: &Segment<C>| frame.index(s.a.x.i64(), s.a.y.i64());
     let mut starts = vec![0u32; frame.columns * frame.rows + 1];
     for s in segments {
         starts[square(s) + 1] += 1;
     }
+    let filled = starts.iter().filter(|&&count| count > 0).count();
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
     }
@@ -208,16 +225,16 @@ pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Vec<u32
         order[*next as usize] = i as u32;
         *next += 1;
     }
-    order
+    (order, (filled as f64 / (starts.len() - 1) as f64).max(SPARSEST))
 }
 
 impl Grid {
     /// Distributes the segments; `block` must hold them all.
-    pub fn new<C: Coord>(segments: &[Segment<C>], block: Block) -> Self {
+    pub fn new<C: Coord>(segments: &[Segment<C>], block: Block, occupied: f64) -> Self {
         let mut grid = Self::default();
         let items: Vec<u32> = (0..segments.len() as u32).collect();
-        grid.nodes.push(Node::Leaf(0));
-        grid.divide(segments, 0, block, &items, true);
+        grid.nodes.push(Node::EMPTY);
+        grid.divide(segments, 0, block, &items, Some(occupied));
         grid
     }
 
@@ -227,27 +244,31 @@ impl Grid {
         node: usize,
         block: Block,
         items: &[u32],
-        top: bool,
+        top: Option<f64>,
     ) {
-        if items.is_empty() {
-            self.nodes[node] = Node::Empty(block);
-            return;
-        }
-        let frame =
-            (items.len() > SMALL_LEAF).then(|| Frame::new(block, segments, items)).flatten();
+        let occupied = top.unwrap_or(1.0);
+        let frame = (items.len() > SMALL_LEAF)
+            .then(|| Frame::new(block, segments, items, occupied))
+            .flatten();
         let parts = frame.map(|frame| (frame, frame.distribute(segments, items)));
         match parts {
-            Some((frame, (starts, lists))) if top || lists.len() * 16 <= items.len() * GROWTH => {
+            Some((frame, (starts, lists)))
+                if top.is_some() || lists.len() * 16 <= items.len() * GROWTH =>
+            {
                 let first = self.nodes.len();
-                self.nodes[node] = Node::Split(frame, first as u32);
-                self.nodes.resize(first + starts.len() - 1, Node::Empty(block));
+                self.nodes[node] = Node(Node::FIRST_SPLIT + self.splits.len() as u32);
+                self.splits.push((frame, first as u32));
+                self.nodes.resize(first + starts.len() - 1, Node::EMPTY);
                 for square in 0..starts.len() - 1 {
                     let list = &lists[starts[square] as usize..starts[square + 1] as usize];
-                    self.divide(segments, first + square, frame.square(square), list, false);
+                    if list.is_empty() {
+                        continue;
+                    }
+                    self.divide(segments, first + square, frame.square(square), list, None);
                 }
             }
             _ => {
-                self.nodes[node] = Node::Leaf(self.leaves.len() as u32);
+                self.nodes[node] = Node(self.leaves.len() as u32);
                 let start = self.items.len() as u32;
                 self.items.extend_from_slice(items);
                 self.leaves.push(Leaf { block, start, end: self.items.len() as u32 });
@@ -269,20 +290,22 @@ impl Grid {
     /// outside the grid.
     pub fn locate(&self, x: i64, y: i64) -> Option<(Block, &[u32])> {
         let mut node = *self.nodes.first()?;
+        let mut block = None;
         loop {
-            match node {
-                Node::Empty(block) => return block.holds(x, y).then_some((block, &[])),
-                Node::Leaf(index) => {
-                    let leaf = self.leaves.get(index as usize)?;
-                    return leaf.block.holds(x, y).then(|| (leaf.block, self.items(leaf)));
-                }
-                Node::Split(frame, first) => {
-                    if !frame.block.holds(x, y) {
-                        return None;
-                    }
-                    node = self.nodes[first as usize + frame.index(x, y)];
-                }
+            if node == Node::EMPTY {
+                return block.map(|block| (block, &[][..]));
             }
+            if node.0 < Node::FIRST_SPLIT {
+                let leaf = self.leaves.get(node.0 as usize)?;
+                return leaf.block.holds(x, y).then(|| (leaf.block, self.items(leaf)));
+            }
+            let (frame, first) = self.splits.get((node.0 - Node::FIRST_SPLIT) as usize)?;
+            if !frame.block.holds(x, y) {
+                return None;
+            }
+            let square = frame.index(x, y);
+            block = Some(frame.square(square));
+            node = self.nodes[*first as usize + square];
         }
     }
 }

@@ -15,7 +15,7 @@ mod parallel;
 mod rings;
 mod strips;
 
-use super::{BooleanOp, FillRule, Shapes};
+use super::{BooleanOp, FillRule, Ring, Shapes};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
@@ -232,7 +232,8 @@ pub(super) fn solve(
     let Some(bounds) = check(subject, clip)? else { return Ok(Output::default()) };
     let lattice = Lattice::new(bounds, options.grid)?;
     t.step(|| Step::Grid { cell: lattice.cell() });
-    let job = Job { subject, clip, op, options, lattice: &lattice, winder };
+    let bounds = [subject.bounds(), clip.bounds()];
+    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds };
     if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
 }
 
@@ -291,6 +292,8 @@ struct Job<'a> {
     options: &'a Options,
     lattice: &'a Lattice,
     winder: Winder,
+    /// The boxes around subject and clip.
+    bounds: [Option<Rect>; 2],
 }
 
 impl Job<'_> {
@@ -300,10 +303,10 @@ impl Job<'_> {
         let Some(block) = Block::around(&segments) else {
             return Output { cell: self.lattice.cell(), ..Output::default() };
         };
-        let order = grid::spatial_order(&segments, block);
+        let (order, occupied) = grid::spatial_order(&segments, block);
         let segments: Vec<Segment<C>> = order.iter().map(|&i| segments[i as usize]).collect();
         let sources: Vec<Source> = order.iter().map(|&i| sources[i as usize]).collect();
-        let grid = Grid::new(&segments, block);
+        let grid = Grid::new(&segments, block, occupied);
         let noding = noding::node(&segments, &grid);
         let mut graph = Arrangement::new(&noding, |i| sources[i].step());
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
@@ -332,6 +335,9 @@ impl Job<'_> {
                 let range = shapes.ring_range(ring);
                 let points = &shapes.points()[range.clone()];
                 let Some(&last) = points.last() else { continue };
+                if !self.matters(operand, points) {
+                    continue;
+                }
                 let (mut from, mut index) = (self.lattice.snap::<C>(last), range.end - 1);
                 for (i, &p) in range.zip(points) {
                     let to = self.lattice.snap(p);
@@ -346,6 +352,18 @@ impl Job<'_> {
             }
         }
         (segments, sources)
+    }
+
+    /// Whether a ring can reach the result, told by bounding boxes alone: outside its box a ring
+    /// encloses nothing, and an intersection lies in both boxes, a difference in the subject's.
+    fn matters(&self, operand: Operand, ring: &Ring) -> bool {
+        let other = match (self.op, operand) {
+            (BooleanOp::Intersection, Operand::Subject) => self.bounds[1],
+            (BooleanOp::Intersection | BooleanOp::Difference, Operand::Clip) => self.bounds[0],
+            _ => return true,
+        };
+        let around = Rect::around(ring.iter().copied());
+        matches!((around, other), (Some(a), Some(b)) if a.overlaps(&b))
     }
 
     fn report<C: Coord>(&self, noding: &Noding<C>, t: &mut impl Tracer<Step>) {
