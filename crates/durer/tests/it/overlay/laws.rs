@@ -199,6 +199,25 @@ fn stars_take_the_strips_and_stay_valid() {
 }
 
 #[test]
+fn threads_change_nothing() {
+    let cell = |i: usize| DVec2::new((i * 7919 % 4093) as f64, (i * 104_729 % 4099) as f64);
+    let ring = |i: usize| {
+        let size = 5.0 + (i % 13) as f64 * 2.0;
+        [(0.0, 0.0), (1.0, 0.3), (0.7, 1.0), (0.1, 0.6)]
+            .map(|(x, y)| cell(i) + DVec2::new(x, y) * size)
+    };
+    let many = Shapes::from_rings((0..40_000).map(ring));
+    let options = Options { origins: true, ..Options::with_rule(FillRule::NonZero) };
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("pool");
+        pool.install(|| run(&many, &star(2_000, 0.0, 0.0), BooleanOp::Union, &options))
+    };
+    let (one, two) = (with(1), with(2));
+    assert!(one.shapes.ring_count() > 1_000);
+    assert_eq!(one, two);
+}
+
+#[test]
 fn coarse_cells_bend_edges_to_their_centres() {
     // A thin spike passes 0.4 cells above a vertex: it must be bent through that vertex's cell.
     let p = |x: f64, y: f64| DVec2::new(x, y);

@@ -385,7 +385,10 @@ impl Job<'_> {
         let mut shapes = Shapes::new();
         let mut origins = Vec::new();
         let origin = |n: u32| self.origin(n, noding, segments, sources);
-        for polygon in &rings.polygons {
+        let mut start = 0;
+        for &end in &rings.polygon_ends {
+            let polygon = &rings.order[start..end as usize];
+            start = end as usize;
             for (k, &ring) in polygon.iter().enumerate() {
                 let nodes = rings.ring(ring);
                 let points =

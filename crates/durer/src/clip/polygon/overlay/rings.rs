@@ -19,8 +19,10 @@ pub struct Rings {
     /// Ring after ring, each starting with its smallest node.
     pub nodes: Vec<u32>,
     pub ring_ends: Vec<u32>,
-    /// Of each polygon the outer ring, then its holes.
-    pub polygons: Vec<Vec<u32>>,
+    /// Which rings, in their order: of each polygon the outer ring, then its holes.
+    pub order: Vec<u32>,
+    /// Where each polygon ends in `order`.
+    pub polygon_ends: Vec<u32>,
 }
 
 impl Rings {
@@ -33,7 +35,7 @@ impl Rings {
 }
 
 /// A closed walk along the border of one connected piece of the result.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Walk {
     first: u32,
     rings: std::ops::Range<u32>,
@@ -186,43 +188,50 @@ impl<C: Coord> Linker<'_, '_, C> {
         let nodes = self.graph.nodes;
         let mut order: Vec<u32> = (0..self.walks.len() as u32).collect();
         order.sort_unstable_by_key(|&w| nodes[self.walks[w as usize].first as usize]);
-        let mut polygon_of = vec![NONE; self.walks.len()];
+        // The outer ring of each walk's polygon, and of each ring.
+        let mut outer_of = vec![NONE; self.walks.len()];
+        let mut owners = vec![NONE; self.rings.ring_ends.len()];
         for w in order {
-            let walk = self.walks[w as usize].clone();
-            let polygon = match walk.outer {
-                Some(outer) => {
-                    self.rings.polygons.push(vec![outer]);
-                    self.rings.polygons.len() as u32 - 1
-                }
-                None => {
-                    let on = |e: usize| self.courses[e] != Course::No;
-                    let below = search.below(self.graph, walk.first, on);
-                    below.map_or(0, |e| polygon_of[self.walk_of[e] as usize])
-                }
-            };
-            polygon_of[w as usize] = polygon;
-            if let Some(rings) = self.rings.polygons.get_mut(polygon as usize) {
-                rings.extend(walk.rings.filter(|&r| Some(r) != walk.outer));
-            }
+            let walk = &self.walks[w as usize];
+            let outer = walk.outer.or_else(|| {
+                let on = |e: usize| self.courses[e] != Course::No;
+                let below = search.below(self.graph, walk.first, on)?;
+                Some(outer_of[self.walk_of[below] as usize])
+            });
+            let outer = outer.unwrap_or(NONE);
+            outer_of[w as usize] = outer;
+            walk.rings.clone().for_each(|r| owners[r as usize] = outer);
         }
-        self.sort();
+        self.sort(&owners);
     }
 
-    /// The order of polygons and of their holes: by their points.
-    fn sort(&mut self) {
+    /// Puts polygons in the order of their outer rings' points, and the holes of each likewise.
+    fn sort(&mut self, owners: &[u32]) {
         let nodes = self.graph.nodes;
-        let mut polygons = std::mem::take(&mut self.rings.polygons);
         let rings = &self.rings;
-        let compare = |&a: &u32, &b: &u32| {
-            let points = |r: u32| rings.ring(r).iter().map(|&n| nodes[n as usize]);
-            points(a).cmp(points(b))
-        };
-        for polygon in &mut polygons {
-            if let Some((_, holes)) = polygon.split_first_mut() {
-                holes.sort_unstable_by(compare);
-            }
+        let points = |r: u32| rings.ring(r).iter().map(|&n| nodes[n as usize]);
+        let compare = |a: &u32, b: &u32| points(*a).cmp(points(*b));
+        let is_outer = |&r: &u32| owners[r as usize] == r;
+        let all = 0..rings.ring_ends.len() as u32;
+        let (mut outers, mut holes): (Vec<u32>, Vec<u32>) = all.partition(is_outer);
+        outers.sort_unstable_by(compare);
+        holes.retain(|&h| owners[h as usize] != NONE);
+        let mut rank = vec![NONE; owners.len()];
+        for (i, &outer) in outers.iter().enumerate() {
+            rank[outer as usize] = i as u32;
         }
-        polygons.sort_unstable_by(|a, b| compare(&a[0], &b[0]));
-        self.rings.polygons = polygons;
+        let rank_of = |hole: u32| rank[owners[hole as usize] as usize];
+        holes.sort_unstable_by(|a, b| rank_of(*a).cmp(&rank_of(*b)).then_with(|| compare(a, b)));
+        let mut holes = holes.into_iter().peekable();
+        let (mut order, mut ends) =
+            (Vec::with_capacity(owners.len()), Vec::with_capacity(outers.len()));
+        for (i, &outer) in outers.iter().enumerate() {
+            order.push(outer);
+            while let Some(hole) = holes.next_if(|&h| rank_of(h) == i as u32) {
+                order.push(hole);
+            }
+            ends.push(order.len() as u32);
+        }
+        (self.rings.order, self.rings.polygon_ends) = (order, ends);
     }
 }
