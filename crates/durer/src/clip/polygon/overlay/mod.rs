@@ -307,7 +307,7 @@ impl Job<'_> {
         let segments: Vec<Segment<C>> = order.iter().map(|&i| segments[i as usize]).collect();
         let sources: Vec<Source> = order.iter().map(|&i| sources[i as usize]).collect();
         let grid = Grid::new(&segments, block, occupied);
-        let noding = noding::node(&segments, &grid);
+        let noding = noding::node(&segments, &grid, |i| sources[i as usize].reversed());
         let mut graph = Arrangement::new(&noding, |i| sources[i].step());
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         match self.winder {

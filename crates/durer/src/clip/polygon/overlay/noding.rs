@@ -52,9 +52,13 @@ struct Workbench<C> {
     strips: Strips<C>,
 }
 
-/// Nodes all segments.
-pub fn node<C: Coord>(segments: &[Segment<C>], grid: &Grid) -> Noding<C> {
-    let parts = work(segments, grid);
+/// Nodes all segments, the edges of closed rings; `reversed` tells which run against their edge.
+pub fn node<C: Coord>(
+    segments: &[Segment<C>],
+    grid: &Grid,
+    reversed: impl Fn(u32) -> bool + Sync + Send,
+) -> Noding<C> {
+    let parts = work(segments, grid, reversed);
     let mut noding =
         Noding { nodes: Vec::new(), causes: Vec::new(), starts: Vec::new(), hits: Vec::new() };
     noding.nodes.reserve_exact(parts.iter().map(|p| p.nodes.len()).sum());
@@ -89,13 +93,17 @@ fn tasks(grid: &Grid) -> Vec<&[Leaf]> {
     tasks
 }
 
-fn work<C: Coord>(segments: &[Segment<C>], grid: &Grid) -> Vec<Part<C>> {
+fn work<C: Coord>(
+    segments: &[Segment<C>],
+    grid: &Grid,
+    reversed: impl Fn(u32) -> bool + Sync + Send,
+) -> Vec<Part<C>> {
     let run = |leaves: &[Leaf]| {
         let mut part = Part { nodes: Vec::new(), causes: Vec::new(), hits: Vec::new() };
         let mut bench =
             Workbench { segments: Vec::new(), pixels: Vec::new(), strips: Strips::default() };
         for leaf in leaves {
-            bench.leaf(segments, grid.items(leaf), leaf, &mut part);
+            bench.leaf(segments, grid.items(leaf), leaf, &reversed, &mut part);
         }
         part
     };
@@ -103,14 +111,21 @@ fn work<C: Coord>(segments: &[Segment<C>], grid: &Grid) -> Vec<Part<C>> {
 }
 
 impl<C: Coord> Workbench<C> {
-    fn leaf(&mut self, all: &[Segment<C>], items: &[u32], leaf: &Leaf, part: &mut Part<C>) {
+    fn leaf(
+        &mut self,
+        all: &[Segment<C>],
+        items: &[u32],
+        leaf: &Leaf,
+        reversed: &impl Fn(u32) -> bool,
+        part: &mut Part<C>,
+    ) {
         if items.is_empty() {
             return;
         }
         self.segments.clear();
         self.segments.extend(items.iter().map(|&i| all[i as usize]));
         self.pixels.clear();
-        self.ends(items, leaf);
+        self.ends(items, leaf, reversed);
         if items.len() > CROWD {
             self.strips.build(&self.segments, leaf.block.min.0, leaf.block.max.0);
             let pixels = &mut self.pixels;
@@ -133,13 +148,12 @@ impl<C: Coord> Workbench<C> {
         }
     }
 
-    fn ends(&mut self, items: &[u32], leaf: &Leaf) {
+    /// Every point of a ring is the start of one edge, so only starts are looked at.
+    fn ends(&mut self, items: &[u32], leaf: &Leaf, reversed: &impl Fn(u32) -> bool) {
         for (s, &i) in self.segments.iter().zip(items) {
-            if leaf.block.contains(s.a) {
-                self.pixels.push((s.a, Cause::End(2 * i)));
-            }
-            if leaf.block.contains(s.b) {
-                self.pixels.push((s.b, Cause::End(2 * i + 1)));
+            let (p, end) = if reversed(i) { (s.b, 2 * i + 1) } else { (s.a, 2 * i) };
+            if leaf.block.contains(p) {
+                self.pixels.push((p, Cause::End(end)));
             }
         }
     }
