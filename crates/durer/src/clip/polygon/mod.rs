@@ -1,19 +1,16 @@
 //! Polygons: their shape types, and the clippers that take and give them.
 //!
-//! `overlay()` is the robust door: any rings in, valid polygons out.
-
-pub mod naive;
-pub mod rectangle;
-mod shapes;
-pub mod sutherland_hodgman;
-
-pub use shapes::{Polygon, Ring, Shapes, signed_area};
+//! [`overlay()`] is the robust door: any rings in, valid polygons out. [`rectangle`] is the fast path
+//! for windows and map tiles. The others are the published algorithms, each with its preconditions.
 
 mod cyclic;
 pub mod greiner_hormann;
 mod locate;
+pub mod naive;
 pub mod overlay;
+pub mod rectangle;
 mod shapes;
+pub mod sutherland_hodgman;
 pub mod vatti;
 pub mod weiler_atherton;
 
