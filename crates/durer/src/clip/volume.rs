@@ -179,6 +179,8 @@ impl Options {
         let code = Outcode::from_inside(self.distances(p).map(|d| d >= 0.0));
         match self.borders {
             Borders::All => code,
+            // Straight ahead at infinity (w = 0) there is no place on the screen: cut that off.
+            Borders::NearOnly { .. } if p.w <= 0.0 => code,
             Borders::NearOnly { .. } => code & Outcode(!Outcode::FAR.0),
         }
     }
@@ -243,7 +245,8 @@ fn needed<A>(
 
 /// Clips a segment; both ends are returned in their order, those inside bit for bit.
 ///
-/// A segment that touches the volume in one point is returned with two equal ends.
+/// A segment that touches the volume in one point is returned with two equal ends. One that ends in
+/// the null vector, which is no point, is left out.
 pub fn clip_segment<A: Blend>(
     segment: [ClipVertex<A>; 2],
     options: &Options,
