@@ -300,6 +300,8 @@ pub enum Cull {
     None,
     /// Faces seen from behind
     Back,
+    /// Faces seen from behind whose material is single-sided, as glTF has it
+    Material,
 }
 
 /// `--up-axis`.
@@ -347,6 +349,7 @@ impl From<Cull> for pipeline::Cull {
         match cull {
             Cull::None => Self::None,
             Cull::Back => Self::Back,
+            Cull::Material => Self::Material,
         }
     }
 }

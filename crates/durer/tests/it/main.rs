@@ -6,6 +6,7 @@ mod conformance_overlay;
 mod conformance_visible_surface;
 mod data;
 mod determinism;
+mod golden;
 mod overlay;
 mod raster_coverage;
 mod raster_interpolate;

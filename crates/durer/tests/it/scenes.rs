@@ -32,7 +32,7 @@ pub fn soup(triangles: usize, seed: u64) -> Scene {
     let mut positions = Vec::new();
     for i in 0..triangles {
         let center = numbers.point(1.0);
-        let size = if i % 7 == 0 { 8.0 } else { 0.3 };
+        let size = if i % 80 == 79 { 4.0 } else { 0.3 };
         positions.extend([0; 3].map(|_| center + numbers.point(size)));
     }
     positions[0] = Vec3::NAN;

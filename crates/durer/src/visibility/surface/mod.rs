@@ -16,6 +16,8 @@ pub enum Cull {
     None,
     /// Faces seen from behind are left out.
     Back,
+    /// Faces seen from behind are left out where their material is single-sided, as glTF has it.
+    Material,
 }
 
 /// Samples per pixel of the production path.
