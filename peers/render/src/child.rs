@@ -35,13 +35,14 @@ pub fn run(command: &mut Command) -> Result<Cost> {
     })
 }
 
-/// A child that ends with its owner.
-pub struct Guarded(pub Child);
+/// A child that ends with its owner, asked to, so that it can clear away what it has left.
+pub struct Ended(pub Child);
 
-impl Drop for Guarded {
+impl Drop for Ended {
     fn drop(&mut self) {
-        // It may have ended by itself; then there is nothing to do.
-        let _ = self.0.kill();
+        // SAFETY: the child is ours and has not been waited for, so its number is still its own.
+        unsafe { libc::kill(self.0.id() as libc::pid_t, libc::SIGTERM) };
+        // Where there is nothing to wait for, it has ended.
         let _ = self.0.wait();
     }
 }

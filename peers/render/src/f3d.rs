@@ -1,7 +1,7 @@
 //! f3d, which needs an X server: one virtual one for all runs.
 
 use crate::Result;
-use crate::child::Guarded;
+use crate::child::Ended;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// A virtual X server that ends with its owner.
 pub struct Display {
     name: String,
-    _server: Guarded,
+    _server: Ended,
 }
 
 impl Display {
@@ -21,7 +21,7 @@ impl Display {
         let mut command = Command::new("Xvfb");
         command.args([&name, "-screen", "0", "1280x1280x24", "-nolisten", "tcp"]);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        let server = Guarded(command.spawn().map_err(|e| format!("Xvfb: {e}"))?);
+        let server = Ended(command.spawn().map_err(|e| format!("Xvfb: {e}"))?);
         let start = Instant::now();
         while !Path::new(&socket(number)).exists() {
             if start.elapsed() > Duration::from_secs(20) {
