@@ -13,8 +13,9 @@ pub struct Display {
 }
 
 impl Display {
-    /// Starts Xvfb on the first free display from 99 on and waits until it listens.
+    /// Where there is an f3d to show on it: starts Xvfb on the first free display from 99 on and waits until it listens.
     pub fn start() -> Result<Self> {
+        crate::child::run(Command::new("f3d").arg("--version"))?;
         let socket = |n: u32| format!("/tmp/.X11-unix/X{n}");
         let number = (99..200).find(|&n| !Path::new(&socket(n)).exists()).ok_or("no display")?;
         let name = format!(":{number}");
