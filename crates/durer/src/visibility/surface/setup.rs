@@ -277,8 +277,8 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     let far = !hz.simd_le(hw).to_bitmask();
     let guard = f64x4::splat(simd, GUARD_BAND);
     let outside_guard = !(x.abs().simd_lt(guard) & y.abs().simd_lt(guard)).to_bitmask();
-    // What is not finite makes this sum not finite, or NaN.
-    let sum = (hx - hx) + (hy - hy) + (hz - hz) + (hw - hw);
+    // Zero times what is not finite is NaN.
+    let sum = (hx + hy + hz + hw) * 0.0;
     let non_finite = !sum.simd_eq(zero).to_bitmask();
     // Adding 1.5 · 2⁵² leaves the integer, rounded to nearest and ties to even, in the low bits.
     let magic = 6_755_399_441_055_744.0;
