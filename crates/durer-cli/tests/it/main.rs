@@ -5,5 +5,6 @@ mod harness;
 mod options;
 mod outputs;
 mod pictures;
+mod readme;
 mod resources;
 mod streams;
