@@ -21,3 +21,4 @@ mod tidy;
 mod view_cull;
 mod view_projection;
 mod view_window;
+mod z_buffer;
