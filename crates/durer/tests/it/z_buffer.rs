@@ -1,9 +1,10 @@
 //! The production path against a z-buffer of a dozen lines over the classical rasterizer.
 
 use crate::scenes::{self, Numbers};
-use durer::pipeline::{Cull, render};
+use durer::math::{DVec3, Vec3};
+use durer::pipeline::{Cull, RenderOptions, render};
 use durer::raster::triangle::{Options, SnappedTriangle, TriangleRasterizer};
-use durer::scene::Scene;
+use durer::scene::{Camera, Mesh, Projection, Scene};
 use durer::target::NO_ITEM;
 use durer::view::View;
 use durer::view::window::PixelRect;
@@ -51,5 +52,37 @@ fn items_and_depths_are_those_of_the_definition() {
         let (items, depths) = by_the_book(&scene, &view);
         assert_eq!(found.item.expect("items").data(), items, "seed {seed} {width}x{height}");
         assert_eq!(found.depth.expect("depths").data(), depths, "seed {seed} {width}x{height}");
+    }
+}
+
+/// Triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel.
+fn on_the_grid(seed: u64, size: f64) -> (Scene, Camera) {
+    let mut numbers = Numbers(seed);
+    let mut at = || ((numbers.next() * 2.0 * size as f32).floor() * 0.5) - 0.5 * size as f32;
+    let positions = (0..120).map(|i| Vec3::new(at(), at(), -((i / 3) as f32) * 0.01)).collect();
+    let mesh = Mesh { positions, ..Mesh::default() };
+    let scene =
+        Scene { meshes: vec![mesh], instances: vec![scenes::instance(0)], ..Scene::default() };
+    let camera = Camera {
+        eye: DVec3::Z,
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: size },
+        near: 0.5,
+        far: 4.0,
+    };
+    (scene, camera)
+}
+
+#[test]
+fn pixels_on_edges_belong_to_the_top_left_side() {
+    for seed in 0..60 {
+        let (scene, camera) = on_the_grid(seed, 24.0);
+        let mut options = RenderOptions::new(camera);
+        (options.width, options.height, options.item) = (24, 24, true);
+        let (found, _) = render(&scene, &options).expect("picture");
+        let view = View::new(camera, 24, 24).expect("view");
+        let (items, _) = by_the_book(&scene, &view);
+        assert_eq!(found.item.expect("items").data(), items, "seed {seed}");
     }
 }
