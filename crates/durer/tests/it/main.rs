@@ -2,9 +2,11 @@
 
 mod clip_place;
 mod clip_volume;
+mod conformance_overlay;
 mod conformance_visible_surface;
 mod data;
 mod determinism;
+mod overlay;
 mod raster_interpolate;
 mod raster_triangle;
 mod scenes;
