@@ -215,7 +215,7 @@ impl Cutter {
 
     /// Valid polygons by the rectangle clip, all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
-        let valid = self.rules.fill == FillRule::EvenOdd && is_valid(&area.shapes);
+        let valid = self.rules.fill == FillRule::EvenOdd && is_valid(&area.shapes, Touching::No);
         let inside = self.op == BooleanOp::Intersection;
         let covers = |window: &Rect| window.contains(bounds.min()) && window.contains(bounds.max());
         match self.mask.window {
@@ -230,7 +230,9 @@ impl Cutter {
         }
         let near = self.mask.near(bounds)?;
         let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
-        let repaired = !valid && self.rules.fill == FillRule::EvenOdd;
+        // Rings that touch at vertices are valid, but nothing for the rectangle clip.
+        let even_odd = self.rules.fill == FillRule::EvenOdd;
+        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtVertices);
         Ok(Cut { geometry: cut.into_geometry(), repaired })
     }
 
@@ -407,7 +409,10 @@ impl Rules {
 
     /// The same region by polygons that are valid, with outer rings counter-clockwise.
     pub fn clean(&self, area: &Area) -> Result<Area> {
-        if self.fill == FillRule::EvenOdd && self.grid.is_none() && is_valid(&area.shapes) {
+        if self.fill == FillRule::EvenOdd
+            && self.grid.is_none()
+            && is_valid(&area.shapes, Touching::No)
+        {
             return Ok(area.oriented());
         }
         self.overlay(area, &Shapes::new(), BooleanOp::Union, self.fill)

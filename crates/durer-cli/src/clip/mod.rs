@@ -158,6 +158,10 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
         let message = format!("the suffix tells no format; use one of .{suffixes}, or --to");
         return Err(Failure::Usage(format!("--output {}: {message}", args.output.display())));
     };
+    if args.region.tiles.is_some() && named == Some(GeoFormat::GeoJson) {
+        let message = "--tiles makes a file per tile: name a folder, or a file in .geojsonl";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     if !fits(&format) {
         return Err(Failure::Usage("tiles are written as GeoJSON".to_owned()));
     }
@@ -191,8 +195,8 @@ fn tell(messages: &Messages, name: &str, reader: &Source, report: &mut Report) {
     }
     if report.repaired > 0 {
         let message = format!(
-            "polygons of {} features cross or touch themselves or one another; made valid by the \
-             even-odd rule",
+            "polygons of {} features crossed or overlapped themselves or one another; made valid by \
+             the even-odd rule",
             report.repaired
         );
         let warning = durer_formats::Warning { place: Default::default(), message };

@@ -23,6 +23,7 @@ mod geojson;
 mod number;
 mod reader;
 mod svg;
+mod svg_shapes;
 mod wkb;
 mod wkt;
 mod writer;

@@ -1,6 +1,6 @@
 //! Features from bytes in any format.
 
-use super::{Feature, GeoFormat, Member, Warnings, geojson, svg, wkb, wkt};
+use super::{Feature, GeoFormat, Member, Warnings, geojson, svg_shapes, wkb, wkt};
 use crate::{Error, Place, Result, Warning};
 use std::io::Read;
 
@@ -40,7 +40,9 @@ impl<R: Read> Reader<R> {
             GeoFormat::Wkt => Source::Wkt(text(source)?, 0),
             GeoFormat::Wkb => Source::Wkb(whole(source)?, 0),
             GeoFormat::WkbHex => Source::WkbHex(text(source)?, 0, 0),
-            GeoFormat::Svg => Source::Ready(svg::read(&text(source)?, &mut warnings)?.into_iter()),
+            GeoFormat::Svg => {
+                Source::Ready(svg_shapes::read(&text(source)?, &mut warnings)?.into_iter())
+            }
         };
         Ok(Self { source, warnings })
     }

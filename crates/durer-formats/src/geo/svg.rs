@@ -1,7 +1,6 @@
-//! Features as SVG, and the shapes of an SVG as features.
+//! Features as SVG: what a plain viewer shows as a map.
 
-use super::{Feature, Geometry, Points, Warnings, number};
-use crate::Result;
+use super::{Feature, Geometry, Points, number};
 use durer::math::{DVec2, Rect};
 use std::io::{self, Write};
 
@@ -107,9 +106,4 @@ fn place(out: &mut impl Write, command: &str, p: DVec2) -> io::Result<()> {
     number::write(out, p.x)?;
     out.write_all(b" ")?;
     number::write(out, p.y)
-}
-
-/// Reads the shapes of a document.
-pub fn read(_text: &[u8], _warnings: &mut Warnings) -> Result<Vec<Feature>> {
-    Err(crate::Error::whole("not yet"))
 }
