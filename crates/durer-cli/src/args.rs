@@ -47,6 +47,9 @@ pub enum Command {
     /// Render models to PNG pictures
     #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
+    /// Cut map data to windows, polygons or tiles
+    #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Clip(Box<crate::clip::ClipArgs>),
     /// Say what is in a model
     Info(InfoArgs),
     /// Write a completion script for a shell to standard output
