@@ -9,6 +9,8 @@ mod raster_interpolate;
 mod raster_triangle;
 mod scenes;
 mod shading;
+mod surface_scenes;
+mod surface_warnock;
 mod tidy;
 mod view_cull;
 mod view_projection;

@@ -1,10 +1,15 @@
 //! Visible surfaces.
 
 pub(crate) mod attributes;
+pub mod cover;
 pub mod input;
 pub(crate) mod lit;
 pub mod setup;
+pub(crate) mod visible;
+pub mod warnock;
 pub mod z_buffer;
+
+pub use visible::Look;
 
 use crate::math::Vec4;
 
@@ -78,4 +83,17 @@ pub enum Background {
     Color(Vec4),
     /// From the top row to the bottom row.
     Gradient(Vec4, Vec4),
+}
+
+impl Background {
+    /// Linear with straight alpha, in row `y` of a picture of this height.
+    pub fn at_row(self, height: u32, y: i32) -> Vec4 {
+        match self {
+            Self::Color(color) => color,
+            Self::Gradient(top, bottom) => {
+                let t = (y as f32 + 0.5) / height as f32;
+                top * (1.0 - t) + bottom * t
+            }
+        }
+    }
 }
