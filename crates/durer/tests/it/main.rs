@@ -9,6 +9,7 @@ mod raster_interpolate;
 mod raster_triangle;
 mod scenes;
 mod shading;
+mod surface_depth_sort;
 mod surface_scenes;
 mod surface_warnock;
 mod tidy;

@@ -2,6 +2,7 @@
 
 pub(crate) mod attributes;
 pub mod cover;
+pub mod depth_sort;
 pub mod input;
 pub(crate) mod lit;
 pub mod setup;
