@@ -167,3 +167,7 @@ pub fn assert_same_planes(name: &str, found: &Framebuffer, expected: &Framebuffe
     assert!(found.depth == expected.depth, "{name}: depth");
     assert!(found.normal == expected.normal, "{name}: normal");
 }
+
+/// A triangle across the middle of the view.
+pub const FACING: [Vec3; 3] =
+    [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];

@@ -5,6 +5,7 @@ pub mod cover;
 pub mod depth_sort;
 pub mod input;
 pub(crate) mod lit;
+pub mod ray;
 pub mod setup;
 pub(crate) mod visible;
 pub mod warnock;

@@ -49,16 +49,6 @@ impl Visible {
         Self { window, item: vec![NO_ITEM; count], depth: vec![1.0; count] }
     }
 
-    /// The pixels of a view.
-    pub fn of_view(view: &crate::view::View) -> Self {
-        Self::new(pixels_of(view))
-    }
-
-    /// The samples that it has.
-    pub fn window(&self) -> &Window {
-        &self.window
-    }
-
     /// The place of a sample of the window.
     #[inline]
     pub fn index(&self, x: i32, y: i32) -> usize {
