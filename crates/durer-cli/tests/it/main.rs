@@ -4,6 +4,7 @@ mod conformance_models;
 mod harness;
 mod options;
 mod outputs;
+mod pick;
 mod pictures;
 mod resources;
 mod streams;
