@@ -10,6 +10,7 @@ mod raster_triangle;
 mod scenes;
 mod shading;
 mod surface_depth_sort;
+mod surface_methods;
 mod surface_ray;
 mod surface_scenes;
 mod surface_warnock;

@@ -1,17 +1,23 @@
 //! Visible surfaces.
 
+pub(crate) mod active;
 pub(crate) mod attributes;
+pub(crate) mod background;
 pub mod cover;
 pub mod depth_sort;
 pub mod input;
 pub(crate) mod lit;
+pub mod method;
+pub(crate) mod nearest;
+pub mod picture;
 pub mod ray;
+pub mod scan_line_z;
 pub mod setup;
 pub(crate) mod visible;
 pub mod warnock;
 pub mod z_buffer;
 
-pub use visible::Look;
+pub use method::{SurfaceMethod, render_with};
 
 use crate::math::Vec4;
 
@@ -85,17 +91,4 @@ pub enum Background {
     Color(Vec4),
     /// From the top row to the bottom row.
     Gradient(Vec4, Vec4),
-}
-
-impl Background {
-    /// Linear with straight alpha, in row `y` of a picture of this height.
-    pub fn at_row(self, height: u32, y: i32) -> Vec4 {
-        match self {
-            Self::Color(color) => color,
-            Self::Gradient(top, bottom) => {
-                let t = (y as f32 + 0.5) / height as f32;
-                top * (1.0 - t) + bottom * t
-            }
-        }
-    }
 }

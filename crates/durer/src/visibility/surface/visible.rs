@@ -1,35 +1,15 @@
 //! The result of an image-space algorithm, one item and depth per pixel, and its way to a picture.
 
 use crate::math::Vec4;
-use crate::shade::color::{encode_rgba8, encode_srgb8, premultiply, unpremultiply};
-use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::Level;
+use crate::shade::color::{encode_rgba8, premultiply, unpremultiply};
+use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::{Framebuffer, NO_ITEM};
-use crate::visibility::surface::Background;
+use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::cover::Window;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
-use fearless_simd::{Simd, dispatch};
-use fearless_simd_macros::simd;
-
-/// How what is visible is to look.
-#[derive(Debug, Clone, Copy)]
-pub struct Look {
-    /// `None` = by material.
-    pub shading: Option<Shading>,
-    /// What is behind everything.
-    pub background: Background,
-    /// The SIMD level to work at; all give the same bytes.
-    pub level: Level,
-}
-
-impl Default for Look {
-    /// By material, on white.
-    fn default() -> Self {
-        Self { shading: None, background: Background::Color(Vec4::ONE), level: Level::new() }
-    }
-}
 
 /// What is nearest at each sample of a window.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +34,13 @@ impl Visible {
     pub fn index(&self, x: i32, y: i32) -> usize {
         let w = &self.window;
         (y - w.y0) as usize * (w.x1 - w.x0) as usize + (x - w.x0) as usize
+    }
+
+    /// Row number, items and depths of each row.
+    fn rows(&self) -> impl Iterator<Item = (u32, &[u32], &[f32])> {
+        let width = ((self.window.x1 - self.window.x0).max(1)) as usize;
+        let rows = self.item.chunks(width).zip(self.depth.chunks(width));
+        (0..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
     }
 
     /// Writes a sample, whatever was there; what lies beyond the far plane is not seen.
@@ -113,7 +100,7 @@ impl<'a> Masks<'a> {
 pub fn with_lighting<R>(
     input: &SurfaceInput<'_>,
     lights: &PreparedLights,
-    look: &Look,
+    look: &picture::Options,
     f: impl FnOnce(Lighting<'_>) -> R,
 ) -> R {
     let materials = PreparedMaterials::new(input.scene);
@@ -127,80 +114,35 @@ pub fn with_lighting<R>(
     })
 }
 
-/// Rows that one thread lights at a time.
-const BAND: usize = 32;
-
-/// Lights what is visible at the pixels' centres into all planes that the framebuffer has; blended
-/// surfaces count as opaque.
+/// Lights what is visible at the pixels' centres into all planes that the framebuffer has.
 pub fn write(
     visible: &Visible,
     lighting: Lighting<'_>,
-    look: &Look,
+    look: &picture::Options,
     framebuffer: &mut Framebuffer,
 ) {
-    write_planes(visible, lighting, framebuffer);
-    let width = framebuffer.width() as usize;
-    let rows = framebuffer.color.data_mut().chunks_mut((BAND * width).max(1)).enumerate().collect();
-    crate::parallel::map(rows, |(band, out): (usize, &mut [[u8; 4]])| {
-        let mut lit = Lit::new(lighting);
-        for (row, out) in out.chunks_mut(width).enumerate() {
-            let y = band * BAND + row;
-            let items = &visible.item[y * width..(y + 1) * width];
-            out.fill(encode(background_at(look, lighting.view.height(), y as i32)));
-            dispatch!(look.level, simd => light_row(simd, &mut lit, items, y as i32, out));
-        }
-    });
+    let mut picture = Picture::with_lighting(lighting, look, framebuffer);
+    visible.rows().for_each(|(y, items, depths)| picture.write(0, y, items, depths));
 }
 
-/// Depth, item and normal.
-pub fn write_planes(visible: &Visible, lighting: Lighting<'_>, framebuffer: &mut Framebuffer) {
-    let triangle_count = lighting.scene.triangle_count() as u32;
-    let width = framebuffer.width() as usize;
-    if let Some(depth) = &mut framebuffer.depth {
-        depth.data_mut().copy_from_slice(&visible.depth);
-    }
-    if let Some(items) = &mut framebuffer.item {
-        for (to, &item) in items.data_mut().iter_mut().zip(&visible.item) {
-            *to = if item < triangle_count { item } else { NO_ITEM };
-        }
-    }
-    if let Some(normals) = &mut framebuffer.normal {
-        let mut lit = Lit::new(lighting);
-        for (i, to) in normals.data_mut().iter_mut().enumerate() {
-            if visible.item[i] != NO_ITEM {
-                let (x, y) = ((i % width) as i32, (i / width) as i32);
-                *to = lit.normal(visible.item[i], x, y).to_array();
-            }
-        }
-    }
+/// Writes depth, item and normal, but no colour.
+pub fn write_planes(
+    visible: &Visible,
+    lighting: Lighting<'_>,
+    look: &picture::Options,
+    framebuffer: &mut Framebuffer,
+) {
+    let mut picture = Picture::with_lighting(lighting, look, framebuffer);
+    visible.rows().for_each(|(y, items, depths)| picture.write_planes(0, y, items, depths));
 }
 
 /// The background of a row, linear and premultiplied.
-pub fn background_at(look: &Look, height: u32, y: i32) -> Vec4 {
-    premultiply(look.background.at_row(height, y))
+pub fn background_at(look: &picture::Options, height: u32, y: i32) -> Vec4 {
+    premultiply(background_rows(look.background, height)(y))
 }
 
 /// From linear premultiplied to 8-bit sRGB.
 pub fn encode(premultiplied: Vec4) -> [u8; 4] {
     let opaque = premultiplied.w >= 1.0;
     encode_rgba8(if opaque { premultiplied } else { unpremultiply(premultiplied) })
-}
-
-#[simd]
-fn light_row<S: Simd>(simd: S, lit: &mut Lit<'_>, items: &[u32], y: i32, out: &mut [[u8; 4]]) {
-    for (eight, (items, out)) in items.chunks(8).zip(out.chunks_mut(8)).enumerate() {
-        let mut whole = [NO_ITEM; 8];
-        whole[..items.len()].copy_from_slice(items);
-        if whole == [NO_ITEM; 8] {
-            continue;
-        }
-        let mut colors = [[0.0; 8]; 3];
-        lit.colors_x8(simd, &whole, 8 * eight as i32, y, &mut colors);
-        let [r, g, b] = colors;
-        for (i, out) in out.iter_mut().enumerate() {
-            if whole[i] != NO_ITEM {
-                *out = [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255];
-            }
-        }
-    }
 }

@@ -25,9 +25,9 @@ use crate::raster::span::Span;
 use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
-use crate::visibility::surface::Look;
 use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::{Masks, Visible, pixels_of, with_lighting, write};
 use piece::{Key, Pieces};
@@ -51,7 +51,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Shading and background.
-    pub look: Look,
+    pub look: picture::Options,
 }
 
 /// The tests that let a polygon P be painted before another one Q, in order of cost.

@@ -20,12 +20,13 @@ use crate::math::Vec4;
 use crate::shade::PreparedLights;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::trace::Tracer;
+use crate::visibility::surface::Samples;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::Lighting;
+use crate::visibility::surface::picture;
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, encode, pixels_of, with_lighting, write, write_planes,
 };
-use crate::visibility::surface::{Look, Samples};
 use primary::{ScreenHit, ScreenRays};
 use whitted::Whitted;
 use world::WorldTriangles;
@@ -46,7 +47,7 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Shading and background.
-    pub look: Look,
+    pub look: picture::Options,
     /// Whether surfaces keep light from others.
     pub shadows: bool,
     /// Whether rays are followed that mirrors reflect and transparent surfaces refract.
@@ -63,7 +64,7 @@ impl Default for Options {
     /// Ray casting with one ray per pixel; five generations if reflections are switched on.
     fn default() -> Self {
         Self {
-            look: Look::default(),
+            look: picture::Options::default(),
             shadows: false,
             reflections: false,
             depth: 5,
@@ -142,7 +143,7 @@ pub fn render(
         if caster.is_plain() {
             write(&visible, lighting, &options.look, framebuffer);
         } else {
-            write_planes(&visible, lighting, framebuffer);
+            write_planes(&visible, lighting, &options.look, framebuffer);
             framebuffer.color.data_mut().copy_from_slice(&colors);
         }
     });

@@ -17,10 +17,10 @@ use crate::math::Vec4;
 use crate::shade::PreparedLights;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::trace::Tracer;
-use crate::visibility::surface::Look;
 use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, encode, nearer, pixels_of, with_lighting, write, write_planes,
@@ -53,7 +53,7 @@ pub enum Division {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Shading and background.
-    pub look: Look,
+    pub look: picture::Options,
     /// Where windows are divided.
     pub division: Division,
     /// How often a pixel is divided, 0 … 4; colour is the mean of its 4^`sub_levels` samples. Time
@@ -131,7 +131,7 @@ pub fn render(
         if options.sub_levels == 0 {
             write(&visible, lighting, &options.look, framebuffer);
         } else {
-            write_planes(&visible, lighting, framebuffer);
+            write_planes(&visible, lighting, &options.look, framebuffer);
             anti_aliased(input, lighting, options, framebuffer, t);
         }
     });
