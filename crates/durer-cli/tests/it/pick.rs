@@ -3,10 +3,7 @@
 use crate::harness::Folder;
 
 fn json(folder: &Folder, arguments: &str) -> serde_json::Value {
-    let ended =
-        folder.run(&format!("pick cube.obj --view front --size 100x100 --json {arguments}"));
-    assert_eq!(ended.code, 0, "{}", ended.stderr);
-    serde_json::from_str(&ended.stdout()).expect("JSON")
+    folder.must(&format!("pick cube.obj --view front --size 100x100 --json {arguments}")).json()
 }
 
 #[test]

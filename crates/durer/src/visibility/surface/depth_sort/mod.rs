@@ -256,12 +256,9 @@ impl Sorter<'_> {
                 self.push(q);
                 return false;
             }
-            Some((q, verdict)) => {
-                if self.resolve(p, q, verdict, t) {
-                    return false;
-                }
-            }
-            None => {}
+            Some((q, verdict)) if self.resolve(p, q, verdict, t) => return false,
+            // Nothing is in the way, or nothing that any cut could resolve.
+            _ => {}
         }
         t.step(|| Step::Place { polygon: p });
         self.done[p as usize] = true;
