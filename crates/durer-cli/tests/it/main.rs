@@ -6,6 +6,7 @@ mod conformance_models;
 mod harness;
 mod options;
 mod outputs;
+mod pick;
 mod pictures;
 mod resources;
 mod streams;
