@@ -17,3 +17,64 @@ mod render;
 mod report;
 mod resources;
 mod values;
+
+use args::{Cli, Command, RunningArgs};
+use clap::{CommandFactory, Parser};
+use failure::Failure;
+use std::io::Write;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let message = failure.to_string();
+            if !message.is_empty() {
+                // A closed standard error leaves nobody to tell; the exit code still says it.
+                let _ = writeln!(std::io::stderr().lock(), "durer: {message}");
+            }
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Render(args) => on_threads(&args.running, || render::run(&args)),
+        Command::Info(args) => on_threads(&args.running, || info::run(&args)),
+        Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
+        Command::Completions { shell } => completions(shell),
+        Command::Man => manual(),
+    }
+}
+
+/// Runs the work on as many threads as were asked for.
+fn on_threads(
+    args: &RunningArgs,
+    work: impl FnOnce() -> Result<(), Failure> + Send,
+) -> Result<(), Failure> {
+    let Some(threads) = args.threads else { return work() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
+    pool.map_err(|e| Failure::Data(format!("--threads {threads}: {e}")))?.install(work)
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "durer", &mut script);
+    report::print_text(&String::from_utf8_lossy(&script))
+}
+
+/// One page: the command, then each subcommand with all of its options.
+fn manual() -> Result<(), Failure> {
+    let mut page = Vec::new();
+    let mut command = Cli::command();
+    command.build();
+    let render =
+        |c: &clap::Command, out: &mut Vec<u8>| clap_mangen::Man::new(c.clone()).render(out);
+    render(&command, &mut page).map_err(|e| Failure::of_stdout(&e))?;
+    for sub in command.get_subcommands().filter(|c| c.get_name() != "help") {
+        render(sub, &mut page).map_err(|e| Failure::of_stdout(&e))?;
+    }
+    report::print_text(&String::from_utf8_lossy(&page))
+}

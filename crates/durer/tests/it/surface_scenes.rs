@@ -2,7 +2,7 @@
 
 use crate::scenes::{Numbers, instance, options};
 use durer::math::Vec3;
-use durer::pipeline::{RenderOptions, render};
+use durer::pipeline::{Cull, RenderOptions, render};
 use durer::scene::{Mesh, Scene};
 use durer::shade::PreparedLights;
 use durer::target::Framebuffer;
@@ -105,13 +105,13 @@ impl<'a> Prepared<'a> {
     }
 
     pub fn input(&self) -> SurfaceInput<'_> {
-        let filter = Filter { cull_back: false, sample_reach: 0 };
+        let filter = Filter { cull: Cull::None, sample_reach: 0 };
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 
     /// For anti-aliasing: also triangles that miss all centres.
     pub fn fine_input(&self) -> SurfaceInput<'_> {
-        let filter = Filter { cull_back: false, sample_reach: 128 };
+        let filter = Filter { cull: Cull::None, sample_reach: 128 };
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 

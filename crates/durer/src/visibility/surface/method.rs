@@ -7,7 +7,7 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::setup::Filter;
-use crate::visibility::surface::{Background, Cull, Samples};
+use crate::visibility::surface::{Background, Samples};
 use crate::visibility::surface::{depth_sort, picture, ray, scan_line_z, warnock, z_buffer};
 
 crate::info::family! {
@@ -70,8 +70,7 @@ impl Options {
 
     fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
         let Self { samples, shading, background, level } = *self;
-        let cull = if filter.cull_back { Cull::Back } else { Cull::None };
-        z_buffer::Options { samples, cull, shading, background, level }
+        z_buffer::Options { samples, cull: filter.cull, shading, background, level }
     }
 }
 
