@@ -72,7 +72,11 @@ pub fn sphere(rings: u32, material: Option<usize>) -> Mesh {
 
 fn checkers() -> Image {
     let texel = |i: u32| {
-        if (i % 16 / 4 + i / 16 / 4) % 2 == 0 { [220, 60, 40, 255] } else { [40, 90, 200, 90] }
+        if (i % 16 / 4 + i / 16 / 4).is_multiple_of(2) {
+            [220, 60, 40, 255]
+        } else {
+            [40, 90, 200, 90]
+        }
     };
     Image { name: "checkers".into(), width: 16, height: 16, data: (0..256).map(texel).collect() }
 }

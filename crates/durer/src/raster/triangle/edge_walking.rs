@@ -71,6 +71,55 @@ pub fn rasterize(
     }
 }
 
+/// The two bounds of a triangle followed downwards by whoever holds many triangles at a time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowWalk {
+    left: Walk,
+    right: Walk,
+    /// The first row of the lower two edges.
+    turn: i32,
+    /// The row after the last.
+    end: i32,
+}
+
+impl RowWalk {
+    /// Begins at the first row that is not above `y`; `None` where there is none.
+    pub fn start(triangle: &SnappedTriangle, y: i32) -> Option<(Self, i32)> {
+        let [upper, lower] = Chains::new(triangle)?.halves();
+        let y = y.max(upper.y0);
+        let half = if y < upper.y1 { &upper } else { &lower };
+        if y >= half.y1 {
+            return None;
+        }
+        let (left, right) = (Walk::start(half.left, y), Walk::start(half.right, y));
+        Some((Self { left, right, turn: upper.y1, end: lower.y1 }, y))
+    }
+
+    /// First column, and the column after the last; empty where `x0 ≥ x1`.
+    #[inline]
+    pub fn span(&self) -> [i64; 2] {
+        [self.left.x, self.right.x]
+    }
+
+    /// Goes on to row `y`, the one below the latest; says whether the triangle reaches it.
+    #[inline]
+    pub fn advance(&mut self, y: i32, triangle: impl FnOnce() -> SnappedTriangle) -> bool {
+        if y >= self.end {
+            return false;
+        }
+        if y == self.turn {
+            match Self::start(&triangle(), y) {
+                Some((walk, _)) => *self = walk,
+                None => return false,
+            }
+        } else {
+            self.left.advance();
+            self.right.advance();
+        }
+        true
+    }
+}
+
 /// The corners from top to bottom, and the side of the long edge on which the middle one lies.
 struct Chains {
     top: [i32; 2],
@@ -112,6 +161,7 @@ impl Chains {
 ///
 /// The same number serves on both sides: inclusive start on the left, exclusive end on the right.
 /// x = ⌈n / d⌉ with n = the edge's abscissa times d; `error` = n − x · d lies in (−d, 0].
+#[derive(Debug, Clone, Copy)]
 struct Walk {
     x: i64,
     error: i64,

@@ -98,6 +98,13 @@ impl SnappedTriangle {
         }
     }
 
+    /// A triangle whose coordinates are known to lie within the guard band.
+    #[inline]
+    pub(crate) fn within_guard_band(vertices: [[i32; 2]; 3]) -> Self {
+        debug_assert!(Self::new(vertices).is_ok());
+        Self(vertices)
+    }
+
     /// The corners, [x, y] in 1/256 pixel, y down.
     pub fn vertices(&self) -> [[i32; 2]; 3] {
         self.0

@@ -15,6 +15,8 @@ pub struct SurfaceInput<'a> {
     pub scene: &'a Scene,
     /// The camera and the screen.
     pub view: &'a View,
+    /// Which triangles were let through.
+    pub filter: Filter,
     /// Runs of items that share an instance and a material.
     pub runs: Vec<Run>,
     /// All triangles that may cover a sample.
@@ -36,7 +38,7 @@ impl<'a> SurfaceInput<'a> {
             assembler.primitives(run, run.range.clone(), |t| triangles.push(t));
         }
         let counts = assembler.counts;
-        Ok(Self { scene, view, runs, triangles, counts })
+        Ok(Self { scene, view, filter, runs, triangles, counts })
     }
 
     /// The run that a triangle of [`Self::triangles`] belongs to.

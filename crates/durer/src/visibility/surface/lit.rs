@@ -42,6 +42,20 @@ struct RunInfo<'a> {
     plain: bool,
 }
 
+/// From where a point of an item is seen.
+#[derive(Debug, Clone, Copy)]
+pub enum Seen {
+    /// From the eye, at a pixel's centre.
+    Pixel(i32, i32),
+    /// From anywhere, as by a ray that was reflected; textures are sampled at full size.
+    Point {
+        /// Barycentric coordinates of the point.
+        weights: Weights,
+        /// Towards where it is seen from, world axes.
+        view: Vec3,
+    },
+}
+
 /// One thread's way from items to colours.
 pub struct Lit<'a> {
     shared: Lighting<'a>,
@@ -101,6 +115,26 @@ impl<'a> Lit<'a> {
         info
     }
 
+    /// Linear RGBA, straight alpha, of a point of an item under given lights.
+    pub fn color_under(&mut self, item: u32, seen: Seen, lights: &PreparedLights) -> Vec4 {
+        self.with_surface_seen(item, seen, |surface, material, _, shading| {
+            // Light on corners or faces would not know what lights reach the point.
+            let surface = Surface { lit: None, ..*surface };
+            shade(&surface, material, lights, shading)
+        })
+    }
+
+    /// The alpha of a point of an item.
+    pub fn alpha(&mut self, item: u32, seen: Seen) -> f32 {
+        self.with_surface_seen(item, seen, |surface, material, _, _| material.alpha(surface))
+    }
+
+    /// The triangle of an item.
+    pub fn triangle(&mut self, item: u32) -> &VisibleTriangle {
+        let run = self.run_info(item).run;
+        self.triangles.get(item, run)
+    }
+
     /// Linear RGBA, straight alpha, of an item at a pixel's centre.
     pub fn color(&mut self, item: u32, x: i32, y: i32) -> Vec4 {
         self.with_surface(item, x, y, |surface, material, lights, shading| {
@@ -130,16 +164,28 @@ impl<'a> Lit<'a> {
         y: i32,
         use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
     ) -> R {
+        self.with_surface_seen(item, Seen::Pixel(x, y), use_it)
+    }
+
+    fn with_surface_seen<R>(
+        &mut self,
+        item: u32,
+        seen: Seen,
+        use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
+    ) -> R {
         let RunInfo { run, mesh, material, shading, .. } = self.run_info(item);
         let lit = self.reflected(item, run, material, shading);
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, run);
-        let w = t.weights(x, y, [0.0; 2]);
+        let (w, view) = match seen {
+            Seen::Pixel(x, y) => (t.weights(x, y, [0.0; 2]), parallel),
+            Seen::Point { weights, view } => (weights, Some(view)),
+        };
         let position = blend(&t.positions, w);
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
         let mut surface = Surface {
             position,
-            view: parallel.unwrap_or(-position),
+            view: view.unwrap_or(-position),
             normal: blend(&t.normals, w),
             geometric_normal: t.face_normal,
             lit: lit.map(|corners| Reflected::interpolate(corners, w)),
@@ -150,7 +196,10 @@ impl<'a> Lit<'a> {
             surface.color = a * w[0] + b * w[1] + c * w[2];
         }
         if material.is_textured() {
-            let (right, down) = t.weights_beside(x, y);
+            let (right, down) = match seen {
+                Seen::Pixel(x, y) => t.weights_beside(x, y),
+                Seen::Point { .. } => (w, w),
+            };
             for (set, coordinates) in mesh.tex_coords.iter().take(TEX_COORD_SETS).enumerate() {
                 let corners = t.corners.map(|c| coordinates[c as usize]);
                 tex_coords[set] = tex_coord(&corners, w, right, down);

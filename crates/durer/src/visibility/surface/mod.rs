@@ -1,10 +1,23 @@
 //! Visible surfaces.
 
+pub(crate) mod active;
 pub(crate) mod attributes;
+pub(crate) mod background;
+pub mod cover;
+pub mod depth_sort;
 pub mod input;
 pub(crate) mod lit;
+pub mod method;
+pub(crate) mod nearest;
+pub mod picture;
+pub mod ray;
+pub mod scan_line_z;
 pub mod setup;
+pub(crate) mod visible;
+pub mod warnock;
 pub mod z_buffer;
+
+pub use method::{SurfaceMethod, render_with};
 
 use crate::math::Vec4;
 

@@ -10,6 +10,7 @@
 use crate::clip::volume::{self, Borders, ClipVertex, clip_polygon, clip_segment};
 use crate::math::{DMat4, DVec2, Vec3};
 use crate::raster::fixed::{GUARD_BAND, HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS, first_center, snap};
+use crate::raster::triangle::SnappedTriangle;
 use crate::scene::{AlphaMode, Mesh, Scene, Topology};
 use crate::simd::Level;
 use crate::trace::NoTrace;
@@ -50,6 +51,13 @@ impl ScreenTriangle {
     #[inline]
     pub fn origin(&self) -> [i32; 2] {
         [self.x[0] >> SUBPIXEL_BITS, self.y[0] >> SUBPIXEL_BITS]
+    }
+
+    /// The corners alone, for the rasterizers of triangles.
+    #[inline]
+    pub fn snapped(&self) -> SnappedTriangle {
+        let ([x0, x1, x2], [y0, y1, y2]) = (self.x, self.y);
+        SnappedTriangle::within_guard_band([[x0, y0], [x1, y1], [x2, y2]])
     }
 
     /// The depth at a point of the screen, `dx, dy` pixels from the centre of [`Self::origin`].

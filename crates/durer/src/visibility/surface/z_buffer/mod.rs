@@ -20,12 +20,13 @@ use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
+use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
-use resolve::{Area, Fragments, MaskTest, Mixed, Output, background_rows, resolve};
+use resolve::{Area, Fragments, MaskTest, Mixed, Output, resolve};
 use tile::{AllPass, FragmentTest, SamplePlane, TILE};
 
 /// The facts.

@@ -3,11 +3,11 @@
 
 use super::tile::{FragmentTest, SamplePlane, TILE, TILE_PIXELS};
 use crate::math::Vec4;
-use crate::shade::color::{encode_rgba8, encode_srgb8, premultiply, unpremultiply};
+use crate::shade::color::{encode_srgb8, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::Background;
 use crate::visibility::surface::lit::{Lit, Queue};
 use crate::visibility::surface::setup::ScreenTriangle;
+use crate::visibility::surface::visible::encode;
 use fearless_simd::Simd;
 use fearless_simd_macros::simd;
 
@@ -167,11 +167,6 @@ impl Mixed {
         }
         self.queue.count = 0;
     }
-}
-
-fn encode(premultiplied: Vec4) -> [u8; 4] {
-    let opaque = premultiplied.w >= 1.0;
-    encode_rgba8(if opaque { premultiplied } else { unpremultiply(premultiplied) })
 }
 
 /// Lights everything that is visible in a tile.
@@ -372,15 +367,4 @@ fn blended(
         }
     }
     average(&colors[..planes.len()])
-}
-
-/// The background's colour in each row of a picture of this height.
-pub fn background_rows(background: Background, height: u32) -> impl Fn(i32) -> Vec4 + Sync {
-    move |y| match background {
-        Background::Color(color) => color,
-        Background::Gradient(top, bottom) => {
-            let t = (y as f32 + 0.5) / height as f32;
-            top * (1.0 - t) + bottom * t
-        }
-    }
 }

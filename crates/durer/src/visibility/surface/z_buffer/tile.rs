@@ -336,6 +336,10 @@ fn fill_rows<S: Simd, T: FragmentTest>(
     for y in y0..=y1 {
         let outside = edges.outside();
         edges.next_row();
+        // Thin triangles leave most rows of their boxes and blocks empty.
+        if !outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+            continue;
+        }
         let index = (y * TILE + x) as usize;
         let depth_y = t.triangle.depth_dy * (t.from[1] + y as f32);
         let depth = (depth_x + depth_y) + t.triangle.depth;

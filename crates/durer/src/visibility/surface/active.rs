@@ -1,0 +1,77 @@
+//! The triangles that a scan line crosses: y-buckets and the active list of all scan-line methods.
+
+use crate::raster::triangle::edge_walking::RowWalk;
+use crate::visibility::surface::setup::ScreenTriangle;
+
+/// A triangle that the current scan line crosses.
+#[derive(Debug, Clone, Copy)]
+pub struct Active {
+    /// Index into the list of triangles.
+    pub triangle: u32,
+    /// First column whose centre is covered; within the screen.
+    pub x0: i32,
+    /// The column after the last; the span is empty where `x0 ≥ x1`.
+    pub x1: i32,
+    walk: RowWalk,
+}
+
+/// Follows all triangles down the screen; visits each row once.
+///
+/// Triangles wait sorted by their first row instead of in one bucket per row, so that memory grows
+/// with the triangles and not with the picture's height.
+pub struct ActiveList<'a> {
+    triangles: &'a [ScreenTriangle],
+    width: i64,
+    /// First row in the upper half, index of the triangle in the lower.
+    waiting: Vec<u64>,
+    next: usize,
+    active: Vec<Active>,
+}
+
+impl<'a> ActiveList<'a> {
+    /// Sorts the triangles by their first row on a screen of this size.
+    pub fn new(triangles: &'a [ScreenTriangle], width: u32, height: u32) -> Self {
+        let mut waiting: Vec<u64> = Vec::with_capacity(triangles.len());
+        for (index, t) in triangles.iter().enumerate() {
+            let Some([_, y0, _, y1]) = t.pixel_bounds(0) else { continue };
+            if y1 >= 0 && i64::from(y0) < i64::from(height) {
+                waiting.push((y0.max(0) as u64) << 32 | index as u64);
+            }
+        }
+        waiting.sort_unstable();
+        Self { triangles, width: i64::from(width), waiting, next: 0, active: Vec::new() }
+    }
+
+    /// Goes on to row `y`; rows come one after the other from 0.
+    ///
+    /// Calls `enter` for each triangle that comes in; those before keep their order.
+    pub fn advance(&mut self, y: i32, mut enter: impl FnMut(&Active)) -> &[Active] {
+        let Self { triangles, width, active, .. } = self;
+        active.retain_mut(|a| {
+            let goes_on = a.walk.advance(y, || triangles[a.triangle as usize].snapped());
+            a.set_span(*width);
+            goes_on
+        });
+        while let Some(&key) = self.waiting.get(self.next)
+            && (key >> 32) as i64 <= i64::from(y)
+        {
+            self.next += 1;
+            let triangle = key as u32;
+            let snapped = self.triangles[triangle as usize].snapped();
+            if let Some((walk, _)) = RowWalk::start(&snapped, y) {
+                let mut new = Active { triangle, x0: 0, x1: 0, walk };
+                new.set_span(self.width);
+                enter(&new);
+                self.active.push(new);
+            }
+        }
+        &self.active
+    }
+}
+
+impl Active {
+    #[inline(always)]
+    fn set_span(&mut self, width: i64) {
+        [self.x0, self.x1] = self.walk.span().map(|x| x.clamp(0, width) as i32);
+    }
+}

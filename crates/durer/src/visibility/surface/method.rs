@@ -1,0 +1,142 @@
+//! All ways to find visible surfaces: one scene in, the same picture out.
+
+use crate::math::Vec4;
+use crate::shade::{PreparedLights, Shading};
+use crate::simd::Level;
+use crate::target::Framebuffer;
+use crate::trace::Tracer;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::setup::Filter;
+use crate::visibility::surface::{Background, Samples};
+use crate::visibility::surface::{depth_sort, picture, ray, scan_line_z, warnock, z_buffer};
+
+crate::info::family! {
+    /// The algorithms that find visible surfaces.
+    pub enum SurfaceMethod {
+        /// The z-buffer, the production path.
+        ZBuffer => z_buffer::INFO,
+        /// The z-buffer with one row of depth.
+        ScanLineZ => scan_line_z::INFO,
+        /// Polygons in order, painted from back to front.
+        DepthSort => depth_sort::INFO,
+        /// Windows divided until they are simple.
+        Warnock => warnock::INFO,
+        /// Rays through the samples.
+        Ray => ray::INFO,
+    }
+}
+
+/// What any of them may need to know.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Samples per pixel of the colour plane, for those methods that can take several.
+    pub samples: Samples,
+    /// `None` = by material.
+    pub shading: Option<Shading>,
+    /// What is behind everything.
+    pub background: Background,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
+}
+
+impl Default for Options {
+    /// One sample, by material, on white, the machine's best level.
+    fn default() -> Self {
+        Self {
+            samples: Samples::One,
+            shading: None,
+            background: Background::Color(Vec4::ONE),
+            level: Level::new(),
+        }
+    }
+}
+
+impl Options {
+    /// The part that methods with one surface per pixel need.
+    fn picture(&self) -> picture::Options {
+        let Self { shading, background, level, .. } = *self;
+        picture::Options { shading, background, level }
+    }
+
+    /// As many samples, in rows and columns.
+    fn warnock(&self) -> warnock::Options {
+        let sub_levels = match self.samples {
+            Samples::One => 0,
+            Samples::Four => 1,
+            Samples::Sixteen => 2,
+        };
+        warnock::Options { look: self.picture(), sub_levels, ..Default::default() }
+    }
+
+    fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
+        let Self { samples, shading, background, level } = *self;
+        z_buffer::Options { samples, cull: filter.cull, shading, background, level }
+    }
+}
+
+/// A step of one of the methods.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// Of the scan-line z-buffer.
+    ScanLineZ(scan_line_z::Step),
+    /// Of depth sort.
+    DepthSort(depth_sort::Step),
+    /// Of Warnock's subdivision.
+    Warnock(warnock::Step),
+    /// Of ray casting.
+    Ray(ray::Step),
+}
+
+/// Hands the steps of one method on as [`Step`].
+struct Wrapped<'a, T, F>(&'a mut T, F);
+
+impl<S, T: Tracer<Step>, F: Fn(S) -> Step> Tracer<S> for Wrapped<'_, T, F> {
+    #[inline(always)]
+    fn step(&mut self, make: impl FnOnce() -> S) {
+        let Self(t, wrap) = self;
+        t.step(|| wrap(make()));
+    }
+}
+
+/// Renders into the planes that the framebuffer has, by any of the methods; depth, item and normal
+/// at pixel centres are the same by all of them.
+///
+/// The production z-buffer works in parallel and takes no steps.
+///
+/// # Errors
+/// What the method's own function finds.
+pub fn render_with(
+    method: SurfaceMethod,
+    input: &SurfaceInput<'_>,
+    lights: &PreparedLights,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) -> crate::Result<()> {
+    match method {
+        SurfaceMethod::ZBuffer => {
+            let z_options = options.z_buffer(input.filter);
+            z_buffer::render(input.scene, input.view, lights, &z_options, framebuffer)?;
+        }
+        SurfaceMethod::ScanLineZ => {
+            let t = &mut Wrapped(t, Step::ScanLineZ);
+            scan_line_z::render(input, lights, &options.picture(), framebuffer, t);
+        }
+        SurfaceMethod::DepthSort => {
+            let t = &mut Wrapped(t, Step::DepthSort);
+            let options = depth_sort::Options { look: options.picture() };
+            depth_sort::render(input, lights, &options, framebuffer, t);
+        }
+        SurfaceMethod::Warnock => {
+            let t = &mut Wrapped(t, Step::Warnock);
+            warnock::render(input, lights, &options.warnock(), framebuffer, t);
+        }
+        SurfaceMethod::Ray => {
+            let t = &mut Wrapped(t, Step::Ray);
+            let (look, samples) = (options.picture(), options.samples);
+            let options = ray::Options { look, samples, ..Default::default() };
+            ray::render(input, lights, &options, framebuffer, t);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,152 @@
+//! From the visible item of each pixel to the planes of a picture: what all methods that find one
+//! surface per pixel end with.
+//!
+//! Blended surfaces count as opaque here, as they do in the z-buffer's depth, item and normal
+//! planes; their colour is shown without its alpha.
+
+use crate::math::Vec4;
+use crate::shade::color::{encode_rgba8, encode_srgb8};
+use crate::shade::{PreparedLights, PreparedMaterials, Shading};
+use crate::simd::Level;
+use crate::target::{Framebuffer, NO_ITEM};
+use crate::visibility::surface::Background;
+use crate::visibility::surface::background::background_rows;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::lit::{Lighting, Lit};
+use fearless_simd::{Simd, dispatch};
+use fearless_simd_macros::simd;
+
+/// What a picture with one surface per pixel is to have.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// `None` = by material.
+    pub shading: Option<Shading>,
+    /// What is behind everything.
+    pub background: Background,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
+}
+
+impl Default for Options {
+    /// By material, on white, the machine's best level.
+    fn default() -> Self {
+        let background = Background::Color(Vec4::ONE);
+        Self { shading: None, background, level: Level::new() }
+    }
+}
+
+/// Lights one row after the other and writes it to the planes of a framebuffer.
+pub(crate) struct Picture<'a> {
+    framebuffer: &'a mut Framebuffer,
+    background: Background,
+    level: Level,
+    /// Lights single pixels, tests masks.
+    pub lit: Lit<'a>,
+    /// Items from here on are lines and points, which the item plane does not show.
+    triangle_count: u32,
+    /// Rows of the whole picture.
+    height: u32,
+}
+
+impl<'a> Picture<'a> {
+    pub fn new(
+        input: &'a SurfaceInput<'a>,
+        materials: &'a PreparedMaterials<'a>,
+        lights: &'a PreparedLights,
+        options: &Options,
+        framebuffer: &'a mut Framebuffer,
+    ) -> Self {
+        let lighting = Lighting {
+            scene: input.scene,
+            view: input.view,
+            runs: &input.runs,
+            materials,
+            lights,
+            shading: options.shading,
+        };
+        Self::with_lighting(lighting, options, framebuffer)
+    }
+
+    /// With materials that are prepared already.
+    pub fn with_lighting(
+        lighting: Lighting<'a>,
+        options: &Options,
+        framebuffer: &'a mut Framebuffer,
+    ) -> Self {
+        Self {
+            framebuffer,
+            background: options.background,
+            level: options.level,
+            lit: Lit::new(lighting),
+            triangle_count: lighting.scene.triangle_count() as u32,
+            height: lighting.view.height(),
+        }
+    }
+
+    /// Writes the pixels of row `y` from column `x`: the item and depth at each pixel's centre,
+    /// [`NO_ITEM`] where nothing is.
+    pub fn write(&mut self, x: u32, y: u32, items: &[u32], depths: &[f32]) {
+        self.write_planes(x, y, items, depths);
+        let behind = background_rows(self.background, self.height)(y as i32);
+        let row = self.framebuffer.color.row_mut(y);
+        let out = row.get_mut(x as usize..).unwrap_or_default();
+        let (lit, at) = (&mut self.lit, [x as i32, y as i32]);
+        dispatch!(self.level, simd => color_row(simd, lit, items, behind, at, out));
+    }
+
+    /// Writes depth, item and normal, as far as the framebuffer has them; no colour.
+    pub fn write_planes(&mut self, x: u32, y: u32, items: &[u32], depths: &[f32]) {
+        let start = x as usize;
+        if let Some(plane) = &mut self.framebuffer.depth {
+            let row = plane.row_mut(y).get_mut(start..).unwrap_or_default();
+            row.iter_mut().zip(depths).for_each(|(to, &depth)| *to = depth);
+        }
+        if let Some(plane) = &mut self.framebuffer.item {
+            let row = plane.row_mut(y).get_mut(start..).unwrap_or_default();
+            for (to, &item) in row.iter_mut().zip(items) {
+                *to = if item < self.triangle_count { item } else { NO_ITEM };
+            }
+        }
+        if let Some(plane) = &mut self.framebuffer.normal {
+            let row = plane.row_mut(y).get_mut(start..).unwrap_or_default();
+            let visible = row.iter_mut().zip(items).enumerate();
+            for (i, (to, &item)) in visible.filter(|(_, (_, item))| **item != NO_ITEM) {
+                *to = self.lit.normal(item, (start + i) as i32, y as i32).to_array();
+            }
+        }
+    }
+
+    /// Whether the framebuffer has planes that show what is at the pixels' centres.
+    pub fn wants_planes(&self) -> bool {
+        let planes = &self.framebuffer;
+        planes.depth.is_some() || planes.item.is_some() || planes.normal.is_some()
+    }
+}
+
+/// Lights the pixels of a row, eight at a time.
+#[simd]
+fn color_row<S: Simd>(
+    simd: S,
+    lit: &mut Lit<'_>,
+    items: &[u32],
+    behind: Vec4,
+    [x, y]: [i32; 2],
+    out: &mut [[u8; 4]],
+) {
+    let behind = encode_rgba8(behind);
+    for (eight, (out, of_out)) in out.chunks_mut(8).zip(items.chunks(8)).enumerate() {
+        let mut items = [NO_ITEM; 8];
+        items[..of_out.len()].copy_from_slice(of_out);
+        let mut colors = [[0.0; 8]; 3];
+        if items != [NO_ITEM; 8] {
+            lit.colors_x8(simd, &items, x + 8 * eight as i32, y, &mut colors);
+        }
+        let [r, g, b] = colors;
+        for (i, to) in out.iter_mut().enumerate() {
+            *to = match items[i] {
+                NO_ITEM => behind,
+                _ => [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255],
+            };
+        }
+    }
+}

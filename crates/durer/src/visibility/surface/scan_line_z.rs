@@ -1,0 +1,96 @@
+//! The scan-line z-buffer: one row of depth and colour.
+//!
+//! C. Wylie, G. Romney, D. Evans, A. Erdahl, *Half-Tone Perspective Drawings by Computer*, AFIPS
+//! Fall Joint Computer Conference, 1967; L. Carpenter's form with a row of depths. Image space. Rows
+//! are made from the top: triangles whose first row is reached join the active list, their left and
+//! right ends advance by integer increments from row to row (edge coherence), and each span is
+//! entered into the row of depths.
+//!
+//! Cost: O(n log n) for the order by first row, then O(rows crossed + covered pixels). Memory: the
+//! triangles, the active list and one row; nothing grows with the picture's height but the
+//! framebuffer itself. Limits: one surface per pixel; blended surfaces count as opaque.
+
+use crate::info::{Class, Info};
+use crate::shade::{PreparedLights, PreparedMaterials};
+use crate::target::Framebuffer;
+use crate::trace::Tracer;
+use crate::visibility::surface::active::ActiveList;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::nearest::{DepthRow, Masked};
+pub use crate::visibility::surface::picture::Options;
+use crate::visibility::surface::picture::Picture;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "scan-line-z",
+    title: "Scan-line z-buffer",
+    authors: "C. Wylie, G. Romney, D. Evans, A. Erdahl; L. Carpenter",
+    year: 1967,
+    source: "Half-Tone Perspective Drawings by Computer, AFIPS Fall Joint Computer Conference",
+    class: Class::ImageSpace,
+    cost: "O(n log n + rows crossed + covered pixels) time, O(n + width) memory, n triangles",
+    limits: "one surface per pixel; blended surfaces count as opaque",
+};
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A row begins with an empty row of depths.
+    Row {
+        /// The row, from the top.
+        y: i32,
+    },
+    /// A triangle joins the active list.
+    Enter {
+        /// Its item.
+        item: u32,
+    },
+    /// A triangle's part of the row is compared with what is there.
+    Span {
+        /// Its item.
+        item: u32,
+        /// First column.
+        x0: i32,
+        /// The column after the last.
+        x1: i32,
+    },
+    /// The triangle of the latest span is the nearest so far at a pixel.
+    Write {
+        /// Its item.
+        item: u32,
+        /// The column.
+        x: i32,
+        /// Its depth there.
+        depth: f32,
+    },
+}
+
+/// Renders into the planes that the framebuffer has.
+pub fn render(
+    input: &SurfaceInput<'_>,
+    lights: &PreparedLights,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) {
+    let materials = PreparedMaterials::new(input.scene);
+    let (width, height) = (input.view.width(), input.view.height());
+    let mut picture = Picture::new(input, &materials, lights, options, framebuffer);
+    let masked = Masked::new(input);
+    let mut list = ActiveList::new(&input.triangles, width, height);
+    let mut row = DepthRow::new(width);
+    for y in 0..height as i32 {
+        t.step(|| Step::Row { y });
+        row.clear();
+        let item = |triangle: u32| input.triangles[triangle as usize].item;
+        let active = list.advance(y, |a| t.step(|| Step::Enter { item: item(a.triangle) }));
+        for span in active.iter().filter(|a| a.x0 < a.x1) {
+            let triangle = &input.triangles[span.triangle as usize];
+            let (item, x0, x1) = (triangle.item, span.x0, span.x1);
+            t.step(|| Step::Span { item, x0, x1 });
+            let wrote = |x, depth| t.step(|| Step::Write { item, x, depth });
+            masked.enter(&mut row, triangle, [x0, x1], y, &mut picture.lit, wrote);
+        }
+        picture.write(0, y as u32, &row.item, &row.depth);
+    }
+}
