@@ -51,6 +51,7 @@
 //! | Which pixel shows this point of a plane? | [`view::window`]: window to viewport |
 //! | Several views in one picture? | [`view::layout`] |
 //! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
+//! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
 //! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
 //!
 //! **Which part of a line lies in the window?** [`clip::line`]
@@ -98,7 +99,15 @@
 //! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier
 //! curves, B-splines, NURBS and glyphs to chains of lines.
 //!
-//! **Which surface is in front?** [`visibility::surface::z_buffer`], the production path.
+//! **Which surface is in front?** [`visibility::surface`]: one scene in, the same picture out.
+//!
+//! | algorithm | decides by |
+//! |---|---|
+//! | [z-buffer](visibility::surface::z_buffer) | a depth per sample, in tiles: the production path |
+//! | [Scan-line z-buffer](visibility::surface::scan_line_z) | a depth per pixel of one row |
+//! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting what has no order |
+//! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
+//! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);

@@ -46,7 +46,12 @@ fn made_small(mut arguments: Vec<String>) -> Vec<String> {
     arguments
 }
 
-/// A folder with a copy of the samples.
+/// What `durer clip` has to cut in the examples, and what with.
+const COUNTRIES: &str = r#"{"type":"Feature","properties":{"name":"A"},"geometry":{"type":"Polygon",
+"coordinates":[[[0,40],[50,40],[50,50],[0,50],[0,40]]]}}"#;
+const MASK: &str = r#"{"type":"Polygon","coordinates":[[[10,30],[20,30],[15,60],[10,30]]]}"#;
+
+/// A folder with a copy of the samples, and map data.
 fn folder_with_samples() -> Folder {
     let folder = Folder::new();
     fs::create_dir(folder.path("samples")).unwrap();
@@ -55,6 +60,8 @@ fn folder_with_samples() -> Folder {
         let name = entry.file_name().into_string().unwrap();
         fs::copy(entry.path(), folder.path("samples").join(name)).unwrap();
     }
+    folder.write("countries.geojson", COUNTRIES);
+    folder.write("mask.geojson", MASK);
     folder
 }
 
@@ -80,9 +87,9 @@ fn every_command_of_the_readme_runs() {
             assert!(picture.shows_something(), "durer {}: {name} is empty", arguments.join(" "));
         }
     }
-    assert!(
-        folder.path("turn/teapot_11.png").exists() && folder.path("thumbnails/crate.png").exists()
-    );
+    for name in ["turn/teapot_11.png", "thumbnails/crate.png", "europe.geojson", "within.svg"] {
+        assert!(!folder.read(name).is_empty(), "{name}");
+    }
 }
 
 #[test]
