@@ -190,7 +190,7 @@ pub struct PictureArgs {
 #[command(next_help_heading = "View")]
 pub struct ViewArgs {
     /// iso, front, back, left, right, top or bottom; fits the model into the picture
-    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera", "viewports"])]
+    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera"])]
     pub view: NamedView,
     /// Degrees around the up axis from the front, to the right; fits the model
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::number, conflicts_with_all = ["eye", "camera"])]
