@@ -8,5 +8,6 @@ mod options;
 mod outputs;
 mod pick;
 mod pictures;
+mod readme;
 mod resources;
 mod streams;
