@@ -61,7 +61,7 @@ fn random_view(seed: u64) -> View {
         numbers.next();
     }
     let eye = numbers.point(3.0).as_dvec3() + DVec3::splat(1e-3);
-    let projection = if seed % 3 == 0 {
+    let projection = if seed.is_multiple_of(3) {
         Projection::Orthographic { height: 1.0 + 4.0 * f64::from(numbers.next()) }
     } else {
         Projection::Perspective { fov_y: 0.3 + 1.5 * f64::from(numbers.next()) }

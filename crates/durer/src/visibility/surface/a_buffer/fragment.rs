@@ -104,6 +104,7 @@ impl Pool {
 
     /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y; calls `added` with the column of
     /// each. Says whether there was room for all of them.
+    #[expect(clippy::too_many_arguments, reason = "one call from one place, in the inner loop")]
     pub fn add(
         &mut self,
         t: &ScreenTriangle,
