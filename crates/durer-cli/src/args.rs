@@ -5,7 +5,7 @@ use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use durer::math::{DVec2, DVec3, Rect};
-use durer::pipeline::{self, Background};
+use durer::pipeline::{self, Background, SurfaceMethod};
 use durer::scene::{self, Light};
 use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
@@ -160,7 +160,10 @@ pub struct PictureArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
     pub size: Size,
-    /// Samples per pixel
+    /// How visible surfaces are found
+    #[arg(long, value_name = "NAME", default_value = "z-buffer", value_parser = values::algorithm())]
+    pub algorithm: SurfaceMethod,
+    /// Samples per pixel, where the algorithm takes several
     #[arg(long, value_name = "N", default_value = "4")]
     pub aa: Samples,
     /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
@@ -190,7 +193,7 @@ pub struct PictureArgs {
 #[command(next_help_heading = "View")]
 pub struct ViewArgs {
     /// iso, front, back, left, right, top or bottom; fits the model into the picture
-    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera", "viewports"])]
+    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera"])]
     pub view: NamedView,
     /// Degrees around the up axis from the front, to the right; fits the model
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::number, conflicts_with_all = ["eye", "camera"])]

@@ -257,6 +257,7 @@ fn render_options(
         lights => Lighting::Given(lights.to_vec()),
     };
     Ok(RenderOptions {
+        algorithm: args.picture.algorithm,
         width: shot.size.width,
         height: shot.size.height,
         shading: args.look.shading.map(Into::into),

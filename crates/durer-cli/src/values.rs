@@ -1,6 +1,8 @@
 //! Numbers and vectors as options take them; every message says what would be right.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use durer::math::{DVec2, DVec3, Rect};
+use durer::pipeline::SurfaceMethod;
 
 /// Width and height of a picture, in pixels, each at least 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +21,13 @@ pub fn size(text: &str) -> Result<Size, String> {
         _ => Err("a size is WIDTHxHEIGHT in whole pixels from 1, e.g. 1920x1080".to_owned()),
     };
     Ok(Size { width: side(width)?, height: side(height)? })
+}
+
+/// The name of an algorithm that finds visible surfaces; all names are told in the help.
+pub fn algorithm() -> impl TypedValueParser<Value = SurfaceMethod> {
+    let names =
+        SurfaceMethod::ALL.iter().map(|m| PossibleValue::new(m.name()).help(m.info().title));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<SurfaceMethod>())
 }
 
 /// A finite number.

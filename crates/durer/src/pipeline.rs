@@ -6,9 +6,14 @@ use crate::shade::PreparedLights;
 pub use crate::shade::Shading;
 use crate::simd::Level;
 use crate::target::Framebuffer;
+use crate::trace::NoTrace;
 use crate::view::View;
+use crate::visibility::surface::a_buffer::Mask;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::method::{self, render_with};
+use crate::visibility::surface::setup::Filter;
 use crate::visibility::surface::z_buffer;
-pub use crate::visibility::surface::{Background, Cull, Samples};
+pub use crate::visibility::surface::{Background, Cull, Samples, SurfaceMethod};
 use crate::{Error, Result};
 
 /// Where light comes from.
@@ -25,6 +30,8 @@ pub enum Lighting {
 /// Everything about a picture but the scene.
 #[derive(Debug, Clone)]
 pub struct RenderOptions {
+    /// How visible surfaces are found.
+    pub algorithm: SurfaceMethod,
     /// Width in pixels, at least 1.
     pub width: u32,
     /// Height in pixels, at least 1.
@@ -39,7 +46,7 @@ pub struct RenderOptions {
     pub background: Background,
     /// Which faces are left out.
     pub cull: Cull,
-    /// Samples per pixel of the colour plane; the other planes always have one, at the centre.
+    /// Samples per pixel of the colour plane, where the algorithm takes several; the other planes always have one, at the centre.
     pub samples: Samples,
     /// Whether the framebuffer gets a depth plane.
     pub depth: bool,
@@ -57,6 +64,7 @@ impl RenderOptions {
     /// 1024 × 1024, white background, four samples, colour only.
     pub fn new(camera: Camera) -> Self {
         Self {
+            algorithm: SurfaceMethod::ZBuffer,
             width: 1024,
             height: 1024,
             camera,
@@ -107,7 +115,7 @@ pub struct Report {
     pub raster_seconds: f64,
 }
 
-/// Renders a scene by the production path, the z-buffer.
+/// Renders a scene by the algorithm asked for; the z-buffer is the production path.
 ///
 /// Meshes without normals are shown with flat faces, unless Gouraud or Phong shading is asked for:
 /// then they get smooth normals first ([`crate::scene::Mesh::with_smooth_normals`]).
@@ -135,16 +143,21 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
         Lighting::Auto => PreparedLights::of(scene, &options.camera),
         Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
     };
-    let z_options = z_buffer::Options {
-        samples: options.samples,
-        cull: options.cull,
-        shading: options.shading,
-        background: options.background,
-        level: options.level,
-    };
     let smoothed = with_needed_normals(scene, options.shading);
     let scene = smoothed.as_ref().unwrap_or(scene);
-    let report = z_buffer::render(scene, &view, &lights, &z_options, &mut framebuffer)?;
+    let report = match options.algorithm {
+        SurfaceMethod::ZBuffer => {
+            let z_options = z_buffer::Options {
+                samples: options.samples,
+                cull: options.cull,
+                shading: options.shading,
+                background: options.background,
+                level: options.level,
+            };
+            z_buffer::render(scene, &view, &lights, &z_options, &mut framebuffer)?
+        }
+        _ => from_screen_triangles(scene, &view, &lights, options, &mut framebuffer)?,
+    };
     let report = Report {
         triangles_in: scene.triangle_count(),
         non_finite: report.counts.non_finite,
@@ -155,6 +168,33 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
         raster_seconds: report.raster_seconds,
     };
     Ok((framebuffer, report))
+}
+
+/// All methods but the production path: first the list of triangles on the screen, then the method.
+fn from_screen_triangles(
+    scene: &Scene,
+    view: &View,
+    lights: &PreparedLights,
+    options: &RenderOptions,
+    framebuffer: &mut Framebuffer,
+) -> Result<z_buffer::Report> {
+    let start = std::time::Instant::now();
+    let sample_reach = options.algorithm.sample_reach();
+    let filter = Filter { cull: options.cull, sample_reach };
+    let input = SurfaceInput::new(scene, view, filter)?;
+    let geometry_seconds = start.elapsed().as_secs_f64();
+    let start = std::time::Instant::now();
+    let method_options = method::Options {
+        samples: options.samples,
+        mask: Mask::M16,
+        shading: options.shading,
+        background: options.background,
+        level: options.level,
+    };
+    let t = &mut NoTrace;
+    render_with(options.algorithm, &input, lights, &method_options, framebuffer, t)?;
+    let raster_seconds = start.elapsed().as_secs_f64();
+    Ok(z_buffer::Report { counts: input.counts, geometry_seconds, raster_seconds })
 }
 
 /// Interpolating shadings need normals at the vertices: the scene with those that are missing, where

@@ -215,7 +215,8 @@ impl Cutter {
 
     /// Valid polygons by the rectangle clip, all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
-        let valid = self.rules.fill == FillRule::EvenOdd && is_valid(&area.shapes, Touching::No);
+        let plain = self.rules.fill == FillRule::EvenOdd && self.rules.grid.is_none();
+        let valid = plain && is_valid(&area.shapes, Touching::No);
         let inside = self.op == BooleanOp::Intersection;
         let covers = |window: &Rect| window.contains(bounds.min()) && window.contains(bounds.max());
         match self.mask.window {

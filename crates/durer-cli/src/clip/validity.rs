@@ -50,18 +50,36 @@ pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
     }
     edges.sort_by(|p, q| p.low.total_cmp(&q.low));
     let mut budget = edges.len().saturating_mul(PAIRS_PER_EDGE);
-    let mut active: Vec<&Edge> = Vec::new();
-    for edge in &edges {
-        active.retain(|other| other.high >= edge.low);
-        let Some(left) = budget.checked_sub(active.len()) else { return false };
-        budget = left;
-        let size = |ring: usize| shapes.ring_range(ring).len();
-        if active.iter().any(|other| meet(edge, other, size(edge.ring), touching)) {
-            return false;
-        }
-        active.push(edge);
+    let size = |ring: usize| shapes.ring_range(ring).len();
+    slabs(&edges).iter().all(|slab| {
+        let mut active: Vec<&Edge> = Vec::new();
+        slab.iter().all(|edge| {
+            active.retain(|other| other.high >= edge.low);
+            let Some(left) = budget.checked_sub(active.len() + 1) else { return false };
+            budget = left;
+            let apart = !active.iter().any(|other| meet(edge, other, size(edge.ring), touching));
+            active.push(edge);
+            apart
+        })
+    })
+}
+
+/// The edges in horizontal slabs of equal height, each edge in all that it touches, in their order.
+fn slabs(edges: &[Edge]) -> Vec<Vec<&Edge>> {
+    let low = edges.iter().fold(f64::INFINITY, |y, e| y.min(e.a.y));
+    let high = edges.iter().fold(f64::NEG_INFINITY, |y, e| y.max(e.a.y));
+    let count = libm::sqrt(edges.len() as f64) as usize + 1;
+    // Halves, because the height of the whole may overflow; what is not finite goes to slab 0.
+    let slab = |y: f64| {
+        let part = (y * 0.5 - low * 0.5) / (high * 0.5 - low * 0.5) * count as f64;
+        (part.max(0.0) as usize).min(count - 1)
+    };
+    let mut slabs = vec![Vec::new(); count];
+    for edge in edges {
+        let (from, to) = (slab(edge.a.y.min(edge.b.y)), slab(edge.a.y.max(edge.b.y)));
+        slabs[from..=to].iter_mut().for_each(|slab| slab.push(edge));
     }
-    true
+    slabs
 }
 
 /// Whether two edges have more in common than they may.

@@ -274,7 +274,7 @@ impl<'a> Reader<'a> {
     fn line(&mut self, header: &Header) -> Result<Points> {
         let place = Place::Byte(self.at as u64);
         let mut points = self.run(header)?;
-        finish_line(&mut points, place, &mut self.warnings);
+        finish_line(&mut points, || place.clone(), &mut self.warnings);
         Ok(points)
     }
 
@@ -284,7 +284,7 @@ impl<'a> Reader<'a> {
         for index in 0..self.count(header.big, 4)? {
             let place = Place::Byte(self.at as u64);
             let mut ring = self.run(header)?;
-            finish_ring(&mut ring, place.clone(), &mut self.warnings);
+            finish_ring(&mut ring, || place.clone(), &mut self.warnings);
             lost |= index == 0 && ring.is_empty();
             if lost && !ring.is_empty() {
                 self.warnings.push(place, "the hole of a ring that was left out; left out too");

@@ -254,7 +254,7 @@ impl<'a> Reader<'a> {
         let place = self.place();
         let mut points = Points::default();
         self.list(|s| s.position(&mut points, dimensions))?;
-        finish_line(&mut points, place, &mut self.warnings);
+        finish_line(&mut points, || place.clone(), &mut self.warnings);
         Ok(points)
     }
 
@@ -266,7 +266,7 @@ impl<'a> Reader<'a> {
             let mut points = Points::default();
             let given = s.or_empty(|s| s.list(|s| s.position(&mut points, dimensions)))?;
             if given.is_some() {
-                finish_ring(&mut points, place.clone(), &mut s.warnings);
+                finish_ring(&mut points, || place.clone(), &mut s.warnings);
             }
             lost |= first && points.is_empty();
             first = false;

@@ -105,7 +105,7 @@ fn errors_of_geojson_say_where() {
     for (text, expected) in [
         ("{\"type\":\"Point\",\n \"coordinates\":[1,x]}", "line 2, column 19: a number"),
         ("\n{\"type\":\"Point\",\"coordinates\":[1]}", "line 2, column 31: a position"),
-        ("{\"type\":\"Point\",\"coordinates\":[NaN,1]}", "line 1, column 33: a number"),
+        ("{\"type\":\"Point\",\"coordinates\":[NaN,1]}", "line 1, column 32: a number"),
         (
             "{\"type\":\"Point\",\"coordinates\":[1e999,1]}",
             "line 1, column 32: the number is too large",

@@ -27,4 +27,5 @@ mod view_cull;
 mod view_pick;
 mod view_projection;
 mod view_window;
+mod visible_surface;
 mod z_buffer;

@@ -106,3 +106,19 @@ fn objects_come_nearest_first() {
     assert_eq!(found, [(1, 1), (2, 1), (0, 1)]);
     assert_eq!(hits.iter().map(|h| h.item).collect::<Vec<_>>(), [1, 2, 0]);
 }
+
+#[test]
+fn nothing_before_the_near_plane_or_beyond_the_far_plane_is_picked() {
+    let mut scene = of_triangles(&[crate::surface_scenes::FACING]);
+    let camera = Prepared::new(&scene, 60, 60).options.camera;
+    let ahead = (camera.target - camera.eye).normalize();
+    let at = |distance: f64| Instance {
+        mesh: 0,
+        world_from_mesh: DMat4::from_translation(camera.eye + ahead * distance),
+        name: String::new(),
+    };
+    scene.instances = vec![at(0.5 * camera.near), at(2.0), at(19.0), at(25.0), at(-1.0)];
+    let p = Prepared::new(&scene, 60, 60);
+    let hits = pick(&scene, &p.view, Area::Point(DVec2::splat(30.0)));
+    assert_eq!(hits.iter().map(|h| h.item).collect::<Vec<_>>(), [1, 2]);
+}

@@ -91,7 +91,7 @@ impl Geometries {
 
     fn point(&mut self, mut cursor: Cursor<'_>) -> Result<Points> {
         let mut points = Points::default();
-        if cursor.clone().is_empty_array() {
+        if cursor.clone().begins_empty() {
             return Ok(points);
         }
         self.position(&mut cursor, &mut points)?;
@@ -104,13 +104,16 @@ impl Geometries {
         let what = if kind == Run::Ring { "an array of rings" } else { "an array of lines" };
         let mut first = true;
         cursor.array(what, |cursor| {
-            let place = cursor.place();
+            let start = cursor.clone();
             let run = self.run(cursor, kind)?;
             let lost = run.is_empty();
             outer_lost |= first && lost && kind == Run::Ring;
             first = false;
             if outer_lost && !lost {
-                self.warnings.push(place, "the hole of a ring that was left out; left out too");
+                self.warnings.push(
+                    start.clone().place(),
+                    "the hole of a ring that was left out; left out too",
+                );
             } else if !lost {
                 runs.push(run);
             }
@@ -121,7 +124,9 @@ impl Geometries {
 
     /// An array of positions; empty where it had to be left out.
     fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
-        let place = cursor.place();
+        // Places cost a look at all of the text before them, so they wait until they are needed.
+        let start = cursor.clone();
+        let place = || start.clone().place();
         let mut points = Points::default();
         let what = if kind == Run::Ring {
             "a ring, an array of positions"
@@ -169,33 +174,33 @@ impl Geometries {
 }
 
 /// Leaves out a line of a single position.
-pub fn finish_line(points: &mut Points, place: Place, warnings: &mut Warnings) {
+pub fn finish_line(points: &mut Points, place: impl Fn() -> Place, warnings: &mut Warnings) {
     if points.len() == 1 {
-        warnings.push(place, "a line needs two positions; this one is left out");
+        warnings.push(place(), "a line needs two positions; this one is left out");
         *points = Points::default();
     }
 }
 
 /// Opens a ring as [`Geometry`] has it; closes those that are not closed, leaves out those that are
 /// too short.
-pub fn finish_ring(points: &mut Points, place: Place, warnings: &mut Warnings) {
+pub fn finish_ring(points: &mut Points, place: impl Fn() -> Place, warnings: &mut Warnings) {
     if points.is_empty() {
         return;
     }
     if points.len() > 1 && points.xy.first() == points.xy.last() {
         points.pop();
     } else {
-        warnings.push(place.clone(), "the ring is not closed; closed");
+        warnings.push(place(), "the ring is not closed; closed");
     }
     if points.len() < 3 {
         let message = "a ring needs four positions, the last like the first; this one is left out";
-        warnings.push(place, message);
+        warnings.push(place(), message);
         *points = Points::default();
     }
 }
 
 impl Cursor<'_> {
-    fn is_empty_array(mut self) -> bool {
+    fn begins_empty(mut self) -> bool {
         self.take(b'[') && self.take(b']')
     }
 }

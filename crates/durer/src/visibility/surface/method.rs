@@ -1,14 +1,18 @@
 //! All ways to find visible surfaces: one scene in, the same picture out.
 
 use crate::math::Vec4;
+use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::{PreparedLights, Shading};
 use crate::simd::Level;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
+use crate::visibility::surface::a_buffer::Mask;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::setup::Filter;
 use crate::visibility::surface::{Background, Samples};
-use crate::visibility::surface::{depth_sort, picture, ray, scan_line_z, warnock, z_buffer};
+use crate::visibility::surface::{
+    a_buffer, depth_sort, picture, ray, scan_line_z, spanning_scan_line, warnock, z_buffer,
+};
 
 crate::info::family! {
     /// The algorithms that find visible surfaces.
@@ -17,6 +21,10 @@ crate::info::family! {
         ZBuffer => z_buffer::INFO,
         /// The z-buffer with one row of depth.
         ScanLineZ => scan_line_z::INFO,
+        /// Visibility span by span along the scan line.
+        SpanningScanLine => spanning_scan_line::INFO,
+        /// Fragment lists with coverage masks.
+        ABuffer => a_buffer::INFO,
         /// Polygons in order, painted from back to front.
         DepthSort => depth_sort::INFO,
         /// Windows divided until they are simple.
@@ -26,11 +34,23 @@ crate::info::family! {
     }
 }
 
+impl SurfaceMethod {
+    /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
+    pub fn sample_reach(self) -> i32 {
+        match self {
+            Self::ScanLineZ | Self::SpanningScanLine | Self::DepthSort => 0,
+            Self::ZBuffer | Self::ABuffer | Self::Warnock | Self::Ray => HALF_PIXEL,
+        }
+    }
+}
+
 /// What any of them may need to know.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Samples per pixel of the colour plane, for those methods that can take several.
     pub samples: Samples,
+    /// Sub-pixels of the A-buffer's masks.
+    pub mask: Mask,
     /// `None` = by material.
     pub shading: Option<Shading>,
     /// What is behind everything.
@@ -44,6 +64,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             samples: Samples::One,
+            mask: Mask::M16,
             shading: None,
             background: Background::Color(Vec4::ONE),
             level: Level::new(),
@@ -68,8 +89,13 @@ impl Options {
         warnock::Options { look: self.picture(), sub_levels, ..Default::default() }
     }
 
+    fn a_buffer(&self) -> a_buffer::Options {
+        let Self { mask, shading, background, level, .. } = *self;
+        a_buffer::Options { mask, shading, background, level, ..Default::default() }
+    }
+
     fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
-        let Self { samples, shading, background, level } = *self;
+        let Self { samples, shading, background, level, .. } = *self;
         z_buffer::Options { samples, cull: filter.cull, shading, background, level }
     }
 }
@@ -85,6 +111,10 @@ pub enum Step {
     Warnock(warnock::Step),
     /// Of ray casting.
     Ray(ray::Step),
+    /// Of the spanning scan line.
+    SpanningScanLine(spanning_scan_line::Step),
+    /// Of the A-buffer.
+    ABuffer(a_buffer::Step),
 }
 
 /// Hands the steps of one method on as [`Step`].
@@ -136,6 +166,14 @@ pub fn render_with(
             let (look, samples) = (options.picture(), options.samples);
             let options = ray::Options { look, samples, ..Default::default() };
             ray::render(input, lights, &options, framebuffer, t);
+        }
+        SurfaceMethod::SpanningScanLine => {
+            let t = &mut Wrapped(t, Step::SpanningScanLine);
+            spanning_scan_line::render(input, lights, &options.picture(), framebuffer, t);
+        }
+        SurfaceMethod::ABuffer => {
+            let t = &mut Wrapped(t, Step::ABuffer);
+            a_buffer::render(input, lights, &options.a_buffer(), framebuffer, t);
         }
     }
     Ok(())

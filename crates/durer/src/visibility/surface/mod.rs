@@ -1,5 +1,6 @@
 //! Visible surfaces.
 
+pub mod a_buffer;
 pub(crate) mod active;
 pub(crate) mod attributes;
 pub(crate) mod background;
@@ -8,11 +9,13 @@ pub mod depth_sort;
 pub mod input;
 pub(crate) mod lit;
 pub mod method;
+pub(crate) mod mixed;
 pub(crate) mod nearest;
 pub mod picture;
 pub mod ray;
 pub mod scan_line_z;
 pub mod setup;
+pub mod spanning_scan_line;
 pub(crate) mod visible;
 pub mod warnock;
 pub mod z_buffer;

@@ -13,6 +13,7 @@ use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::mixed::encode;
 use fearless_simd::{Simd, dispatch};
 use fearless_simd_macros::simd;
 
@@ -87,11 +88,22 @@ impl<'a> Picture<'a> {
     /// [`NO_ITEM`] where nothing is.
     pub fn write(&mut self, x: u32, y: u32, items: &[u32], depths: &[f32]) {
         self.write_planes(x, y, items, depths);
-        let behind = background_rows(self.background, self.height)(y as i32);
+        let behind = self.behind(y as i32);
         let row = self.framebuffer.color.row_mut(y);
         let out = row.get_mut(x as usize..).unwrap_or_default();
         let (lit, at) = (&mut self.lit, [x as i32, y as i32]);
         dispatch!(self.level, simd => color_row(simd, lit, items, behind, at, out));
+    }
+
+    /// What is behind everything in row `y`: linear, straight alpha.
+    pub fn behind(&self, y: i32) -> Vec4 {
+        background_rows(self.background, self.height)(y)
+    }
+
+    /// Writes row `y` of the colour plane from linear, premultiplied colours.
+    pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
+        let row = self.framebuffer.color.row_mut(y);
+        row.iter_mut().zip(sums).for_each(|(to, &sum)| *to = encode(sum));
     }
 
     /// Writes depth, item and normal, as far as the framebuffer has them; no colour.

@@ -1,7 +1,7 @@
 //! The result of an image-space algorithm, one item and depth per pixel, and its way to a picture.
 
 use crate::math::Vec4;
-use crate::shade::color::{encode_rgba8, premultiply, unpremultiply};
+use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::visibility::surface::background::background_rows;
@@ -139,10 +139,4 @@ pub fn write_planes(
 /// The background of a row, linear and premultiplied.
 pub fn background_at(look: &picture::Options, height: u32, y: i32) -> Vec4 {
     premultiply(background_rows(look.background, height)(y))
-}
-
-/// From linear premultiplied to 8-bit sRGB.
-pub fn encode(premultiplied: Vec4) -> [u8; 4] {
-    let opaque = premultiplied.w >= 1.0;
-    encode_rgba8(if opaque { premultiplied } else { unpremultiply(premultiplied) })
 }

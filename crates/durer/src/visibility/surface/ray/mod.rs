@@ -23,9 +23,10 @@ use crate::trace::Tracer;
 use crate::visibility::surface::Samples;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::Lighting;
+use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture;
 use crate::visibility::surface::visible::{
-    Masks, Visible, background_at, encode, pixels_of, with_lighting, write, write_planes,
+    Masks, Visible, background_at, pixels_of, with_lighting, write, write_planes,
 };
 use primary::{ScreenHit, ScreenRays};
 use whitted::Whitted;

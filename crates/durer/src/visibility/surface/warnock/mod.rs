@@ -20,10 +20,11 @@ use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::ScreenTriangle;
 use crate::visibility::surface::visible::{
-    Masks, Visible, background_at, encode, nearer, pixels_of, with_lighting, write, write_planes,
+    Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
 };
 use depth::{farthest, hides};
 

@@ -22,11 +22,12 @@ use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::mixed::Mixed;
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
-use resolve::{Area, Fragments, MaskTest, Mixed, Output, resolve};
+use resolve::{Area, Fragments, MaskTest, Output, resolve};
 use tile::{AllPass, FragmentTest, SamplePlane, TILE};
 
 /// The facts.
@@ -182,7 +183,7 @@ impl Frame<'_> {
             planes: offsets.iter().map(|&o| SamplePlane::new(o)).collect(),
             center: wants_center.then(|| SamplePlane::new([0; 2])).into_iter().collect(),
             fragments: Fragments::new(offsets),
-            mixed: Mixed::new(),
+            mixed: Mixed::new(tile::TILE_PIXELS),
             lit: Lit::new(self.lighting),
         };
         for column in 0..grid.columns {

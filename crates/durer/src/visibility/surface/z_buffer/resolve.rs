@@ -1,13 +1,13 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
-use super::tile::{FragmentTest, SamplePlane, TILE, TILE_PIXELS};
+use super::tile::{FragmentTest, SamplePlane, TILE};
 use crate::math::Vec4;
 use crate::shade::color::{encode_srgb8, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Lit, Queue};
+use crate::visibility::surface::lit::Lit;
+use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::ScreenTriangle;
-use crate::visibility::surface::visible::encode;
 use fearless_simd::Simd;
 use fearless_simd_macros::simd;
 
@@ -106,67 +106,6 @@ pub struct Output<'o> {
     pub color: &'o mut [[u8; 4]],
     /// Pixels of a row.
     pub stride: usize,
-}
-
-/// Pixels whose samples show several items: the sum of their colours so far, and what still waits.
-pub struct Mixed {
-    /// Tile-local pixels.
-    pixels: Vec<u32>,
-    /// Linear, premultiplied; divided by the number of samples.
-    sums: Vec<Vec4>,
-    /// Pixel and weight of each entry of the queue.
-    waiting: [(u32, f32); 8],
-    queue: Queue,
-}
-
-impl Mixed {
-    pub fn new() -> Self {
-        Self {
-            pixels: Vec::new(),
-            sums: vec![Vec4::ZERO; TILE_PIXELS],
-            waiting: [(0, 0.0); 8],
-            queue: Queue::default(),
-        }
-    }
-
-    /// Adds an item's share of a pixel.
-    #[inline(always)]
-    fn add<S: Simd>(
-        &mut self,
-        simd: S,
-        lit: &mut Lit<'_>,
-        item: u32,
-        index: u32,
-        weight: f32,
-        at: [i32; 2],
-    ) {
-        if !lit.is_plain(item) {
-            let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
-            self.sums[index as usize] += color * weight;
-            return;
-        }
-        if !lit.add_to_batch(item, at, &mut self.queue) {
-            self.flush(simd, lit);
-            lit.add_to_batch(item, at, &mut self.queue);
-        }
-        self.waiting[self.queue.count - 1] = (index, weight);
-        if self.queue.count == 8 {
-            self.flush(simd, lit);
-        }
-    }
-
-    /// Lights what waits.
-    #[inline(always)]
-    fn flush<S: Simd>(&mut self, simd: S, lit: &mut Lit<'_>) {
-        if self.queue.count == 0 {
-            return;
-        }
-        let [r, g, b] = lit.shade_batch(simd, &self.queue);
-        for (i, &(pixel, weight)) in self.waiting[..self.queue.count].iter().enumerate() {
-            self.sums[pixel as usize] += Vec4::new(r[i], g[i], b[i], 1.0) * weight;
-        }
-        self.queue.count = 0;
-    }
 }
 
 /// Lights everything that is visible in a tile.

@@ -1,0 +1,164 @@
+//! Coverage masks by table look-up from the normalized edge function.
+//!
+//! An edge function a·u + b·v + e, with u and v from −½ to ½ in the pixel and |a| + |b| = 1, is
+//! positive in all of the pixel from e = ½ on and nowhere below −½. In between, the table has for
+//! each direction (a, b) and each e the bits of the sub-pixels on the positive side: as many as the
+//! exact area says, those with the largest function.
+
+use super::Mask;
+
+/// Directions in a quadrant. Coarser ones turn edges by more than a sub-pixel's width.
+const DIRECTIONS: usize = 32;
+
+/// Steps of e from −½ to ½: half of what tells neighbouring counts of 64 sub-pixels apart.
+const DISTANCES: usize = 128;
+
+/// The masks of half planes for one size of mask.
+pub struct MaskTable {
+    /// Sub-pixels along the side of a pixel.
+    side: u32,
+    /// By direction, then distance; upper half plane of directions only.
+    masks: Vec<u64>,
+}
+
+/// A linear function on a pixel, divided by |a| + |b|: the direction's part.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Direction {
+    /// Where the direction's masks begin in the table.
+    start: u32,
+    /// Whether the table has the opposite direction, so that masks are turned over.
+    opposite: bool,
+    /// 1 / (|a| + |b|); 0 for a function without slope.
+    pub scale: f32,
+    /// (a, b), divided by |a| + |b|.
+    pub slope: [f32; 2],
+}
+
+impl Direction {
+    /// The direction of a function that grows by `a` per pixel to the right and `b` downwards.
+    pub fn new(a: f32, b: f32) -> Self {
+        let length = a.abs() + b.abs();
+        if length == 0.0 || !length.is_finite() {
+            return Self::default();
+        }
+        // A function and its opposite use the same masks, so that they never overlap or leave a gap.
+        let slope = [a / length, b / length];
+        let opposite = b < 0.0 || (b == 0.0 && a < 0.0);
+        let (a, b) = if opposite { (-a, -b) } else { (a, b) };
+        // Along the diamond |a| + |b| = 1 from (1, 0) by (0, 1) to (−1, 0).
+        let along = if a >= 0.0 { b / length } else { 2.0 - b / length };
+        let index = ((along * DIRECTIONS as f32) as usize).min(2 * DIRECTIONS - 1);
+        Self { start: (index * DISTANCES) as u32, opposite, scale: 1.0 / length, slope }
+    }
+}
+
+impl MaskTable {
+    pub fn new(mask: Mask) -> Self {
+        let side = mask.side();
+        let mut masks = Vec::with_capacity(2 * DIRECTIONS * DISTANCES);
+        for index in 0..2 * DIRECTIONS {
+            let along = (index as f32 + 0.5) / DIRECTIONS as f32;
+            let (a, b) =
+                if along <= 1.0 { (1.0 - along, along) } else { (1.0 - along, 2.0 - along) };
+            masks_of_direction(side, a, b, &mut masks);
+        }
+        Self { side, masks }
+    }
+
+    /// The mask with all bits.
+    pub fn full(&self) -> u64 {
+        u64::MAX >> (64 - self.side * self.side)
+    }
+
+    /// The sub-pixels where a function of this direction is positive whose value at the pixel's
+    /// centre is `center`, not divided.
+    #[inline(always)]
+    pub fn half_plane(&self, direction: &Direction, center: f32) -> u64 {
+        let e = center * direction.scale;
+        if e >= 0.5 {
+            return self.full();
+        }
+        if e <= -0.5 {
+            return 0;
+        }
+        let canonical = if direction.opposite { -e } else { e };
+        let step = ((canonical + 0.5) * DISTANCES as f32) as usize;
+        let mask = self.masks[direction.start as usize + step.min(DISTANCES - 1)];
+        if direction.opposite { !mask & self.full() } else { mask }
+    }
+
+    /// The centres of the sub-pixels, from the pixel's, bit by bit.
+    pub fn centers(&self) -> impl Iterator<Item = [f32; 2]> + use<> {
+        centers(self.side)
+    }
+}
+
+fn centers(side: u32) -> impl Iterator<Item = [f32; 2]> {
+    let at = move |i: u32| (i as f32 + 0.5) / side as f32 - 0.5;
+    (0..side * side).map(move |bit| [at(bit % side), at(bit / side)])
+}
+
+/// Adds the masks of one direction, for e from −½ to ½.
+fn masks_of_direction(side: u32, a: f32, b: f32, masks: &mut Vec<u64>) {
+    let mut order: Vec<(f32, u32)> =
+        centers(side).map(|[u, v]| a * u + b * v).zip(0..side * side).collect();
+    order.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
+    for step in 0..DISTANCES {
+        let e = (step as f32 + 0.5) / DISTANCES as f32 - 0.5;
+        let count = (area(a, b, e) * (side * side) as f32 + 0.5) as usize;
+        masks.push(order.iter().take(count).fold(0, |mask, &(_, bit)| mask | 1 << bit));
+    }
+}
+
+/// The area of a pixel where a·u + b·v + e is positive; |a| + |b| = 1, e from −½ to ½.
+fn area(a: f32, b: f32, e: f32) -> f32 {
+    // The sum of two even distributions of widths |a| and |b|: a trapezoid over a length of 1.
+    let (short, long) = (a.abs().min(b.abs()), a.abs().max(b.abs()));
+    let t = e + 0.5;
+    if t < short {
+        t * t / (2.0 * short * long)
+    } else if t > long {
+        1.0 - (1.0 - t) * (1.0 - t) / (2.0 * short * long)
+    } else {
+        (t - 0.5 * short) / long
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn functions() -> impl Iterator<Item = (f32, f32, f32)> {
+        let steps = || (-9..=9).map(|i| i as f32 / 7.0);
+        steps().flat_map(move |a| steps().flat_map(move |b| steps().map(move |e| (a, b, e))))
+    }
+
+    #[test]
+    fn a_function_and_its_opposite_share_all_sub_pixels() {
+        for mask in [Mask::M16, Mask::M64] {
+            let table = MaskTable::new(mask);
+            for (a, b, e) in functions().filter(|(a, b, _)| a.abs() + b.abs() > 0.0) {
+                let one = table.half_plane(&Direction::new(a, b), e);
+                let other = table.half_plane(&Direction::new(-a, -b), -e);
+                assert_eq!((one & other, one | other), (0, table.full()), "{a} {b} {e}");
+            }
+        }
+    }
+
+    #[test]
+    fn masks_count_as_many_sub_pixels_as_the_area_says() {
+        for mask in [Mask::M16, Mask::M64] {
+            let table = MaskTable::new(mask);
+            let bits = table.full().count_ones();
+            for (a, b, e) in functions().filter(|(a, b, _)| a.abs() + b.abs() > 0.0) {
+                let count = table.half_plane(&Direction::new(a, b), e).count_ones();
+                // By 64 × 64 points.
+                let inside = centers(64).filter(|[u, v]| a * u + b * v + e > 0.0).count();
+                let expected = inside as f32 / 4096.0;
+                let found = count as f32 / bits as f32;
+                let bound = 0.5 / bits as f32 + 0.02;
+                assert!((found - expected).abs() <= bound, "{a} {b} {e}: {found} {expected}");
+            }
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! The A-buffer: an anti-aliased, area-averaged, accumulation buffer.
+//!
+//! L. Carpenter, *The A-buffer, an Antialiased Hidden Surface Method*, SIGGRAPH 1984; masks by
+//! look-up as in E. Fiume, A. Fournier, L. Rudolph, *A Parallel Scan Conversion Algorithm with
+//! Anti-Aliasing*, SIGGRAPH 1983. Image space. Every triangle leaves in each pixel that it touches a
+//! fragment: the mask of the sub-pixels it covers, the exact area, the smallest and the largest
+//! depth. A pixel's fragments are sorted front to back; masks tell what is seen of each. Where the
+//! depths of two overlap within the pixel, a priority mask tells at which sub-pixels one lies in
+//! front of the other, so penetrating faces meet in a clean line. Blended surfaces need no order.
+//!
+//! Deviations: opaque fragments weigh by their exact area, masks only tell what part of it is hidden;
+//! pixels with blended fragments are composed at each sub-pixel. The picture is made row by row.
+//! Depth, item and normal planes show what is at the pixels' centres, as by all methods. Colours are
+//! those at the pixels' centres, and masked surfaces are there or not by their alpha there.
+//!
+//! Cost: O(n log n + triangles · rows + fragments + Σ k²) for k fragments that overlap in a pixel.
+//! Memory: the triangles, the table (64 kB) and at most [`Options::max_fragments`] fragments of 56
+//! bytes: a row with more is made in parts, down to one pixel, whose list is never cut off.
+
+mod coverage;
+mod fragment;
+mod mask;
+mod resolve;
+
+use crate::info::{Class, Info};
+use crate::math::Vec4;
+use crate::raster::fixed::SUBPIXEL_BITS;
+use crate::shade::color::premultiply;
+use crate::shade::{PreparedLights, PreparedMaterials, Shading};
+use crate::simd::Level;
+use crate::target::Framebuffer;
+use crate::trace::Tracer;
+use crate::visibility::surface::Background;
+use crate::visibility::surface::active::ActiveList;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::lit::Lit;
+use crate::visibility::surface::mixed::Mixed;
+use crate::visibility::surface::nearest::{DepthRow, Masked};
+use crate::visibility::surface::picture::{self, Picture};
+use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
+use fearless_simd::dispatch;
+use fragment::{Face, Fragment, Pool};
+use mask::MaskTable;
+use resolve::{Pixel, Place};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "a-buffer",
+    title: "A-buffer",
+    authors: "L. Carpenter",
+    year: 1984,
+    source: "The A-buffer, an Antialiased Hidden Surface Method, SIGGRAPH",
+    class: Class::ImageSpace,
+    cost: "O(n log n + fragments + Σ k²) time, k fragments of a pixel; memory by a limit",
+    limits: "one colour per face and pixel; needs every part of a pixel: sample_reach of half a pixel",
+};
+
+/// Sub-pixels of a coverage mask.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Mask {
+    /// 4 × 4.
+    #[default]
+    M16,
+    /// 8 × 8.
+    M64,
+}
+
+impl Mask {
+    /// Sub-pixels along the side of a pixel.
+    fn side(self) -> u32 {
+        match self {
+            Self::M16 => 4,
+            Self::M64 => 8,
+        }
+    }
+}
+
+/// What the picture is to have.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// How fine the masks are.
+    pub mask: Mask,
+    /// Fragments kept at a time. Bounds memory to 56 bytes times this; a row with more is made in
+    /// parts, so a low limit costs time and changes no pixel.
+    pub max_fragments: usize,
+    /// `None` = by material.
+    pub shading: Option<Shading>,
+    /// What is behind everything.
+    pub background: Background,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
+}
+
+impl Default for Options {
+    /// 4 × 4 masks, a million fragments, by material, on white.
+    fn default() -> Self {
+        let picture::Options { shading, background, level } = picture::Options::default();
+        Self { mask: Mask::M16, max_fragments: 1 << 20, shading, background, level }
+    }
+}
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A part of a row begins; where it was begun before, it is begun anew with fewer columns.
+    Row {
+        /// The row, from the top.
+        y: i32,
+        /// First column.
+        x0: i32,
+        /// The column after the last.
+        x1: i32,
+    },
+    /// A triangle leaves a fragment.
+    Fragment {
+        /// The column.
+        x: i32,
+        /// Its item.
+        item: u32,
+        /// The sub-pixels it covers, row by row from the upper left.
+        mask: u64,
+        /// The area it covers, 0 … 1.
+        area: f32,
+        /// The smallest and the largest depth in the pixel.
+        depths: [f32; 2],
+    },
+    /// The colour of an item at a pixel's centre gets its share in the pixel.
+    Share {
+        /// The column.
+        x: i32,
+        /// Its item.
+        item: u32,
+        /// 0 … 1; with its alpha.
+        share: f32,
+    },
+    /// The background gets what is left of a pixel.
+    Background {
+        /// The column.
+        x: i32,
+        /// 0 … 1.
+        share: f32,
+    },
+}
+
+/// Renders into the planes that the framebuffer has.
+///
+/// The input must have let through all triangles that touch a pixel anywhere: a
+/// [`crate::visibility::surface::setup::Filter::sample_reach`] of 128.
+pub fn render(
+    input: &SurfaceInput<'_>,
+    lights: &PreparedLights,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) {
+    let materials = PreparedMaterials::new(input.scene);
+    let (width, height) = (input.view.width(), input.view.height());
+    let Options { shading, background, level, .. } = *options;
+    let of_picture = picture::Options { shading, background, level };
+    let mut picture = Picture::new(input, &materials, lights, &of_picture, framebuffer);
+    let table = MaskTable::new(options.mask);
+    let mut centers = Centers::new(input, &picture);
+    let mut rows = Rows {
+        input,
+        table: &table,
+        level,
+        faces: Faces::new(input, height),
+        pool: Pool::new(width, options.max_fragments),
+        mixed: Mixed::new(width as usize),
+        pixel: Pixel::default(),
+    };
+    for y in 0..height as i32 {
+        rows.faces.advance(y);
+        rows.row(y, &mut picture, t);
+        if let Some(centers) = &mut centers {
+            centers.row(y, &mut picture);
+        }
+    }
+}
+
+/// The triangles that touch a row, not only at pixels' centres.
+struct Faces<'a> {
+    input: &'a SurfaceInput<'a>,
+    /// First row in the upper half, index of the triangle in the lower; those next come first.
+    waiting: Vec<u64>,
+    next: usize,
+    active: Vec<Face>,
+}
+
+impl<'a> Faces<'a> {
+    fn new(input: &'a SurfaceInput<'a>, height: u32) -> Self {
+        let mut waiting = Vec::with_capacity(input.triangles.len());
+        for (index, t) in input.triangles.iter().enumerate() {
+            let [first, last] = touched_rows(t);
+            if last >= 0 && i64::from(first) < i64::from(height) {
+                waiting.push((first.max(0) as u64) << 32 | index as u64);
+            }
+        }
+        waiting.sort_unstable();
+        Self { input, waiting, next: 0, active: Vec::new() }
+    }
+
+    fn advance(&mut self, y: i32) {
+        self.active.retain(|face| face.last_row >= y);
+        while let Some(&key) = self.waiting.get(self.next)
+            && (key >> 32) as i64 <= i64::from(y)
+        {
+            self.next += 1;
+            let t = &self.input.triangles[key as u32 as usize];
+            let coverage = self.input.run_of(t.item).coverage;
+            self.active.push(Face::new(t, key as u32, coverage, touched_rows(t)[1]));
+        }
+    }
+}
+
+/// First and last row of pixels with some of a triangle in it.
+fn touched_rows(t: &ScreenTriangle) -> [i32; 2] {
+    let [a, b, c] = t.y;
+    [a.min(b).min(c) >> SUBPIXEL_BITS, (a.max(b).max(c) - 1) >> SUBPIXEL_BITS]
+}
+
+/// What is at the centres of the pixels, for the planes besides colour.
+struct Centers<'a> {
+    triangles: &'a [ScreenTriangle],
+    masked: Masked<'a>,
+    list: ActiveList<'a>,
+    row: DepthRow,
+}
+
+impl<'a> Centers<'a> {
+    /// Nothing, where the picture has no such planes.
+    fn new(input: &'a SurfaceInput<'a>, picture: &Picture<'_>) -> Option<Self> {
+        let (width, height) = (input.view.width(), input.view.height());
+        picture.wants_planes().then(|| Self {
+            triangles: &input.triangles,
+            masked: Masked::new(input),
+            list: ActiveList::new(&input.triangles, width, height),
+            row: DepthRow::new(width),
+        })
+    }
+
+    fn row(&mut self, y: i32, picture: &mut Picture<'_>) {
+        self.row.clear();
+        for a in self.list.advance(y, |_| ()) {
+            let t = &self.triangles[a.triangle as usize];
+            let span = [a.x0, a.x1];
+            self.masked.enter(&mut self.row, t, span, y, &mut picture.lit, |_, _| ());
+        }
+        picture.write_planes(0, y as u32, &self.row.item, &self.row.depth);
+    }
+}
+
+/// The buffers that all rows share.
+struct Rows<'a> {
+    input: &'a SurfaceInput<'a>,
+    table: &'a MaskTable,
+    level: Level,
+    faces: Faces<'a>,
+    pool: Pool,
+    mixed: Mixed,
+    pixel: Pixel,
+}
+
+impl Rows<'_> {
+    /// Makes a row, in as few parts as the limit of fragments allows.
+    fn row(&mut self, y: i32, picture: &mut Picture<'_>, t: &mut impl Tracer<Step>) {
+        let behind = premultiply(picture.behind(y));
+        let mut parts = vec![[0, self.input.view.width() as i32]];
+        while let Some([x0, x1]) = parts.pop() {
+            t.step(|| Step::Row { y, x0, x1 });
+            if self.collect(y, [x0, x1], &mut picture.lit, t) {
+                self.resolve(y, [x0, x1], behind, &mut picture.lit, t);
+            } else {
+                let middle = x0 + (x1 - x0) / 2;
+                parts.extend([[middle, x1], [x0, middle]]);
+            }
+        }
+        picture.write_sums(y as u32, &self.mixed.sums);
+    }
+
+    /// Collects the fragments of a part of a row; says whether there was room.
+    fn collect(
+        &mut self,
+        y: i32,
+        columns: [i32; 2],
+        lit: &mut Lit<'_>,
+        t: &mut impl Tracer<Step>,
+    ) -> bool {
+        let Self { input, table, faces, pool, .. } = self;
+        pool.clear(columns);
+        faces.active.iter().all(|face| {
+            let triangle = &input.triangles[face.triangle as usize];
+            let item = triangle.item;
+            let masked = face.coverage == Coverage::Masked;
+            let passes = |x| !masked || lit.passes_mask(item, x, y);
+            let added = |x, f: &Fragment| {
+                let (mask, area, depths) = (f.mask, f.area, [f.z_min, f.z_max]);
+                t.step(|| Step::Fragment { x, item, mask, area, depths });
+            };
+            pool.add(triangle, face, table, y, columns, passes, added)
+        })
+    }
+
+    /// Adds up the colours of a part of a row.
+    fn resolve(
+        &mut self,
+        y: i32,
+        [x0, x1]: [i32; 2],
+        behind: Vec4,
+        lit: &mut Lit<'_>,
+        t: &mut impl Tracer<Step>,
+    ) {
+        let Self { input, table, pool, mixed, pixel, .. } = self;
+        let level = self.level;
+        for x in x0..x1 {
+            let place = Place { triangles: &input.triangles, table, x, y };
+            pixel.begin(pool.of_pixel(x), table.full());
+            mixed.sums[x as usize] = Vec4::ZERO;
+            if pixel.is_blended() {
+                mixed.sums[x as usize] = blended(pixel, &place, lit, t);
+            } else {
+                pixel.resolve_opaque(&place);
+                for (f, &share) in pixel.fragments.iter().zip(&pixel.shares) {
+                    if share > 0.0 {
+                        t.step(|| Step::Share { x, item: f.item, share });
+                        dispatch!(level, simd =>
+                            mixed.add(simd, lit, f.item, x as u32, share, [x, y]));
+                    }
+                }
+            }
+            if pixel.background > 0.0 {
+                t.step(|| Step::Background { x, share: pixel.background });
+                mixed.sums[x as usize] += behind * pixel.background;
+            }
+        }
+        dispatch!(level, simd => mixed.flush(simd, lit));
+    }
+}
+
+/// The colour of a pixel with blended fragments, premultiplied, without the background's share.
+fn blended(
+    pixel: &mut Pixel,
+    place: &Place<'_>,
+    lit: &mut Lit<'_>,
+    t: &mut impl Tracer<Step>,
+) -> Vec4 {
+    let (x, y) = (place.x, place.y);
+    let colors: Vec<Vec4> = pixel
+        .fragments
+        .iter()
+        .map(|f| {
+            let color = lit.color(f.item, x, y);
+            if f.blended { color } else { color.truncate().extend(1.0) }
+        })
+        .collect();
+    let alphas: Vec<f32> = colors.iter().map(|c| c.w).collect();
+    pixel.resolve_blended(&alphas, place);
+    let mut sum = Vec4::ZERO;
+    for ((f, &share), color) in pixel.fragments.iter().zip(&pixel.shares).zip(&colors) {
+        t.step(|| Step::Share { x, item: f.item, share });
+        sum += color.truncate().extend(1.0) * share;
+    }
+    sum
+}

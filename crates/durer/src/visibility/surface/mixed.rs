@@ -1,0 +1,74 @@
+//! Pixels that show several items: each is lit once and weighted by its share of the pixel.
+
+use crate::math::Vec4;
+use crate::shade::color::{encode_rgba8, unpremultiply};
+use crate::visibility::surface::lit::{Lit, Queue};
+use fearless_simd::Simd;
+
+/// The sums of colours of pixels so far, and what still waits to be lit.
+pub struct Mixed {
+    /// The pixels begun, for who needs to find them again.
+    pub pixels: Vec<u32>,
+    /// Linear, premultiplied; by pixel.
+    pub sums: Vec<Vec4>,
+    /// Pixel and weight of each entry of the queue.
+    waiting: [(u32, f32); 8],
+    queue: Queue,
+}
+
+impl Mixed {
+    /// For so many pixels, which are counted from 0.
+    pub fn new(pixels: usize) -> Self {
+        Self {
+            pixels: Vec::new(),
+            sums: vec![Vec4::ZERO; pixels],
+            waiting: [(0, 0.0); 8],
+            queue: Queue::default(),
+        }
+    }
+
+    /// Adds an item's share of a pixel.
+    #[inline(always)]
+    pub fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        lit: &mut Lit<'_>,
+        item: u32,
+        index: u32,
+        weight: f32,
+        at: [i32; 2],
+    ) {
+        if !lit.is_plain(item) {
+            let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
+            self.sums[index as usize] += color * weight;
+            return;
+        }
+        if !lit.add_to_batch(item, at, &mut self.queue) {
+            self.flush(simd, lit);
+            lit.add_to_batch(item, at, &mut self.queue);
+        }
+        self.waiting[self.queue.count - 1] = (index, weight);
+        if self.queue.count == 8 {
+            self.flush(simd, lit);
+        }
+    }
+
+    /// Lights what waits.
+    #[inline(always)]
+    pub fn flush<S: Simd>(&mut self, simd: S, lit: &mut Lit<'_>) {
+        if self.queue.count == 0 {
+            return;
+        }
+        let [r, g, b] = lit.shade_batch(simd, &self.queue);
+        for (i, &(pixel, weight)) in self.waiting[..self.queue.count].iter().enumerate() {
+            self.sums[pixel as usize] += Vec4::new(r[i], g[i], b[i], 1.0) * weight;
+        }
+        self.queue.count = 0;
+    }
+}
+
+/// 8-bit sRGB, straight alpha.
+pub fn encode(premultiplied: Vec4) -> [u8; 4] {
+    let opaque = premultiplied.w >= 1.0;
+    encode_rgba8(if opaque { premultiplied } else { unpremultiply(premultiplied) })
+}
