@@ -104,7 +104,9 @@
 //! | algorithm | decides by |
 //! |---|---|
 //! | [z-buffer](visibility::surface::z_buffer) | a depth per sample, in tiles: the production path |
+//! | [A-buffer](visibility::surface::a_buffer) | lists of fragments with masks of samples |
 //! | [Scan-line z-buffer](visibility::surface::scan_line_z) | a depth per pixel of one row |
+//! | [Spanning scan line](visibility::surface::spanning_scan_line) | spans between edges of a row, no depth per pixel |
 //! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting what has no order |
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
