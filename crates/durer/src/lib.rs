@@ -99,7 +99,7 @@
 //! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier
 //! curves, B-splines, NURBS and glyphs to chains of lines.
 //!
-//! **Which surface is in front?** [`visibility::surface`]: one scene in, the same picture out.
+//! **Which surface is in front?** [`visibility::surface`]: one scene in, the same surfaces found.
 //!
 //! | algorithm | decides by |
 //! |---|---|

@@ -134,6 +134,7 @@ fn links_lead_to_files() {
         "CONTRIBUTING.md",
         "CHANGELOG.md",
         "docs/performance.md",
+        "docs/clip.md",
         "samples/README.md",
         "peers/render/README.md",
     ];
