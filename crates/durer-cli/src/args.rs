@@ -4,7 +4,7 @@ use crate::values::{self, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
-use durer::math::DVec3;
+use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::{self, Background, SurfaceMethod};
 use durer::scene::{self, Light};
 use durer::view::layout::Layout;
@@ -47,8 +47,13 @@ pub enum Command {
     /// Render models to PNG pictures
     #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
+    /// Cut map data to windows, polygons or tiles
+    #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Clip(Box<crate::clip::ClipArgs>),
     /// Say what is in a model
     Info(InfoArgs),
+    /// Say which objects and triangles lie behind a point or a rectangle of the picture
+    Pick(Box<PickArgs>),
     /// Write a completion script for a shell to standard output
     Completions {
         /// The shell
@@ -117,6 +122,37 @@ pub struct RenderArgs {
     pub json: bool,
 }
 
+/// The options of `durer pick`.
+#[derive(Debug, Args)]
+pub struct PickArgs {
+    /// The model; `-` reads it from standard input
+    #[arg(value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    pub model: PathBuf,
+    /// A point of the picture, in pixels from its upper left corner
+    ///
+    /// x to the right, y downwards; the middle of the first pixel is 0.5,0.5.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = values::point, required_unless_present = "rect", conflicts_with = "rect")]
+    pub at: Option<DVec2>,
+    /// A rectangle of the picture, in pixels: two opposite corners
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = values::rect)]
+    pub rect: Option<Rect>,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
+    pub size: Size,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Where the eye is.
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Reading and its limits.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+}
+
 /// The shape of the output.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Picture")]
@@ -139,7 +175,7 @@ pub struct PictureArgs {
     ///
     /// Views joined by commas, e.g. `front,top,right,iso`, in as square a grid as possible; columns
     /// and rows may be given first: `3x1:front,right,iso`. Each view fits the model.
-    #[arg(long, value_name = "LAYOUT", value_parser = crate::camera::layout)]
+    #[arg(long, value_name = "LAYOUT", value_parser = crate::camera::layout, conflicts_with_all = ["view", "azimuth", "elevation", "eye", "camera"])]
     pub viewports: Option<Layout>,
     /// N pictures around the up axis
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -157,16 +193,16 @@ pub struct PictureArgs {
 #[command(next_help_heading = "View")]
 pub struct ViewArgs {
     /// iso, front, back, left, right, top or bottom; fits the model into the picture
-    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera", "viewports"])]
+    #[arg(long, value_name = "VIEW", default_value = "iso",  conflicts_with_all = ["azimuth", "elevation", "eye", "camera"])]
     pub view: NamedView,
     /// Degrees around the up axis from the front, to the right; fits the model
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::number, conflicts_with_all = ["eye", "camera", "viewports"])]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::number, conflicts_with_all = ["eye", "camera"])]
     pub azimuth: Option<f64>,
     /// Degrees above the horizon, -90 to 90; fits the model
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, conflicts_with_all = ["eye", "camera", "viewports"])]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, conflicts_with_all = ["eye", "camera"])]
     pub elevation: Option<f64>,
     /// Where the eye is, in the world of the file
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with_all = ["camera", "viewports"])]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with = "camera")]
     pub eye: Option<DVec3>,
     /// What the eye looks at [default: the middle of the model]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "eye")]
@@ -187,7 +223,7 @@ pub struct ViewArgs {
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
     pub far: Option<f64>,
     /// A camera of the file, by its name; `durer info` lists them
-    #[arg(long, value_name = "NAME", conflicts_with = "viewports")]
+    #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
     /// Which axis is up [default: by the format]
     #[arg(long, value_name = "AXIS", ignore_case = true)]
@@ -303,6 +339,8 @@ pub enum Cull {
     None,
     /// Faces seen from behind
     Back,
+    /// Faces seen from behind whose material is single-sided, as glTF has it
+    Material,
 }
 
 /// `--up-axis`.
@@ -350,6 +388,7 @@ impl From<Cull> for pipeline::Cull {
         match cull {
             Cull::None => Self::None,
             Cull::Back => Self::Back,
+            Cull::Material => Self::Material,
         }
     }
 }

@@ -27,9 +27,7 @@ pub fn still(
     direction: &ViewDirection,
     options: &FitOptions,
 ) -> durer::Result<Camera> {
-    let mut points = Vec::new();
-    for_each_point(scene, |p| points.push(p));
-    fit_points(points, direction, options)
+    fit_points(points(scene), direction, options)
 }
 
 /// The camera that sees the model as large as can be while it turns around the up axis: at the same
@@ -81,18 +79,24 @@ fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
 }
 
 /// All finite vertices that something is drawn with, in world space.
-fn for_each_point(scene: &Scene, mut f: impl FnMut(DVec3)) {
+fn points(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
     let used: Vec<Option<Vec<bool>>> = scene.meshes.iter().map(used_vertices).collect();
-    for instance in &scene.instances {
-        let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
-        let used = used[instance.mesh].as_deref();
-        for (i, p) in mesh.positions.iter().enumerate() {
-            let p = instance.world_from_mesh.transform_point3(p.as_dvec3());
-            if p.is_finite() && used.is_none_or(|used| used[i]) {
-                f(p);
-            }
-        }
-    }
+    scene.instances.iter().flat_map(move |instance| {
+        let positions = scene.meshes.get(instance.mesh).map_or(&[][..], |m| &m.positions);
+        let used = used.get(instance.mesh).cloned().flatten();
+        let place = instance.world_from_mesh;
+        let drawn = move |i: usize| used.as_ref().is_none_or(|used| used[i]);
+        positions
+            .iter()
+            .enumerate()
+            .filter(move |(i, _)| drawn(*i))
+            .map(move |(_, p)| place.transform_point3(p.as_dvec3()))
+            .filter(|p| p.is_finite())
+    })
+}
+
+fn for_each_point(scene: &Scene, f: impl FnMut(DVec3)) {
+    points(scene).for_each(f);
 }
 
 /// Which vertices have an index; `None` = all.

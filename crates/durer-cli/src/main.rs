@@ -2,6 +2,7 @@
 
 mod args;
 mod camera;
+mod clip;
 mod color;
 mod failure;
 mod fit;
@@ -10,6 +11,7 @@ mod input;
 mod lights;
 mod messages;
 mod output;
+mod pick;
 mod progress;
 mod render;
 mod report;
@@ -40,6 +42,8 @@ fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(args) => on_threads(&args.running, || render::run(&args)),
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
+        Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),
     }

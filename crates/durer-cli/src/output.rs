@@ -115,15 +115,15 @@ fn single(option: &str, path: &Path) -> Result<Target, Failure> {
 }
 
 /// Whether the path is there and neither a file nor a folder.
-fn is_special(path: &Path) -> bool {
+pub fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
-fn ends_in_separator(path: &Path) -> bool {
+pub fn ends_in_separator(path: &Path) -> bool {
     path.to_string_lossy().ends_with(std::path::is_separator)
 }
 
-fn make_folder(folder: &Path) -> Result<(), Failure> {
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     if folder.as_os_str().is_empty() || folder.is_dir() {
         return Ok(());
     }
@@ -248,7 +248,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// A new file in the same folder, with a name that nothing has.
-fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
+pub fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     for attempt in 0u32.. {
         let beside = path.with_file_name(format!(".durer-{}-{attempt}.tmp", std::process::id()));
         match OpenOptions::new().write(true).create_new(true).open(&beside) {

@@ -1,7 +1,7 @@
 //! Numbers and vectors as options take them; every message says what would be right.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use durer::math::DVec3;
+use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::SurfaceMethod;
 
 /// Width and height of a picture, in pixels, each at least 1.
@@ -62,6 +62,27 @@ pub fn elevation(text: &str) -> Result<f64, String> {
     let inside = |n: &f64| (-90.0..=90.0).contains(n);
     number(text)
         .and_then(|n| Some(n).filter(inside).ok_or("it must lie between -90 and 90 degrees".into()))
+}
+
+/// `N` finite numbers with commas between them.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>().ok()?;
+    numbers.try_into().ok()
+}
+
+/// A point of the picture.
+pub fn point(text: &str) -> Result<DVec2, String> {
+    let wrong = || "a point is X,Y in pixels, e.g. 512.5,300.5".to_owned();
+    numbers(text).map(DVec2::from_array).ok_or_else(wrong)
+}
+
+/// A rectangle of the picture, by two opposite corners.
+pub fn rect(text: &str) -> Result<Rect, String> {
+    let rect = numbers(text)
+        .and_then(|[x0, y0, x1, y1]| Rect::around([DVec2::new(x0, y0), DVec2::new(x1, y1)]));
+    let has_area = |r: &Rect| r.size().x > 0.0 && r.size().y > 0.0;
+    let wrong = || "a rectangle is X0,Y0,X1,Y1 in pixels, with width and height".to_owned();
+    rect.filter(has_area).ok_or_else(wrong)
 }
 
 /// A count of at least 1.

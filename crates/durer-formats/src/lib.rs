@@ -7,6 +7,7 @@
 
 mod color;
 mod error;
+pub mod geo;
 pub mod gltf;
 pub mod image;
 mod model;

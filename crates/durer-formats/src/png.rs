@@ -46,14 +46,16 @@ pub fn write_color<W: Write>(
     pixels: &Pixels<[u8; 4]>,
     compression: Compression,
 ) -> Result<()> {
-    let opaque = pixels.data().iter().all(|p| p[3] == 255);
+    // Row by row, as a loop that may end at any pixel looks at one pixel at a time.
+    let mut rows = (0..pixels.height()).map(|y| pixels.row(y));
+    let opaque = rows.all(|row| row.iter().fold(255, |alpha, p| alpha & p[3]) == 255);
     let color = if opaque { ColorType::Rgb } else { ColorType::Rgba };
     let kind = Kind { color, depth: BitDepth::Eight, srgb: true };
-    let channels = if opaque { 3 } else { 4 };
-    write(out, pixels, kind, compression, |pixel, row| {
-        row.extend_from_slice(&pixel[..channels]);
-        Ok(())
-    })
+    if opaque {
+        write(out, pixels, kind, compression, |[r, g, b, _]| [r, g, b])
+    } else {
+        write(out, pixels, kind, compression, |pixel| pixel)
+    }
 }
 
 /// Writes window depths 0…1 as 16-bit grey: depth × 65535, rounded to nearest; what is not a number
@@ -63,14 +65,13 @@ pub fn write_color<W: Write>(
 /// As [`write_color`].
 pub fn write_depth<W: Write>(out: W, pixels: &Pixels<f32>, compression: Compression) -> Result<()> {
     let kind = Kind { color: ColorType::Grayscale, depth: BitDepth::Sixteen, srgb: false };
-    write(out, pixels, kind, compression, |depth, row| {
+    write(out, pixels, kind, compression, |depth| {
         let grey = if depth.is_nan() {
             DEPTH_BACKGROUND
         } else {
             (f64::from(depth).clamp(0.0, 1.0) * 65535.0).round() as u16
         };
-        row.extend_from_slice(&grey.to_be_bytes());
-        Ok(())
+        grey.to_be_bytes()
     })
 }
 
@@ -86,10 +87,7 @@ pub fn write_normals<W: Write>(
 ) -> Result<()> {
     let kind = Kind { color: ColorType::Rgb, depth: BitDepth::Eight, srgb: false };
     let channel = |n: f32| ((n * 0.5 + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8;
-    write(out, pixels, kind, compression, |normal, row| {
-        row.extend_from_slice(&normal.map(channel));
-        Ok(())
-    })
+    write(out, pixels, kind, compression, |normal| normal.map(channel))
 }
 
 /// Writes item indices as 8-bit colours R<<16 | G<<8 | B; [`ITEM_BACKGROUND`] where nothing is.
@@ -98,15 +96,15 @@ pub fn write_normals<W: Write>(
 /// [`Error::Limit`] for an index that does not fit below [`ITEM_BACKGROUND`], else as
 /// [`write_color`].
 pub fn write_items<W: Write>(out: W, pixels: &Pixels<u32>, compression: Compression) -> Result<()> {
+    let fits = |item: u32| item == NO_ITEM || item < ITEM_BACKGROUND;
+    if let Some(&item) = pixels.data().iter().find(|&&item| !fits(item)) {
+        return Err(too_many_items(item));
+    }
     let kind = Kind { color: ColorType::Rgb, depth: BitDepth::Eight, srgb: false };
-    write(out, pixels, kind, compression, |item, row| {
-        let color = match item {
-            NO_ITEM => ITEM_BACKGROUND,
-            item if item < ITEM_BACKGROUND => item,
-            item => return Err(too_many_items(item)),
-        };
-        row.extend_from_slice(&color.to_be_bytes()[1..]);
-        Ok(())
+    write(out, pixels, kind, compression, |item| {
+        // The lower 24 bits of "no item" are those of the background.
+        let [_, r, g, b] = item.to_be_bytes();
+        [r, g, b]
     })
 }
 
@@ -126,13 +124,14 @@ struct Kind {
     srgb: bool,
 }
 
-/// Writes row after row, each made of the bytes that `encode` appends for its pixels.
-fn write<W: Write, T: Copy>(
+/// Writes row after row, each made of the bytes that `encode` gives for its pixels. That they are as
+/// many for each pixel lets the compiler work on many at once.
+fn write<W: Write, T: Copy, const BYTES: usize>(
     out: W,
     pixels: &Pixels<T>,
     kind: Kind,
     compression: Compression,
-    mut encode: impl FnMut(T, &mut Vec<u8>) -> Result<()>,
+    encode: impl Fn(T) -> [u8; BYTES],
 ) -> Result<()> {
     if pixels.width() == 0 || pixels.height() == 0 {
         let size = format!("{}x{}", pixels.width(), pixels.height());
@@ -153,13 +152,12 @@ fn write<W: Write, T: Copy>(
     }
     let mut writer = encoder.write_header().map_err(encoding)?;
     let mut stream = writer.stream_writer_with_size(CHUNK_BYTES).map_err(encoding)?;
-    let mut row = Vec::new();
+    let mut row = vec![[0; BYTES]; pixels.width() as usize];
     for y in 0..pixels.height() {
-        row.clear();
-        for &pixel in pixels.row(y) {
-            encode(pixel, &mut row)?;
+        for (bytes, &pixel) in row.iter_mut().zip(pixels.row(y)) {
+            *bytes = encode(pixel);
         }
-        stream.write_all(&row)?;
+        stream.write_all(row.as_flattened())?;
     }
     stream.finish().map_err(encoding)?;
     writer.finish().map_err(encoding)

@@ -1,9 +1,145 @@
 //! A CPU graphics pipeline: geometry in, pixels or exact vector drawings out.
 //!
-//! Values in, values out: the library opens no file and prints nothing. Modules are declared in
-//! reading order, which is also the order of dependencies.
+//! ```
+//! use durer::math::{DMat4, DVec3, Vec3};
+//! use durer::pipeline::{RenderOptions, Shading, render};
+//! use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
+//!
+//! // A triangle that fills the lower left half of what the camera sees.
+//! let positions = vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(-1.0, 1.0, 0.0)];
+//! let mesh = Mesh { positions, ..Mesh::default() };
+//! let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
+//! let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
+//!
+//! let camera = Camera {
+//!     eye: DVec3::new(0.0, 0.0, 5.0),
+//!     target: DVec3::ZERO,
+//!     up: DVec3::Y,
+//!     projection: Projection::Orthographic { height: 2.0 },
+//!     near: 1.0,
+//!     far: 10.0,
+//! };
+//! let mut options = RenderOptions::new(camera);
+//! (options.width, options.height) = (64, 64);
+//! options.shading = Some(Shading::Unlit);
+//!
+//! let (picture, report) = render(&scene, &options)?;
+//! assert_eq!(report.drawn, 1);
+//! assert_eq!(picture.color.get(10, 50), Some([231, 231, 231, 255])); // the default material
+//! assert_eq!(picture.color.get(50, 10), Some([255, 255, 255, 255])); // the background
+//! # Ok::<(), durer::Error>(())
+//! ```
+//!
+//! Files are read and written by the crate `durer-formats`, over bytes; this library takes values
+//! and gives values, opens no file and prints nothing.
+//!
+//! # What is here
+//!
+//! Each published algorithm has its own module, whose documentation names authors, year, class, cost
+//! and limits; the same facts are in its `INFO`. Families are enums with `ALL`, `name()`, `info()` and
+//! `FromStr`.
+//!
+//! **What does a scene look like?** [`pipeline::render`] knows the order of all stages; a [`scene`] has
+//! meshes, instances, materials, textures, lights and cameras; the planes of the picture are in
+//! [`target`].
+//!
+//! **From where is it seen?**
+//!
+//! | question | answer |
+//! |---|---|
+//! | Where must the eye be to see all of it from the front, or from above? | [`view::projection`] |
+//! | Which pixel shows this point of a plane? | [`view::window`]: window to viewport |
+//! | Several views in one picture? | [`view::layout`] |
+//! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
+//! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
+//! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
+//!
+//! **Which part of a line lies in the window?** [`clip::line`]
+//!
+//! | algorithm | window | at home with |
+//! |---|---|---|
+//! | [Cohen–Sutherland](clip::line::cohen_sutherland) | rectangle, box | most segments wholly inside or outside |
+//! | [Midpoint subdivision](clip::line::midpoint) | integer pixels | hardware without division |
+//! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are no rectangles |
+//! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
+//! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
+//! | [Batches](clip::line::batch) | rectangle | millions of segments |
+//! | [Polylines](clip::line::polyline) | polygon with holes | chains with attributes, inside or outside part |
+//!
+//! **Which part of a polygon?** [`clip::polygon`]
+//!
+//! | algorithm | takes | gives |
+//! |---|---|---|
+//! | [Sutherland–Hodgman](clip::polygon::sutherland_hodgman) | any ring, convex window | one ring, bridged |
+//! | [Weiler–Atherton](clip::polygon::weiler_atherton) | simple polygons with holes | separate rings |
+//! | [Greiner–Hormann](clip::polygon::greiner_hormann) | simple polygons | separate rings |
+//! | [Vatti](clip::polygon::vatti) | anything | valid polygons, swept |
+//! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
+//! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
+//!
+//! [`clip::attribute`] carries heights, colours and other values to new vertices.
+//!
+//! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
+//! w; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
+//! camera transform, in clip space or after the division, with the same picture.
+//!
+//! **Which pixels does it cover?** [`raster`]
+//!
+//! | shape | ways |
+//! |---|---|
+//! | line, one pixel wide | [equation](raster::line::equation), [DDA](raster::line::dda), [Bresenham](raster::line::bresenham) |
+//! | smooth line | [Wu, Gupta–Sproull](raster::line::anti_aliased) |
+//! | wide line, dashes | [outline of the stroke](raster::line::wide) |
+//! | triangle | [edge functions](raster::triangle::edge_function), [edge walking](raster::triangle::edge_walking), [tiles](raster::triangle::tiles) |
+//! | polygon | [edge table and active edge table](raster::polygon), [triangulation](raster::triangulate) |
+//! | path, anti-aliased | [exact area coverage](raster::coverage) |
+//! | region around a pixel | [seed fills](raster::seed_fill) |
+//! | layers of all these | [a canvas](raster::paint) |
+//!
+//! [`raster::interpolate`] has barycentric and perspective-correct weights, [`curve`] brings Bézier
+//! curves, B-splines, NURBS and glyphs to chains of lines.
+//!
+//! **Which surface is in front?** [`visibility::surface`]: one scene in, the same surfaces found.
+//!
+//! | algorithm | decides by |
+//! |---|---|
+//! | [z-buffer](visibility::surface::z_buffer) | a depth per sample, in tiles: the production path |
+//! | [A-buffer](visibility::surface::a_buffer) | lists of fragments with masks of samples |
+//! | [Scan-line z-buffer](visibility::surface::scan_line_z) | a depth per pixel of one row |
+//! | [Spanning scan line](visibility::surface::spanning_scan_line) | spans between edges of a row, no depth per pixel |
+//! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting what has no order |
+//! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
+//! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
+//!
+//! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
+//! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
+//! [textures](shade::texture).
+//!
+//! **What happens before a pixel changes?** [`fragment`]: scissor, alpha test, stencil, depth,
+//! blending, dithering, logic operation, write masks.
+//!
+//! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last
+//! argument tell it every step.
+//!
+//! # What holds everywhere
+//!
+//! - The same input gives the same bytes: on every CPU, SIMD level ([`simd`]) and number of threads.
+//! - Algorithms on valid values cannot fail; what makes a value valid is checked once, with a typed
+//!   [`Error`], and nothing panics on any input.
+//! - World space is right-handed, the camera looks down −z, clip space is −w ≤ x, y, z ≤ w. Pixel (i, j)
+//!   covers [i, i + 1) × [j, j + 1), its sample is the centre, row 0 is on top.
+//! - Geometry is f64, exact predicates decide topology ([`math`]), coverage is decided with integers of
+//!   8 sub-pixel bits ([`raster::fixed`]), light is linear inside and 8-bit sRGB outside.
+//!
+//! Modules are declared in reading order, which is also the order of dependencies. The feature
+//! `parallel` (on by default) works on the current rayon pool.
 
 #![forbid(unsafe_code)]
+
+// The README's library example is compiled and run with the documentation's.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
 
 pub mod error;
 pub mod info;

@@ -180,7 +180,7 @@ fn from_screen_triangles(
 ) -> Result<z_buffer::Report> {
     let start = std::time::Instant::now();
     let sample_reach = options.algorithm.sample_reach();
-    let filter = Filter { cull_back: options.cull == Cull::Back, sample_reach };
+    let filter = Filter { cull: options.cull, sample_reach };
     let input = SurfaceInput::new(scene, view, filter)?;
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = std::time::Instant::now();

@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const WORKERS: usize = 2;
 
 /// The folder of the test data, if it is there.
-fn data() -> Option<PathBuf> {
+pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("DURER_DATA").map_or(beside, PathBuf::from);
     let found = folder.is_dir();

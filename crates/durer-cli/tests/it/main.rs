@@ -1,9 +1,13 @@
 //! The command as its users see it: the built binary, run on small models.
 
+mod clip;
+mod conformance_clip;
 mod conformance_models;
 mod harness;
 mod options;
 mod outputs;
+mod pick;
 mod pictures;
+mod readme;
 mod resources;
 mod streams;

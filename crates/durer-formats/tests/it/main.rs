@@ -1,7 +1,9 @@
 //! One test binary for the formats.
 
+mod conformance_geo;
 mod conformance_gltf;
 mod conformance_meshes;
+mod geo;
 mod gltf;
 mod mesh_properties;
 mod shared;

@@ -1,1 +1,10 @@
-//! Bézier, B-spline and NURBS curves, and their flattening into lines.
+//! Curves, and how they become chains of straight lines.
+
+pub mod b_spline;
+pub mod bezier;
+mod flatten;
+mod path;
+pub mod text;
+
+pub use flatten::{Contours, flatten, segments_for};
+pub use path::{Path, PathElement};

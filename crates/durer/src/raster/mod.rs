@@ -2,7 +2,13 @@
 //!
 //! Pixel (i, j) covers [i, i + 1) × [j, j + 1) with y growing downwards; its sample is the centre.
 
+pub mod coverage;
 pub mod fixed;
 pub mod interpolate;
+pub mod line;
+pub mod paint;
+pub mod polygon;
+pub mod seed_fill;
 pub mod span;
 pub mod triangle;
+pub mod triangulate;

@@ -2,6 +2,7 @@
 
 pub mod cull;
 pub mod layout;
+pub mod pick;
 pub mod projection;
 pub mod topology;
 pub mod window;

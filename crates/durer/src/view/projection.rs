@@ -217,7 +217,7 @@ pub fn fit_box(
 /// The camera whose picture holds the points as large as they can be, in the middle: tighter than
 /// [`fit_box`] where a model does not fill its box. Points that are not finite are left out.
 ///
-/// O(n) time and memory.
+/// One pass; keeps only the points that some side of the frame may rest on.
 ///
 /// # Errors
 /// As [`fit_box`].
@@ -226,13 +226,42 @@ pub fn fit_points(
     direction: &ViewDirection,
     options: &FitOptions,
 ) -> Result<Camera> {
-    let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
-    let bounds = Aabb::around(points.iter().copied());
+    let mut outermost = Outermost::new(direction, &Frame::new(options)?);
+    let finite = points.into_iter().filter(|p| p.is_finite());
+    let bounds = Aabb::around(finite.inspect(|p| outermost.add(*p)));
     let extent = visible_extent(bounds.as_ref());
     if bounds == Some(extent) {
-        fit(&points, &extent, direction, options)
+        fit(&outermost.points(), &extent, direction, options)
     } else {
         fit(&extent.corners(), &extent, direction, options)
+    }
+}
+
+/// The outermost points of a set: along the axes of the view, and towards the sides of a frame.
+struct Outermost {
+    /// Directions in world space, and the furthest point along each.
+    furthest: [(DVec3, f64, DVec3); 10],
+}
+
+impl Outermost {
+    fn new(direction: &ViewDirection, frame: &Frame) -> Self {
+        let (x, y, z) = (direction.right(), direction.up(), direction.to_eye());
+        let (in_x, in_y) = (z * frame.slope.x, z * frame.slope.y);
+        let directions = [x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y];
+        Self { furthest: directions.map(|d| (d, f64::NEG_INFINITY, DVec3::ZERO)) }
+    }
+
+    fn add(&mut self, p: DVec3) {
+        for (direction, distance, point) in &mut self.furthest {
+            let d = direction.dot(p);
+            if d > *distance {
+                (*distance, *point) = (d, p);
+            }
+        }
+    }
+
+    fn points(&self) -> [DVec3; 10] {
+        self.furthest.map(|(_, _, point)| point)
     }
 }
 

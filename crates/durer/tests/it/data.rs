@@ -1,6 +1,6 @@
 //! Real models: where they are, and how tests read them.
 
-use durer_formats::{Model, ReadOptions, Resources};
+use durer_formats::{Model, Pose, ReadOptions, Resources};
 use std::path::{Path, PathBuf};
 
 /// The folder of shared data: `DURER_DATA`, else `../shared/data` beside the workspace. Says that a
@@ -24,10 +24,17 @@ impl Resources for Folder {
     }
 }
 
-/// Reads a model that is known to be good.
+/// Reads a model that is known to be good, at rest.
 pub fn read_model(path: &Path) -> Model {
+    read_posed(path, None)
+}
+
+/// Reads a model that is known to be good, posed so many seconds into its first animation.
+pub fn read_posed(path: &Path, time: Option<f64>) -> Model {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let resources = Folder(path.parent().expect("folder").to_owned());
-    durer_formats::read_model(&bytes, &path.to_string_lossy(), &resources, &ReadOptions::default())
+    let pose = time.map(|time| Pose { animation: None, time });
+    let options = ReadOptions { pose, ..ReadOptions::default() };
+    durer_formats::read_model(&bytes, &path.to_string_lossy(), &resources, &options)
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

@@ -32,7 +32,7 @@ pub fn soup(triangles: usize, seed: u64) -> Scene {
     let mut positions = Vec::new();
     for i in 0..triangles {
         let center = numbers.point(1.0);
-        let size = if i % 7 == 0 { 8.0 } else { 0.3 };
+        let size = if i % 80 == 79 { 4.0 } else { 0.3 };
         positions.extend([0; 3].map(|_| center + numbers.point(size)));
     }
     positions[0] = Vec3::NAN;
@@ -72,7 +72,11 @@ pub fn sphere(rings: u32, material: Option<usize>) -> Mesh {
 
 fn checkers() -> Image {
     let texel = |i: u32| {
-        if (i % 16 / 4 + i / 16 / 4) % 2 == 0 { [220, 60, 40, 255] } else { [40, 90, 200, 90] }
+        if (i % 16 / 4 + i / 16 / 4).is_multiple_of(2) {
+            [220, 60, 40, 255]
+        } else {
+            [40, 90, 200, 90]
+        }
     };
     Image { name: "checkers".into(), width: 16, height: 16, data: (0..256).map(texel).collect() }
 }

@@ -83,7 +83,7 @@ fn amid(width: u32, height: u32) -> View {
     View::new(camera, width, height).expect("view")
 }
 
-const FILTER: Filter = Filter { cull_back: false, sample_reach: 128 };
+const FILTER: Filter = Filter { cull: durer::pipeline::Cull::None, sample_reach: 128 };
 
 fn planes(view: &View) -> Framebuffer {
     Framebuffer::new(view.width(), view.height()).with_depth().with_items().with_normals()
@@ -173,7 +173,7 @@ fn the_order_of_triangles_changes_nothing() {
 
 /// A scene with something in two instances, so that runs change within rows.
 fn two_instances() -> Scene {
-    let mut scene = scenes::soup(30, 4);
+    let mut scene = scenes::soup(170, 4);
     let world_from_mesh = DMat4::from_rotation_y(0.7);
     scene.instances.push(Instance { mesh: 0, world_from_mesh, name: String::new() });
     scene

@@ -1,13 +1,60 @@
 //! Polygons: their shape types, and the clippers that take and give them.
 //!
-//! `overlay()` is the robust door: any rings in, valid polygons out.
+//! [`overlay()`] is the robust door: any rings in, valid polygons out. [`rectangle`] is the fast path
+//! for windows and map tiles. The others are the published algorithms, each with its preconditions.
 
+mod cyclic;
+pub mod greiner_hormann;
+mod locate;
 pub mod naive;
+pub mod overlay;
 pub mod rectangle;
 mod shapes;
 pub mod sutherland_hodgman;
+pub mod vatti;
+pub mod weiler_atherton;
 
+pub use overlay::overlay;
 pub use shapes::{Polygon, Ring, Shapes, signed_area};
+
+crate::info::family! {
+    /// The algorithms that clip polygons with polygons.
+    pub enum PolygonClipper {
+        /// [`weiler_atherton`]
+        WeilerAtherton => weiler_atherton::INFO,
+        /// [`vatti`]
+        Vatti => vatti::INFO,
+        /// [`greiner_hormann`]
+        GreinerHormann => greiner_hormann::INFO,
+        /// [`overlay`](mod@overlay)
+        Overlay => overlay::INFO,
+    }
+}
+
+impl PolygonClipper {
+    /// Runs the algorithm with its default options, by the even-odd rule.
+    ///
+    /// # Errors
+    /// As [`overlay()`]; the walks of Weiler–Atherton and Greiner–Hormann take only finite points
+    /// too, and are right only where their limits are kept.
+    pub fn clip(self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> crate::Result<Shapes> {
+        let t = &mut crate::trace::NoTrace;
+        let points = || subject.points().iter().chain(clip.points());
+        if let Some(index) = points().position(|p| !p.is_finite()) {
+            return Err(crate::Error::NonFinite { what: "point", index });
+        }
+        Ok(match self {
+            Self::WeilerAtherton => {
+                weiler_atherton::weiler_atherton(subject, clip, op, &Default::default(), t)
+            }
+            Self::Vatti => vatti::vatti(subject, clip, op, &Default::default(), t)?.shapes,
+            Self::GreinerHormann => {
+                greiner_hormann::greiner_hormann(subject, clip, op, &Default::default(), t)
+            }
+            Self::Overlay => overlay(subject, clip, op, &Default::default(), t)?.shapes,
+        })
+    }
+}
 
 /// Which points a set of closed curves encloses, told by the winding number w around the point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -89,6 +89,13 @@ impl Shapes {
         self.points.get(self.ring_range(index)).unwrap_or_default()
     }
 
+    /// The index of the point that follows a point on its ring, around its end.
+    pub fn next_point(&self, index: usize) -> usize {
+        let ring = self.ring_ends.partition_point(|&end| end <= index);
+        let range = self.ring_range(ring);
+        if index + 1 < range.end { index + 1 } else { range.start }
+    }
+
     /// How many polygons there are; rings after the last [`Shapes::end_polygon`] are in none.
     pub fn polygon_count(&self) -> usize {
         self.polygon_ends.len()

@@ -169,7 +169,7 @@ impl<'a> Triangles<'a> {
     pub fn get(&mut self, item: u32, run: usize) -> &VisibleTriangle {
         let slot = item as usize % CACHE;
         if self.cache[slot].item != item {
-            self.cache[slot] = self.prepare(item, run);
+            self.prepare(item, run, slot);
         }
         &self.cache[slot]
     }
@@ -186,7 +186,7 @@ impl<'a> Triangles<'a> {
     }
 
     #[inline(never)]
-    fn prepare(&mut self, item: u32, run_index: usize) -> VisibleTriangle {
+    fn prepare(&mut self, item: u32, run_index: usize, slot: usize) {
         let t = self.transform_of(run_index);
         let run = &self.runs[run_index];
         let mesh = &self.scene.meshes[run.mesh];
@@ -217,7 +217,7 @@ impl<'a> Triangles<'a> {
             (c.x, c.y) = (a.x + side.x, a.y + side.y);
         }
         let (origin, edges) = edges(on_screen);
-        VisibleTriangle {
+        self.cache[slot] = VisibleTriangle {
             item,
             corners,
             positions: at_eye.map(DVec3::as_vec3),
@@ -226,7 +226,7 @@ impl<'a> Triangles<'a> {
             world_from_mesh: t.world_from_mesh,
             origin,
             edges,
-        }
+        };
     }
 }
 

@@ -42,6 +42,20 @@ struct RunInfo<'a> {
     plain: bool,
 }
 
+/// From where a point of an item is seen.
+#[derive(Debug, Clone, Copy)]
+pub enum Seen {
+    /// From the eye, at a pixel's centre.
+    Pixel(i32, i32),
+    /// From anywhere, as by a ray that was reflected; textures are sampled at full size.
+    Point {
+        /// Barycentric coordinates of the point.
+        weights: Weights,
+        /// Towards where it is seen from, world axes.
+        view: Vec3,
+    },
+}
+
 /// One thread's way from items to colours.
 pub struct Lit<'a> {
     shared: Lighting<'a>,
@@ -101,6 +115,26 @@ impl<'a> Lit<'a> {
         info
     }
 
+    /// Linear RGBA, straight alpha, of a point of an item under given lights.
+    pub fn color_under(&mut self, item: u32, seen: Seen, lights: &PreparedLights) -> Vec4 {
+        self.with_surface_seen(item, seen, |surface, material, _, shading| {
+            // Light on corners or faces would not know what lights reach the point.
+            let surface = Surface { lit: None, ..*surface };
+            shade(&surface, material, lights, shading)
+        })
+    }
+
+    /// The alpha of a point of an item.
+    pub fn alpha(&mut self, item: u32, seen: Seen) -> f32 {
+        self.with_surface_seen(item, seen, |surface, material, _, _| material.alpha(surface))
+    }
+
+    /// The triangle of an item.
+    pub fn triangle(&mut self, item: u32) -> &VisibleTriangle {
+        let run = self.run_info(item).run;
+        self.triangles.get(item, run)
+    }
+
     /// Linear RGBA, straight alpha, of an item at a pixel's centre.
     pub fn color(&mut self, item: u32, x: i32, y: i32) -> Vec4 {
         self.with_surface(item, x, y, |surface, material, lights, shading| {
@@ -130,16 +164,28 @@ impl<'a> Lit<'a> {
         y: i32,
         use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
     ) -> R {
+        self.with_surface_seen(item, Seen::Pixel(x, y), use_it)
+    }
+
+    fn with_surface_seen<R>(
+        &mut self,
+        item: u32,
+        seen: Seen,
+        use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
+    ) -> R {
         let RunInfo { run, mesh, material, shading, .. } = self.run_info(item);
         let lit = self.reflected(item, run, material, shading);
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, run);
-        let w = t.weights(x, y, [0.0; 2]);
+        let (w, view) = match seen {
+            Seen::Pixel(x, y) => (t.weights(x, y, [0.0; 2]), parallel),
+            Seen::Point { weights, view } => (weights, Some(view)),
+        };
         let position = blend(&t.positions, w);
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
         let mut surface = Surface {
             position,
-            view: parallel.unwrap_or(-position),
+            view: view.unwrap_or(-position),
             normal: blend(&t.normals, w),
             geometric_normal: t.face_normal,
             lit: lit.map(|corners| Reflected::interpolate(corners, w)),
@@ -150,7 +196,10 @@ impl<'a> Lit<'a> {
             surface.color = a * w[0] + b * w[1] + c * w[2];
         }
         if material.is_textured() {
-            let (right, down) = t.weights_beside(x, y);
+            let (right, down) = match seen {
+                Seen::Pixel(x, y) => t.weights_beside(x, y),
+                Seen::Point { .. } => (w, w),
+            };
             for (set, coordinates) in mesh.tex_coords.iter().take(TEX_COORD_SETS).enumerate() {
                 let corners = t.corners.map(|c| coordinates[c as usize]);
                 tex_coords[set] = tex_coord(&corners, w, right, down);
@@ -256,16 +305,17 @@ impl<'a> Lit<'a> {
         colors: &mut [[f32; 8]; 3],
     ) {
         let mut batch = Batch::default();
-        let mut mine = [false; 8];
+        let mut mine = [0; 8];
         let parallel = self.parallel_view;
         for i in 0..8 {
             if done[i] || items[i].wrapping_sub(info.first_item) >= info.count {
                 continue;
             }
-            let mut lanes = [false; 8];
+            let mut lanes = [0; 8];
             for j in i..8 {
-                lanes[j] = items[j] == items[i];
-                done[j] |= lanes[j];
+                let same = items[j] == items[i];
+                done[j] |= same;
+                lanes[j] = u32::from(same).wrapping_neg();
                 mine[j] |= lanes[j];
             }
             let t = self.triangles.get(items[i], info.run);
@@ -273,9 +323,7 @@ impl<'a> Lit<'a> {
         }
         let shaded = shade_x8(simd, &batch, info.material, self.shared.lights, info.shading);
         for (to, from) in colors.iter_mut().zip(&shaded) {
-            for i in 0..8 {
-                to[i] = if mine[i] { from[i] } else { to[i] };
-            }
+            fill_axis(*from, &mine, to);
         }
     }
 
@@ -290,13 +338,7 @@ impl<'a> Lit<'a> {
         queue.first_item = info.first_item;
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, info.run);
-        let w = t.weights(x, y, [0.0; 2]);
-        let position = blend(&t.positions, w);
-        let lane = queue.count;
-        set_lane(&mut queue.batch.position, lane, position);
-        set_lane(&mut queue.batch.view, lane, parallel.unwrap_or(-position));
-        set_lane(&mut queue.batch.normal, lane, blend(&t.normals, w));
-        set_lane(&mut queue.batch.geometric_normal, lane, t.face_normal);
+        set_point(&mut queue.batch, queue.count, t, [x, y], parallel);
         queue.count += 1;
         true
     }
@@ -322,6 +364,24 @@ pub struct Queue {
     pub count: usize,
     /// The first item of their run.
     first_item: u32,
+}
+
+/// Puts the point of a triangle at a pixel into a lane of a batch; the bits are those of
+/// [`points_x8`].
+#[inline(always)]
+fn set_point(
+    batch: &mut Batch,
+    lane: usize,
+    t: &VisibleTriangle,
+    [x, y]: [i32; 2],
+    parallel_view: Option<Vec3>,
+) {
+    let w = t.weights(x, y, [0.0; 2]);
+    let position = blend(&t.positions, w);
+    set_lane(&mut batch.position, lane, position);
+    set_lane(&mut batch.view, lane, parallel_view.unwrap_or(-position));
+    set_lane(&mut batch.normal, lane, blend(&t.normals, w));
+    set_lane(&mut batch.geometric_normal, lane, t.face_normal);
 }
 
 #[inline(always)]
@@ -353,7 +413,7 @@ fn points_x8<S: Simd>(
 
 /// Copies the chosen lanes of points into a batch.
 #[inline(always)]
-fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &[bool; 8], batch: &mut Batch) {
+fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &Lanes, batch: &mut Batch) {
     fill_vector(&points.position, lanes, &mut batch.position);
     fill_vector(&points.view, lanes, &mut batch.view);
     fill_vector(&points.normal, lanes, &mut batch.normal);
@@ -361,18 +421,23 @@ fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &[bool; 8], batch: &mut
 }
 
 #[inline(always)]
-fn fill_vector<S: Simd>(from: &Vec3Lane<f32x8<S>>, lanes: &[bool; 8], to: &mut [[f32; 8]; 3]) {
+fn fill_vector<S: Simd>(from: &Vec3Lane<f32x8<S>>, lanes: &Lanes, to: &mut [[f32; 8]; 3]) {
     fill_axis(from.x.into(), lanes, &mut to[0]);
     fill_axis(from.y.into(), lanes, &mut to[1]);
     fill_axis(from.z.into(), lanes, &mut to[2]);
 }
 
 #[inline(always)]
-fn fill_axis(from: [f32; 8], lanes: &[bool; 8], to: &mut [f32; 8]) {
+fn fill_axis(from: [f32; 8], lanes: &Lanes, to: &mut [f32; 8]) {
+    // Bits instead of a choice, which would become a slow masked store.
     for i in 0..8 {
-        to[i] = if lanes[i] { from[i] } else { to[i] };
+        let old = to[i].to_bits();
+        to[i] = f32::from_bits(old ^ ((old ^ from[i].to_bits()) & lanes[i]));
     }
 }
+
+/// All bits set in the lanes that are meant.
+type Lanes = [u32; 8];
 
 /// Texture coordinates at a pixel, and their change to the pixels beside and below it.
 fn tex_coord(corners: &[Vec2; 3], w: Weights, right: Weights, down: Weights) -> TexCoord {

@@ -9,8 +9,10 @@ use crate::trace::Tracer;
 use crate::visibility::surface::a_buffer::Mask;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::setup::Filter;
-use crate::visibility::surface::{Background, Cull, Samples};
-use crate::visibility::surface::{a_buffer, picture, scan_line_z, spanning_scan_line, z_buffer};
+use crate::visibility::surface::{Background, Samples};
+use crate::visibility::surface::{
+    a_buffer, depth_sort, picture, ray, scan_line_z, spanning_scan_line, warnock, z_buffer,
+};
 
 crate::info::family! {
     /// The algorithms that find visible surfaces.
@@ -23,6 +25,12 @@ crate::info::family! {
         SpanningScanLine => spanning_scan_line::INFO,
         /// Fragment lists with coverage masks.
         ABuffer => a_buffer::INFO,
+        /// Polygons in order, painted from back to front.
+        DepthSort => depth_sort::INFO,
+        /// Windows divided until they are simple.
+        Warnock => warnock::INFO,
+        /// Rays through the samples.
+        Ray => ray::INFO,
     }
 }
 
@@ -30,8 +38,8 @@ impl SurfaceMethod {
     /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
         match self {
-            Self::ZBuffer | Self::ABuffer => HALF_PIXEL,
-            Self::ScanLineZ | Self::SpanningScanLine => 0,
+            Self::ScanLineZ | Self::SpanningScanLine | Self::DepthSort => 0,
+            Self::ZBuffer | Self::ABuffer | Self::Warnock | Self::Ray => HALF_PIXEL,
         }
     }
 }
@@ -71,6 +79,16 @@ impl Options {
         picture::Options { shading, background, level }
     }
 
+    /// As many samples, in rows and columns.
+    fn warnock(&self) -> warnock::Options {
+        let sub_levels = match self.samples {
+            Samples::One => 0,
+            Samples::Four => 1,
+            Samples::Sixteen => 2,
+        };
+        warnock::Options { look: self.picture(), sub_levels, ..Default::default() }
+    }
+
     fn a_buffer(&self) -> a_buffer::Options {
         let Self { mask, shading, background, level, .. } = *self;
         a_buffer::Options { mask, shading, background, level, ..Default::default() }
@@ -78,8 +96,7 @@ impl Options {
 
     fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
         let Self { samples, shading, background, level, .. } = *self;
-        let cull = if filter.cull_back { Cull::Back } else { Cull::None };
-        z_buffer::Options { samples, cull, shading, background, level }
+        z_buffer::Options { samples, cull: filter.cull, shading, background, level }
     }
 }
 
@@ -88,6 +105,12 @@ impl Options {
 pub enum Step {
     /// Of the scan-line z-buffer.
     ScanLineZ(scan_line_z::Step),
+    /// Of depth sort.
+    DepthSort(depth_sort::Step),
+    /// Of Warnock's subdivision.
+    Warnock(warnock::Step),
+    /// Of ray casting.
+    Ray(ray::Step),
     /// Of the spanning scan line.
     SpanningScanLine(spanning_scan_line::Step),
     /// Of the A-buffer.
@@ -128,6 +151,21 @@ pub fn render_with(
         SurfaceMethod::ScanLineZ => {
             let t = &mut Wrapped(t, Step::ScanLineZ);
             scan_line_z::render(input, lights, &options.picture(), framebuffer, t);
+        }
+        SurfaceMethod::DepthSort => {
+            let t = &mut Wrapped(t, Step::DepthSort);
+            let options = depth_sort::Options { look: options.picture() };
+            depth_sort::render(input, lights, &options, framebuffer, t);
+        }
+        SurfaceMethod::Warnock => {
+            let t = &mut Wrapped(t, Step::Warnock);
+            warnock::render(input, lights, &options.warnock(), framebuffer, t);
+        }
+        SurfaceMethod::Ray => {
+            let t = &mut Wrapped(t, Step::Ray);
+            let (look, samples) = (options.picture(), options.samples);
+            let options = ray::Options { look, samples, ..Default::default() };
+            ray::render(input, lights, &options, framebuffer, t);
         }
         SurfaceMethod::SpanningScanLine => {
             let t = &mut Wrapped(t, Step::SpanningScanLine);

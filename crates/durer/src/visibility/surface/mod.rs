@@ -4,15 +4,20 @@ pub mod a_buffer;
 pub(crate) mod active;
 pub(crate) mod attributes;
 pub(crate) mod background;
+pub mod cover;
+pub mod depth_sort;
 pub mod input;
 pub(crate) mod lit;
 pub mod method;
 pub(crate) mod mixed;
 pub(crate) mod nearest;
 pub mod picture;
+pub mod ray;
 pub mod scan_line_z;
 pub mod setup;
 pub mod spanning_scan_line;
+pub(crate) mod visible;
+pub mod warnock;
 pub mod z_buffer;
 
 pub use method::{SurfaceMethod, render_with};
@@ -27,6 +32,8 @@ pub enum Cull {
     None,
     /// Faces seen from behind are left out.
     Back,
+    /// Faces seen from behind are left out where their material is single-sided, as glTF has it.
+    Material,
 }
 
 /// Samples per pixel of the production path.

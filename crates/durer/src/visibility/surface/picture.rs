@@ -65,13 +65,22 @@ impl<'a> Picture<'a> {
             lights,
             shading: options.shading,
         };
+        Self::with_lighting(lighting, options, framebuffer)
+    }
+
+    /// With materials that are prepared already.
+    pub fn with_lighting(
+        lighting: Lighting<'a>,
+        options: &Options,
+        framebuffer: &'a mut Framebuffer,
+    ) -> Self {
         Self {
             framebuffer,
             background: options.background,
             level: options.level,
             lit: Lit::new(lighting),
-            triangle_count: input.scene.triangle_count() as u32,
-            height: input.view.height(),
+            triangle_count: lighting.scene.triangle_count() as u32,
+            height: lighting.view.height(),
         }
     }
 

@@ -15,6 +15,7 @@ use crate::scene::{AlphaMode, Mesh, Scene, Topology};
 use crate::simd::Level;
 use crate::trace::NoTrace;
 use crate::view::View;
+use crate::visibility::surface::Cull;
 use fearless_simd::prelude::*;
 use fearless_simd::{dispatch, f64x4};
 use fearless_simd_macros::simd;
@@ -105,6 +106,8 @@ pub struct Run {
     pub first_item: u32,
     /// What the material's alpha means.
     pub coverage: Coverage,
+    /// Whether the material is meant to be seen from its front only.
+    pub single_sided: bool,
 }
 
 /// The runs of a scene in item order: triangles first, in scene order, then lines and points, so
@@ -138,6 +141,7 @@ pub fn runs(scene: &Scene) -> crate::Result<Vec<Run>> {
                     material,
                     first_item: first as u32,
                     coverage: coverage(scene, material),
+                    single_sided: material.is_some_and(|m| !scene.materials[m].double_sided),
                 });
             }
         }
@@ -188,6 +192,13 @@ impl ScreenVertex {
     }
 }
 
+/// Which sign of the area on the screen, y down, means: seen from behind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Hidden {
+    Positive,
+    Negative,
+}
+
 /// Takes mesh space to homogeneous screen space, and says what is outside.
 #[derive(Debug, Clone, Copy)]
 struct Transform {
@@ -197,6 +208,8 @@ struct Transform {
     height: f64,
     /// Whether the matrix turns fronts into backs.
     mirrored: bool,
+    /// Whether faces seen from behind are left out.
+    cull_back: bool,
 }
 
 impl Transform {
@@ -208,6 +221,13 @@ impl Transform {
     fn clip_options(&self) -> volume::Options {
         let guard_band = GUARD_BAND / self.width.max(self.height);
         volume::Options { borders: Borders::NearOnly { guard_band }, ..Default::default() }
+    }
+
+    /// The sign that the area of faces seen from behind has, where those are left out.
+    fn hidden_side(&self) -> Option<Hidden> {
+        // Fronts are counter-clockwise with y up, so their area is negative with y down.
+        let behind = if self.mirrored { Hidden::Negative } else { Hidden::Positive };
+        self.cull_back.then_some(behind)
     }
 
     /// x and y in pixels and the depth of a vertex with w > 0.
@@ -265,8 +285,8 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     let far = !hz.simd_le(hw).to_bitmask();
     let guard = f64x4::splat(simd, GUARD_BAND);
     let outside_guard = !(x.abs().simd_lt(guard) & y.abs().simd_lt(guard)).to_bitmask();
-    // What is not finite makes this sum not finite, or NaN.
-    let sum = (hx - hx) + (hy - hy) + (hz - hz) + (hw - hw);
+    // Zero times what is not finite is NaN.
+    let sum = (hx + hy + hz + hw) * 0.0;
     let non_finite = !sum.simd_eq(zero).to_bitmask();
     // Adding 1.5 · 2⁵² leaves the integer, rounded to nearest and ties to even, in the low bits.
     let magic = 6_755_399_441_055_744.0;
@@ -319,8 +339,8 @@ impl std::ops::AddAssign for Counts {
 /// Which triangles [`Assembler`] lets through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Filter {
-    /// Leave out faces seen from behind.
-    pub cull_back: bool,
+    /// Which faces seen from behind are left out.
+    pub cull: Cull,
     /// How far samples lie from the pixel's centre, in 1/256 pixel: triangles that cannot reach a
     /// sample are left out.
     pub sample_reach: i32,
@@ -365,6 +385,11 @@ impl<'a> Assembler<'a> {
             width: f64::from(self.view.width()),
             height: f64::from(self.view.height()),
             mirrored: glam::DMat3::from_mat4(world_from_mesh).determinant() < 0.0,
+            cull_back: match self.filter.cull {
+                Cull::None => false,
+                Cull::Back => true,
+                Cull::Material => run.single_sided,
+            },
         };
         match mesh.topology {
             Topology::Triangles => self.triangles(mesh, &transform, run, range, &mut emit),
@@ -453,7 +478,7 @@ impl<'a> Assembler<'a> {
         } else if any & (code::NEAR | code::GUARD) != 0 {
             self.clip(mesh, transform, corners, item, emit);
         } else {
-            match self.set_up(v, item, transform.mirrored) {
+            match self.set_up(v, item, transform.hidden_side()) {
                 Some(triangle) => {
                     self.counts.drawn += 1;
                     emit(triangle);
@@ -481,7 +506,7 @@ impl<'a> Assembler<'a> {
         let mut drawn = 0;
         for i in 2..projected.len() {
             let v = [&projected[0], &projected[i - 1], &projected[i]];
-            if let Some(triangle) = self.set_up(v, item, transform.mirrored) {
+            if let Some(triangle) = self.set_up(v, item, transform.hidden_side()) {
                 drawn = 1;
                 emit(triangle);
             }
@@ -515,28 +540,34 @@ impl<'a> Assembler<'a> {
         let corners = [pa - back - side, pa - back + side, pb + back + side, pb + back - side];
         let z = [za, za, zb, zb];
         let v = [0, 1, 2, 3].map(|i| ScreenVertex::new((corners[i], z[i])));
-        let seen_from_both_sides = Filter { cull_back: false, ..self.filter };
-        let keep = std::mem::replace(&mut self.filter, seen_from_both_sides);
         let mut drawn = 0;
         for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
-            let triangle = self.set_up([&v[i], &v[j], &v[k]], item, false);
+            let triangle = self.set_up([&v[i], &v[j], &v[k]], item, None);
             if let Some(triangle) = triangle {
                 drawn = 1;
                 emit(triangle);
             }
         }
-        self.filter = keep;
         self.counts.drawn += drawn;
         self.counts.culled += 1 - drawn;
     }
 
     /// Back-face and area test, bounding box test, depth plane.
     #[inline(always)]
-    fn set_up(&self, v: [&ScreenVertex; 3], item: u32, mirrored: bool) -> Option<ScreenTriangle> {
+    fn set_up(
+        &self,
+        v: [&ScreenVertex; 3],
+        item: u32,
+        hidden: Option<Hidden>,
+    ) -> Option<ScreenTriangle> {
         let area = i64::from(v[1].x - v[0].x) * i64::from(v[2].y - v[0].y)
             - i64::from(v[2].x - v[0].x) * i64::from(v[1].y - v[0].y);
-        // Fronts are counter-clockwise with y up, so their area is negative with y down.
-        if area == 0 || (self.filter.cull_back && (area > 0) != mirrored) {
+        let culled = match hidden {
+            None => area == 0,
+            Some(Hidden::Positive) => area >= 0,
+            Some(Hidden::Negative) => area <= 0,
+        };
+        if culled {
             return None;
         }
         let [a, b, c] = if area < 0 { [v[0], v[2], v[1]] } else { v };

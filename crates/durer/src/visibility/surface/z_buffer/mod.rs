@@ -96,7 +96,7 @@ pub fn render(
     let runs = runs(scene)?;
     let offsets = options.samples.offsets();
     let reach = offsets.iter().flatten().map(|o| o.abs()).max().unwrap_or(0);
-    let filter = Filter { cull_back: options.cull == Cull::Back, sample_reach: reach };
+    let filter = Filter { cull: options.cull, sample_reach: reach };
     let bins = crate::parallel::map(jobs(&runs), |job| {
         Bins::new(&job, &runs, scene, view, filter, options.level)
     });

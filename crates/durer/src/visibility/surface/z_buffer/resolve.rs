@@ -148,8 +148,7 @@ fn resolve_opaque<S: Simd>(
             let x = 8 * eight as i32;
             let index = (y * TILE + x) as usize;
             let at = [area.tile[0] + x, area.tile[1] + y];
-            out.fill(encoded);
-            resolve_eight(simd, out, planes, index, lit, at);
+            resolve_eight(simd, out, planes, index, lit, encoded, at);
             if planes.len() > 1 {
                 add_mixed(simd, planes, index, mixed, lit, behind, at, out.len());
             }
@@ -170,6 +169,7 @@ fn resolve_eight<S: Simd>(
     planes: &[SamplePlane],
     index: usize,
     lit: &mut Lit<'_>,
+    behind: [u8; 4],
     [x, y]: [i32; 2],
 ) {
     let mut whole = [NO_ITEM; 8];
@@ -181,16 +181,28 @@ fn resolve_eight<S: Simd>(
         }
     }
     if whole == [NO_ITEM; 8] {
-        return;
+        return out.fill(behind);
     }
     let mut colors = [[0.0; 8]; 3];
     lit.colors_x8(simd, &whole, x, y, &mut colors);
-    let [r, g, b] = colors;
-    for (i, out) in out.iter_mut().enumerate() {
-        if whole[i] != NO_ITEM {
-            *out = [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255];
-        }
+    let encoded = encode_eight(&colors);
+    if whole.iter().all(|&item| item != NO_ITEM) {
+        out.copy_from_slice(&encoded[..out.len()]);
+        return;
     }
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = if whole[i] != NO_ITEM { encoded[i] } else { behind };
+    }
+}
+
+/// Opaque linear colours to 8-bit sRGB.
+#[inline(always)]
+fn encode_eight([r, g, b]: &[[f32; 8]; 3]) -> [[u8; 4]; 8] {
+    let mut encoded = [[0; 4]; 8];
+    for i in 0..8 {
+        encoded[i] = [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255];
+    }
+    encoded
 }
 
 /// Of eight pixels in a row, those that show several items, or one and the background: each item is

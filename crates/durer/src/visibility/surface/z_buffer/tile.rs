@@ -116,6 +116,12 @@ impl TileTriangle {
         moved
     }
 
+    /// Whether the edge functions fit i32 in the whole tile.
+    #[inline(always)]
+    fn fits_i32(&self) -> bool {
+        extent(&self.triangle.x) < SMALL_EXTENT && extent(&self.triangle.y) < SMALL_EXTENT
+    }
+
     /// The edge functions at a tile-local pixel.
     #[inline(always)]
     fn edges_at(&self, x: i32, y: i32) -> [i64; 3] {
@@ -168,13 +174,16 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
     mut test: Option<&mut T>,
 ) {
     for triangle in triangles {
-        let small = extent(&triangle.x) < SMALL_EXTENT && extent(&triangle.y) < SMALL_EXTENT;
-        let at_center = TileTriangle::new(triangle, tile);
+        let mut at_center = None;
         for (sample, plane) in planes.iter_mut().enumerate() {
+            // Most triangles of a fine mesh lie between the samples.
             let Some(bounds) = sample_bounds(triangle, tile, size, plane.offset) else { continue };
-            let t = at_center.at_sample(plane.offset, sample);
+            let t = at_center.get_or_insert_with(|| TileTriangle::new(triangle, tile));
+            let t = t.at_sample(plane.offset, sample);
             let [x0, y0, x1, y1] = bounds;
-            if small && x1 - x0 < SMALL && y1 - y0 < SMALL {
+            if (x1 - x0 + 1) * (y1 - y0 + 1) <= TINY {
+                rasterize_tiny(plane, &t, bounds, &mut test);
+            } else if x1 - x0 < SMALL && y1 - y0 < SMALL && t.fits_i32() {
                 rasterize_box(simd, plane, &t, bounds, &mut test);
             } else {
                 rasterize_blocks(simd, plane, &t, bounds, &mut test);
@@ -189,6 +198,39 @@ const SMALL: i32 = 16;
 /// Edge functions of triangles of less than this extent fit i32 in the whole tile: at most
 /// 2 · 2¹⁷ · (512 + 64) < 2²⁸.
 const SMALL_EXTENT: i32 = 512 * SUBPIXELS;
+
+/// Boxes of at most this many pixels are worked off one by one.
+const TINY: i32 = 4;
+
+/// Tiny triangles: each pixel of their bounding box, with the same arithmetic as eight at a time.
+#[inline(always)]
+fn rasterize_tiny<T: FragmentTest>(
+    plane: &mut SamplePlane,
+    t: &TileTriangle,
+    [x0, y0, x1, y1]: [i32; 4],
+    test: &mut Option<&mut T>,
+) {
+    for y in y0..=y1 {
+        let depth_y = t.triangle.depth_dy * (t.from[1] + y as f32);
+        for x in x0..=x1 {
+            let [a, b, c] = t.edges_at(x, y);
+            if (a | b | c) < 0 {
+                continue;
+            }
+            let depth_x = (x as f32 + t.from[0]) * t.triangle.depth_dx;
+            let depth = ((depth_x + depth_y) + t.triangle.depth)
+                .max(t.triangle.depth_min)
+                .min(t.triangle.depth_max);
+            let depth = depth.to_bits() as i32;
+            let index = (y * TILE + x) as usize;
+            let (old, old_item) = (plane.depth[index], plane.item[index]);
+            let wins = depth < old || (depth == old && (t.triangle.item as i32) <= old_item as i32);
+            if wins && test.as_mut().is_none_or(|p| p.passes(&t.triangle, x, y, t.sample)) {
+                (plane.depth[index], plane.item[index]) = (depth, t.triangle.item);
+            }
+        }
+    }
+}
 
 /// Small triangles: all rows of their bounding box, eight pixels at a time.
 #[inline(always)]
@@ -294,6 +336,10 @@ fn fill_rows<S: Simd, T: FragmentTest>(
     for y in y0..=y1 {
         let outside = edges.outside();
         edges.next_row();
+        // Thin triangles leave most rows of their boxes and blocks empty.
+        if !outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+            continue;
+        }
         let index = (y * TILE + x) as usize;
         let depth_y = t.triangle.depth_dy * (t.from[1] + y as f32);
         let depth = (depth_x + depth_y) + t.triangle.depth;

@@ -1,0 +1,149 @@
+//! The options of `durer clip`.
+
+use super::engine::Algorithm;
+use crate::args::RunningArgs;
+use crate::values;
+use clap::{Args, ValueEnum, ValueHint};
+use durer::clip::polygon::{BooleanOp, FillRule};
+use durer::math::{DVec2, Rect};
+use durer_formats::geo::GeoFormat;
+use std::path::PathBuf;
+
+pub const EXAMPLES: &str = "\
+Examples:
+  durer clip countries.geojson --window -10,35,30,60 -o europe.geojson
+  durer clip roads.geojson --by city.geojson -o roads_in_city.geojson
+  durer clip roads.wkt --by lakes.wkt --outside -o dry_roads.wkt
+  durer clip parcels.geojson --op union -o built_up.geojson
+  durer clip countries.geojson --tiles 4 -o tiles/
+  durer clip countries.geojson --window -10,35,30,60 -o europe.svg
+  cat planet.geojsonl | durer clip - --window 5,45,11,48 -o - > alps.geojsonl
+
+Properties, ids and members that GeoJSON does not define are kept; heights and measures are \
+interpolated at cuts. Lines keep their order and direction. Polygons come out valid, by the \
+rectangle clip where the input is valid and the mask a window, else by an overlay on a grid.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer clip`.
+#[derive(Debug, Args)]
+pub struct ClipArgs {
+    /// GeoJSON (also one feature per line), WKT, WKB or SVG; `-` reads standard input
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// Where the result goes
+    ///
+    /// A file whose suffix tells the format: .geojson, .json; .geojsonl, .ndjson, .jsonl (one
+    /// feature per line); .geojsons (RFC 8142); .wkt; .wkb; .hex; .svg. `-` for standard output, in
+    /// the format of the input. A file is replaced only by a whole result. With --tiles, a folder.
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
+    pub output: PathBuf,
+    /// What to cut with.
+    #[command(flatten)]
+    pub region: RegionArgs,
+    /// How to cut.
+    #[command(flatten)]
+    pub cutting: CuttingArgs,
+    /// The format of IN [default: by its content, then by its suffix]
+    #[arg(long, value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
+    pub from: Option<GeoFormat>,
+    /// The format of OUT: geojson, geojsonl, geojsons, wkt, wkb, wkb-hex or svg [default: by its suffix]
+    #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
+    pub to: Option<GeoFormat>,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+    /// Write a report on standard output, in JSON: counts and areas in and out
+    #[arg(long, help_heading = "Running")]
+    pub json: bool,
+}
+
+/// What to cut with.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Mask")]
+pub struct RegionArgs {
+    /// A rectangle: its left, lower, right and upper border, in the coordinates of the file
+    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = window, conflicts_with_all = ["by", "tiles"])]
+    pub window: Option<Rect>,
+    /// The polygons of a file, all together
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "tiles")]
+    pub by: Option<PathBuf>,
+    /// The tiles of a web map at this zoom level, 0 to 24
+    ///
+    /// Each tile becomes OUT/z/x/y.geojson; where OUT is `-` or ends in .geojsonl, all go into one
+    /// sequence of features with the member "tile". A result for folders is held in memory.
+    #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = clap::value_parser!(u8).range(0..=24))]
+    pub tiles: Option<u8>,
+    /// What the coordinates are, for --tiles
+    #[arg(long, value_name = "SYSTEM", default_value = "lonlat", requires = "tiles")]
+    pub tile_coordinates: TileCoordinates,
+    /// Keep what is outside; the same as `--op difference`
+    #[arg(long, conflicts_with_all = ["op", "tiles"])]
+    pub outside: bool,
+}
+
+/// How to cut.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Cutting")]
+pub struct CuttingArgs {
+    /// intersection, difference; union, xor: these join all polygons, those of the mask too, to one
+    #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
+    pub op: BooleanOp,
+    /// Which points polygons enclose: even-odd, non-zero, positive (rings counter-clockwise) or negative
+    #[arg(long, value_name = "RULE", default_value = "even-odd")]
+    pub fill_rule: FillRule,
+    /// An algorithm by its name [default: what is fast and right]
+    #[arg(long, value_name = "NAME", long_help = algorithm_help(), value_parser = algorithm)]
+    pub algorithm: Option<Algorithm>,
+    /// The grid for vertices of overlays, in units of the coordinates [default: 2^-40 of the extent]
+    ///
+    /// Without it, vertices of the input keep their coordinates and crossings are rounded to the
+    /// finest grid. With it, all vertices of polygons are snapped. Powers of two are best.
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::positive)]
+    pub grid: Option<f64>,
+}
+
+/// `--tile-coordinates`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TileCoordinates {
+    /// Longitude and latitude in degrees
+    Lonlat,
+    /// Web Mercator (EPSG:3857), in metres
+    Mercator,
+}
+
+fn window(text: &str) -> Result<Rect, String> {
+    let numbers: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
+    let [xl, yb, xr, yt] = numbers[..] else {
+        return Err("four numbers joined by commas are needed, e.g. -10,35,30,60".to_owned());
+    };
+    if xl >= xr || yb >= yt {
+        return Err("the window is empty; give left, lower, right, upper".to_owned());
+    }
+    Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
+}
+
+fn format(text: &str) -> Result<GeoFormat, String> {
+    let found = GeoFormat::ALL.into_iter().find(|f| f.name() == text);
+    found
+        .ok_or_else(|| format!("it must be one of {}", GeoFormat::ALL.map(|f| f.name()).join(", ")))
+}
+
+fn names() -> String {
+    Algorithm::all().into_iter().map(Algorithm::name).collect::<Vec<_>>().join(", ")
+}
+
+fn algorithm(text: &str) -> Result<Algorithm, String> {
+    let found = Algorithm::all().into_iter().find(|a| a.name() == text);
+    found.ok_or_else(|| format!("it must be one of {}", names()))
+}
+
+fn algorithm_help() -> String {
+    format!(
+        "An algorithm by its name [default: what is fast and right]\n\nOne of {}. Those for lines \
+         take windows and leave polygons to the default, and the other way round; \
+         sutherland-hodgman takes convex masks and leaves bridges along the border; rectangle, \
+         weiler-atherton and greiner-hormann take polygons as valid.",
+        names()
+    )
+}

@@ -1,0 +1,486 @@
+//! Cutting one geometry with the mask.
+
+use super::shapes::{Area, pieces};
+use super::validity::{Touching, contains, edges_are_apart, is_valid};
+use durer::clip::line::polyline::{self, Part};
+use durer::clip::line::{ConvexPolygon, LineClipper, Segment};
+use durer::clip::polygon::rectangle::{self, ClippedLines};
+use durer::clip::polygon::{
+    BooleanOp, FillRule, PolygonClipper, Shapes, overlay, sutherland_hodgman, vatti,
+};
+use durer::math::{DVec2, Rect};
+use durer::trace::NoTrace;
+use durer_formats::geo::{Geometry, Points};
+
+type Result<T> = durer::Result<T>;
+
+/// What to cut with.
+#[derive(Debug, Clone)]
+pub struct Mask {
+    /// Valid polygons.
+    shapes: Shapes,
+    bounds: Rect,
+    /// Where the mask is a rectangle.
+    window: Option<Rect>,
+}
+
+impl Mask {
+    /// A window.
+    pub fn window(window: Rect) -> Self {
+        Self { shapes: rectangle_shape(&window), bounds: window, window: Some(window) }
+    }
+
+    /// Valid polygons; `None` where there are none.
+    pub fn polygons(shapes: Shapes) -> Option<Self> {
+        let bounds = shapes.bounds()?;
+        Some(Self { shapes, bounds, window: None })
+    }
+
+    /// Its polygons.
+    pub fn shapes(&self) -> &Shapes {
+        &self.shapes
+    }
+
+    fn contains(&self, p: DVec2) -> bool {
+        match self.window {
+            Some(window) => window.contains(p),
+            None => self.bounds.contains(p) && contains(&self.shapes, p),
+        }
+    }
+
+    /// The polygons near a box, cut outside of it where they are many.
+    fn near(&self, bounds: &Rect) -> Result<Shapes> {
+        /// Cutting fewer points away saves nothing.
+        const FEW: usize = 64;
+        let margin = bounds.size() * (1.0 / 64.0) + bounds.max().abs() * 1e-9;
+        let around = Rect::new(bounds.min() - margin, bounds.max() + margin);
+        match around {
+            Ok(around) if self.shapes.points().len() > FEW => {
+                rectangle::clip(&around, &self.shapes, &rectangle::Options, &mut NoTrace)
+            }
+            _ => Ok(self.shapes.clone()),
+        }
+    }
+}
+
+fn rectangle_shape(window: &Rect) -> Shapes {
+    let (a, b) = (window.min(), window.max());
+    Shapes::from_rings([[a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)]])
+}
+
+/// How geometries are cut.
+#[derive(Debug, Clone)]
+pub struct Cutter {
+    pub mask: Mask,
+    /// Intersection, or difference.
+    pub op: BooleanOp,
+    pub rules: Rules,
+    pub algorithm: Option<Algorithm>,
+}
+
+/// What polygons enclose, and where their crossings may lie.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Rules {
+    pub fill: FillRule,
+    /// Size of a grid cell, in units of the coordinates.
+    pub grid: Option<f64>,
+}
+
+/// An algorithm of the library by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Algorithm {
+    Rectangle,
+    SutherlandHodgman,
+    Polygon(PolygonClipper),
+    Line(LineClipper),
+}
+
+impl Algorithm {
+    /// All that the command can use; midpoint subdivision works on pixels only.
+    pub fn all() -> Vec<Self> {
+        let own = [Self::Rectangle, Self::SutherlandHodgman];
+        let polygons = PolygonClipper::ALL.iter().map(|&a| Self::Polygon(a));
+        let lines = LineClipper::ALL.iter().filter(|&&a| a != LineClipper::Midpoint);
+        own.into_iter().chain(polygons).chain(lines.map(|&a| Self::Line(a))).collect()
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rectangle => rectangle::INFO.name,
+            Self::SutherlandHodgman => sutherland_hodgman::INFO.name,
+            Self::Polygon(a) => a.name(),
+            Self::Line(a) => a.name(),
+        }
+    }
+
+    /// Whether it clips with rectangles only.
+    pub fn needs_window(self) -> bool {
+        matches!(self, Self::Rectangle | Self::Line(_))
+    }
+
+    /// Whether it keeps the inside only.
+    pub fn needs_intersection(self) -> bool {
+        self.needs_window() || self == Self::SutherlandHodgman
+    }
+}
+
+/// What is left of a geometry.
+#[derive(Debug, Default)]
+pub struct Cut {
+    pub geometry: Option<Geometry>,
+    /// Whether its polygons were not valid and have been made so.
+    pub repaired: bool,
+}
+
+impl Cutter {
+    /// The wanted part of a geometry.
+    pub fn cut(&self, geometry: &Geometry) -> Result<Cut> {
+        let inside = self.op == BooleanOp::Intersection;
+        let Some(bounds) = geometry.bounds() else { return Ok(Cut::default()) };
+        if inside && !bounds.overlaps(&self.mask.bounds) {
+            return Ok(Cut::default());
+        }
+        Ok(match geometry {
+            Geometry::Point(points) => {
+                let kept = self.points(points);
+                Cut::of((!kept.is_empty()).then_some(Geometry::Point(kept)))
+            }
+            Geometry::MultiPoint(points) => {
+                let kept = self.points(points);
+                Cut::of((!kept.is_empty()).then_some(Geometry::MultiPoint(kept)))
+            }
+            Geometry::LineString(line) => Cut::of(one_or_many(self.lines(&[line], &bounds)?)),
+            Geometry::MultiLineString(lines) => {
+                let lines: Vec<&Points> = lines.iter().collect();
+                Cut::of(one_or_many(self.lines(&lines, &bounds)?))
+            }
+            Geometry::Polygon(_) | Geometry::MultiPolygon(_) => self.polygons(geometry, &bounds)?,
+            Geometry::Collection(parts) => self.collection(parts)?,
+        })
+    }
+
+    fn collection(&self, parts: &[Geometry]) -> Result<Cut> {
+        let cuts: Vec<Cut> = parts.iter().map(|part| self.cut(part)).collect::<Result<_>>()?;
+        let repaired = cuts.iter().any(|cut| cut.repaired);
+        let left: Vec<Geometry> = cuts.into_iter().filter_map(|cut| cut.geometry).collect();
+        Ok(Cut { geometry: (!left.is_empty()).then_some(Geometry::Collection(left)), repaired })
+    }
+
+    fn points(&self, points: &Points) -> Points {
+        let mut kept = Points::new(points.dimensions);
+        for (i, &p) in points.xy.iter().enumerate() {
+            if self.mask.contains(p) == (self.op == BooleanOp::Intersection) {
+                kept.push(p, points.zm(i));
+            }
+        }
+        kept
+    }
+
+    fn lines(&self, lines: &[&Points], bounds: &Rect) -> Result<Vec<Points>> {
+        let points: Vec<DVec2> = lines.iter().flat_map(|line| line.xy.iter().copied()).collect();
+        let ends: Vec<usize> = lines
+            .iter()
+            .scan(0, |end, line| {
+                *end += line.len();
+                Some(*end)
+            })
+            .collect();
+        let inside = self.op == BooleanOp::Intersection;
+        let cut = match (self.mask.window, self.algorithm) {
+            (Some(window), Some(Algorithm::Line(clipper))) if inside => {
+                by_segments(clipper, &window, &points, &ends)?
+            }
+            (Some(window), _) if inside => rectangle::clip_lines(&window, &points, &ends, true)?,
+            _ => {
+                let part = if inside { Part::Inside } else { Part::Outside };
+                let options = polyline::Options { part };
+                let near = self.mask.near(bounds)?;
+                polyline::clip(&near, &points, &ends, &options, &mut NoTrace)?
+            }
+        };
+        Ok(pieces(lines, &cut))
+    }
+
+    fn polygons(&self, geometry: &Geometry, bounds: &Rect) -> Result<Cut> {
+        let area = Area::of_geometry(geometry);
+        match self.algorithm {
+            None | Some(Algorithm::Line(_)) => self.production(geometry, &area, bounds),
+            Some(algorithm) => {
+                let geometry = self.by_name(algorithm, &area)?.into_geometry();
+                Ok(Cut { geometry, repaired: false })
+            }
+        }
+    }
+
+    /// Valid polygons by the rectangle clip, all others by the overlay.
+    fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
+        let plain = self.rules.fill == FillRule::EvenOdd && self.rules.grid.is_none();
+        let valid = plain && is_valid(&area.shapes, Touching::No);
+        let inside = self.op == BooleanOp::Intersection;
+        let covers = |window: &Rect| window.contains(bounds.min()) && window.contains(bounds.max());
+        match self.mask.window {
+            Some(window) if inside && valid && covers(&window) => {
+                return Ok(Cut::of(Some(geometry.clone())));
+            }
+            Some(window) if inside && valid => return Ok(Cut::of(clip_to(&window, area)?)),
+            _ if !inside && valid && !bounds.overlaps(&self.mask.bounds) => {
+                return Ok(Cut::of(Some(geometry.clone())));
+            }
+            _ => {}
+        }
+        let near = self.mask.near(bounds)?;
+        let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
+        // Rings that touch at vertices are valid, but nothing for the rectangle clip.
+        let even_odd = self.rules.fill == FillRule::EvenOdd;
+        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtVertices);
+        Ok(Cut { geometry: cut.into_geometry(), repaired })
+    }
+
+    fn by_name(&self, algorithm: Algorithm, area: &Area) -> Result<Area> {
+        let mask = &self.mask.shapes;
+        Ok(match (algorithm, self.mask.window) {
+            (Algorithm::Rectangle, Some(window)) => clip_area(&window, area)?,
+            (Algorithm::Polygon(PolygonClipper::Overlay), _) => {
+                self.rules.overlay(area, mask, self.op, self.rules.fill)?
+            }
+            (Algorithm::Polygon(PolygonClipper::Vatti), _) => {
+                let options = self.rules.options(area, mask, self.rules.fill);
+                let output = vatti::vatti(&area.shapes, mask, self.op, &options, &mut NoTrace)?;
+                area.overlaid(mask, &output, false)
+            }
+            (Algorithm::Polygon(clipper), _) => {
+                Area::flat(clipper.clip(&area.shapes, mask, self.op)?)
+            }
+            (Algorithm::SutherlandHodgman, window) => {
+                Area::flat(by_half_planes(window, mask, &area.shapes)?)
+            }
+            (Algorithm::Rectangle | Algorithm::Line(_), _) => area.clone(),
+        })
+    }
+}
+
+impl Cut {
+    fn of(geometry: Option<Geometry>) -> Self {
+        Self { geometry, repaired: false }
+    }
+}
+
+fn one_or_many(mut lines: Vec<Points>) -> Option<Geometry> {
+    match lines.len() {
+        0 => None,
+        1 => lines.pop().map(Geometry::LineString),
+        _ => Some(Geometry::MultiLineString(lines)),
+    }
+}
+
+/// The part of valid polygons in a window.
+fn clip_area(window: &Rect, area: &Area) -> Result<Area> {
+    let options = rectangle::Options;
+    let (shapes, sources) =
+        rectangle::clip_with_sources(window, &area.shapes, &options, &mut NoTrace)?;
+    Ok(area.cut(shapes, &sources))
+}
+
+fn clip_to(window: &Rect, area: &Area) -> Result<Option<Geometry>> {
+    clip_area(window, area).map(Area::into_geometry)
+}
+
+/// Polylines cut segment by segment; pieces go on where a segment's end is inside.
+fn by_segments(
+    clipper: LineClipper,
+    window: &Rect,
+    points: &[DVec2],
+    ends: &[usize],
+) -> Result<ClippedLines> {
+    let mut out = ClippedLines::default();
+    let mut first = 0;
+    for (line, &end) in ends.iter().enumerate() {
+        // Where the piece being built begins.
+        let mut start: Option<usize> = None;
+        let finish = |out: &mut ClippedLines, start: &mut Option<usize>| {
+            let Some(from) = start.take() else { return };
+            if out.points[from..].iter().any(|p| *p != out.points[from]) {
+                out.ends.push(out.points.len());
+                out.lines.push(line);
+            } else {
+                out.points.truncate(from);
+                out.sources.truncate(from);
+            }
+        };
+        for k in first + 1..end {
+            let segment = Segment::new(points[k - 1], points[k]);
+            let Some(seen) = clipper.clip(window, segment)? else {
+                finish(&mut out, &mut start);
+                continue;
+            };
+            if seen.start != segment.start {
+                finish(&mut out, &mut start);
+            }
+            if start.is_none() {
+                start = Some(out.points.len());
+                push(&mut out, seen.start, segment, k);
+            }
+            push(&mut out, seen.end, segment, k);
+            if seen.end != segment.end {
+                finish(&mut out, &mut start);
+            }
+        }
+        finish(&mut out, &mut start);
+        first = end;
+    }
+    Ok(out)
+}
+
+fn push(out: &mut ClippedLines, p: DVec2, segment: Segment<DVec2>, end: usize) {
+    use durer::clip::attribute::Source;
+    let d = segment.end - segment.start;
+    let along = if d.x.abs() > d.y.abs() {
+        (p.x - segment.start.x) / d.x
+    } else {
+        (p.y - segment.start.y) / d.y
+    };
+    out.points.push(p);
+    out.sources.push(if p == segment.start {
+        Source::Vertex(end - 1)
+    } else if p == segment.end {
+        Source::Vertex(end)
+    } else {
+        Source::Cut { from: end - 1, to: end, t: along }
+    });
+}
+
+/// Sutherland and Hodgman's clip, ring by ring; what falls apart stays joined along the border.
+fn by_half_planes(window: Option<Rect>, mask: &Shapes, shapes: &Shapes) -> Result<Shapes> {
+    let convex = match window {
+        Some(_) => None,
+        None => Some(ConvexPolygon::new(mask.ring(0))?),
+    };
+    let clip = |ring: &[DVec2]| match (&window, &convex) {
+        (Some(window), _) => sutherland_hodgman::clip(window, ring, &mut NoTrace),
+        (None, Some(convex)) => sutherland_hodgman::clip_polygon(convex, ring, &mut NoTrace),
+        (None, None) => Ok(Vec::new()),
+    };
+    let mut out = Shapes::new();
+    for polygon in shapes.polygons() {
+        for ring in polygon.rings() {
+            let ring = clip(ring)?;
+            if ring.len() > 2 {
+                out.push_ring(ring);
+            }
+        }
+        out.end_polygon();
+    }
+    Ok(out)
+}
+
+impl Rules {
+    /// The overlay's options: the finest grid that it takes, unless one is given.
+    fn options(&self, area: &Area, clip: &Shapes, subject_rule: FillRule) -> overlay::Options {
+        let fit = || finest_grid([area.shapes.bounds(), clip.bounds()]);
+        overlay::Options {
+            subject_rule,
+            clip_rule: FillRule::EvenOdd,
+            grid: self.grid.or_else(fit),
+            origins: true,
+        }
+    }
+
+    /// Any polygons with valid polygons.
+    ///
+    /// Where no grid is given, vertices of the input keep their coordinates bit for bit, if the
+    /// result is valid so; else all are on the grid.
+    pub fn overlay(
+        &self,
+        area: &Area,
+        clip: &Shapes,
+        op: BooleanOp,
+        subject_rule: FillRule,
+    ) -> Result<Area> {
+        let options = self.options(area, clip, subject_rule);
+        let output = overlay(&area.shapes, clip, op, &options, &mut NoTrace)?;
+        if self.grid.is_none() {
+            let exact = area.overlaid(clip, &output, true);
+            if edges_are_apart(&exact.shapes, Touching::AtVertices) {
+                return Ok(exact);
+            }
+        }
+        Ok(area.overlaid(clip, &output, false))
+    }
+
+    /// The same region by polygons that are valid, with outer rings counter-clockwise.
+    pub fn clean(&self, area: &Area) -> Result<Area> {
+        if self.fill == FillRule::EvenOdd
+            && self.grid.is_none()
+            && is_valid(&area.shapes, Touching::No)
+        {
+            return Ok(area.oriented());
+        }
+        self.overlay(area, &Shapes::new(), BooleanOp::Union, self.fill)
+    }
+}
+
+/// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 51 bits for a coordinate.
+fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
+    let all = Rect::around(bounds.into_iter().flatten().flat_map(|b| [b.min(), b.max()]))?;
+    let farthest = all.min().abs().max(all.max().abs()).max_element();
+    let cell = (all.size().max_element() / 2f64.powi(40)).max(farthest / 2f64.powi(51));
+    // The power of two at or below, without logarithms: the exponent's bits alone.
+    let floor = f64::from_bits(cell.to_bits() & (0x7ff << 52));
+    let cell = if floor < cell { floor * 2.0 } else { floor };
+    (cell.is_normal() && cell.is_finite()).then_some(cell)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(points: &[(f64, f64)]) -> Points {
+        Points::flat(points.iter().map(|&p| DVec2::from(p)).collect())
+    }
+
+    fn cutter(op: BooleanOp, algorithm: Option<Algorithm>) -> Cutter {
+        let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).expect("a window");
+        Cutter { mask: Mask::window(window), op, rules: Rules::default(), algorithm }
+    }
+
+    #[test]
+    fn every_line_algorithm_cuts_as_the_production_path() {
+        let zigzag =
+            line(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 15.0), (7.0, 5.0), (9.0, 9.0), (20.0, 9.0)]);
+        let geometry = Geometry::LineString(zigzag);
+        let expected = cutter(BooleanOp::Intersection, None).cut(&geometry).expect("cut").geometry;
+        assert!(matches!(&expected, Some(Geometry::MultiLineString(parts)) if parts.len() == 2));
+        for algorithm in Algorithm::all() {
+            let cut = cutter(BooleanOp::Intersection, Some(algorithm)).cut(&geometry);
+            assert_eq!(cut.expect("cut").geometry, expected, "{}", algorithm.name());
+        }
+    }
+
+    #[test]
+    fn every_polygon_algorithm_gives_the_same_area() {
+        let ring = line(&[(-5.0, 2.0), (5.0, 2.0), (5.0, 8.0), (-5.0, 8.0)]);
+        let hole = line(&[(-1.0, 3.0), (2.0, 3.0), (2.0, 4.0), (-1.0, 4.0)]);
+        let geometry = Geometry::Polygon(vec![ring, hole]);
+        for algorithm in [None].into_iter().chain(Algorithm::all().into_iter().map(Some)) {
+            let cut = cutter(BooleanOp::Intersection, algorithm).cut(&geometry).expect("cut");
+            let area = Area::of_geometry(&cut.geometry.expect("a part")).shapes;
+            let size: f64 = area.rings().map(|r| durer::clip::polygon::signed_area(r).abs()).sum();
+            let holes: f64 = area
+                .polygons()
+                .flat_map(|p| p.holes().collect::<Vec<_>>())
+                .map(|r| durer::clip::polygon::signed_area(r).abs())
+                .sum();
+            // Where the hole is cut open it is part of the outer ring, or a hole on the border.
+            assert!((size - 2.0 * holes - 28.0).abs() < 1e-9, "{algorithm:?}: {size} {holes}");
+        }
+    }
+
+    #[test]
+    fn the_finest_grid_is_a_power_of_two() {
+        let bounds = Rect::new(DVec2::splat(-180.0), DVec2::splat(180.0)).ok();
+        let cell = finest_grid([bounds, None]).expect("a grid");
+        assert!(cell >= 360.0 / 2f64.powi(40) && cell <= 360.0 / 2f64.powi(39));
+        assert_eq!(cell.to_bits() << 12, 0);
+    }
+}

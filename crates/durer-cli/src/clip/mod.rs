@@ -1,0 +1,414 @@
+//! `durer clip`.
+
+mod args;
+mod engine;
+mod report;
+mod shapes;
+mod sink;
+mod tiles;
+mod validity;
+
+pub use args::{ClipArgs, EXAMPLES};
+
+use crate::failure::{Failure, in_words};
+use crate::input::{display_name, is_stream};
+use crate::messages::Messages;
+use crate::output::{self, Target};
+use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
+use engine::{Cutter, Mask, Rules};
+use rayon::prelude::*;
+use report::{Counts, Report};
+use shapes::Area;
+use sink::{Sink, failure};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, IsTerminal};
+use std::path::Path;
+use std::time::Instant;
+use tiles::Tile;
+
+/// Features that are cut at a time, on all threads.
+const BATCH: usize = 256;
+
+/// Positions that are held before a batch is cut, however few features they are.
+const BATCH_POSITIONS: usize = 1 << 18;
+
+/// Bytes that are looked at to find the format.
+const PROBE: usize = 64 << 10;
+
+type Source = Reader<Box<dyn BufRead>>;
+
+/// Cuts one file.
+pub fn run(args: &ClipArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    check(args)?;
+    let messages = Messages::new(&args.running, 1);
+    let rules = Rules { fill: args.cutting.fill_rule, grid: args.cutting.grid };
+    let mask = match (&args.region.window, &args.region.by) {
+        (Some(window), _) => Some(Mask::window(*window)),
+        (_, Some(path)) => Some(read_mask(path, rules, &messages)?),
+        _ => None,
+    };
+    let (from, mut reader) = open(&args.input, args.from)?;
+    let to = output_format(args, from)?;
+    let mut report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        input: display_name(&args.input),
+        output: args.output.display().to_string(),
+        from: from.name(),
+        to: to.name(),
+        ..Report::default()
+    };
+    let mut job =
+        Job { args, rules, to, messages: &messages, reader: &mut reader, report: &mut report };
+    match (args.region.tiles, mask) {
+        (Some(zoom), _) => job.tile(zoom)?,
+        (None, mask) if joins(args) => job.join(mask.as_ref())?,
+        (None, Some(mask)) => job.cut(mask)?,
+        (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
+    }
+    tell(&messages, &display_name(&args.input), &reader, &mut report);
+    drop(messages);
+    report.total_seconds = start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = crate::report::peak_memory();
+    if args.json { crate::report::print(&report) } else { Ok(()) }
+}
+
+const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles";
+
+/// Whether all polygons become one.
+fn joins(args: &ClipArgs) -> bool {
+    matches!(args.cutting.op, BooleanOp::Union | BooleanOp::Xor)
+}
+
+/// What the parser does not know to be wrong.
+fn check(args: &ClipArgs) -> Result<(), Failure> {
+    let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
+    let region = &args.region;
+    if region.by.as_deref().is_some_and(is_stream) && is_stream(&args.input) {
+        return usage("`-` is given twice; standard input holds one file");
+    }
+    let mask = region.window.is_some() || region.by.is_some();
+    if !mask && region.tiles.is_none() && !joins(args) {
+        return usage(NO_MASK);
+    }
+    if args.json && is_stream(&args.output) {
+        return usage("--json: the report goes to standard output, where the result goes too");
+    }
+    let Some(algorithm) = args.cutting.algorithm else { return Ok(()) };
+    let name = algorithm.name();
+    if joins(args) || region.tiles.is_some() {
+        return usage("--algorithm goes with --op intersection and difference only");
+    }
+    if algorithm.needs_window() && region.window.is_none() {
+        return Err(Failure::Usage(format!("--algorithm {name} needs --window")));
+    }
+    let difference = region.outside || args.cutting.op == BooleanOp::Difference;
+    if algorithm.needs_intersection() && difference {
+        return Err(Failure::Usage(format!("--algorithm {name} keeps the inside only")));
+    }
+    Ok(())
+}
+
+/// Opens a file, or standard input, and finds its format.
+fn open(path: &Path, format: Option<GeoFormat>) -> Result<(GeoFormat, Source), Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    let mut source: Box<dyn BufRead> = if is_stream(path) {
+        Box::new(BufReader::with_capacity(PROBE, std::io::stdin()))
+    } else {
+        let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
+        if file.metadata().is_ok_and(|m| m.is_dir()) {
+            return Err(fail("it is a folder; name the file in it".to_owned()));
+        }
+        Box::new(BufReader::with_capacity(PROBE, file))
+    };
+    let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
+    let by_name = || GeoFormat::of_name(&path.to_string_lossy());
+    let found = format.or_else(|| GeoFormat::of_content(head)).or_else(by_name);
+    let Some(format) = found else {
+        let what = if head.is_empty() { "the file is empty" } else { "not a known format" };
+        return Err(fail(format!("{what}; map data are read from GeoJSON, WKT, WKB and SVG")));
+    };
+    // The layouts of GeoJSON are read alike; the suffix tells the one to write to a stream.
+    let named = by_name().filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
+    let reader = Reader::new(format, source).map_err(|e| fail(words(&e)))?;
+    Ok((named.unwrap_or(format), reader))
+}
+
+fn words(error: &durer_formats::Error) -> String {
+    match error {
+        durer_formats::Error::Io(e) => in_words(e),
+        other => other.to_string(),
+    }
+}
+
+/// The format of the result: as told, by the suffix, or that of the input.
+fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure> {
+    let fits = |format: &GeoFormat| args.region.tiles.is_none() || format.is_geojson();
+    let named = GeoFormat::of_name(&args.output.to_string_lossy());
+    let stream = is_stream(&args.output) || output::is_special(&args.output);
+    let found = args
+        .to
+        .or(named)
+        .or(stream.then_some(from))
+        .or(args.region.tiles.map(|_| GeoFormat::GeoJson));
+    let Some(format) = found else {
+        let suffixes = GeoFormat::ALL.map(|f| f.suffixes()[0]).join(", .");
+        let message = format!("the suffix tells no format; use one of .{suffixes}, or --to");
+        return Err(Failure::Usage(format!("--output {}: {message}", args.output.display())));
+    };
+    if args.region.tiles.is_some() && named == Some(GeoFormat::GeoJson) {
+        let message = "--tiles makes a file per tile: name a folder, or a file in .geojsonl";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    if !fits(&format) {
+        return Err(Failure::Usage("tiles are written as GeoJSON".to_owned()));
+    }
+    Ok(format)
+}
+
+/// All polygons of a file as one mask.
+fn read_mask(path: &Path, rules: Rules, messages: &Messages) -> Result<Mask, Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    let (_, mut reader) = open(path, None)?;
+    let mut all = Area::default();
+    while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
+        if let Some(geometry) = &feature.geometry {
+            let clean = rules.clean(&Area::of_geometry(geometry));
+            all.append(&clean.map_err(|e| fail(e.to_string()))?);
+        }
+    }
+    messages.warnings(&display_name(path), reader.warnings());
+    let union = rules.overlay(&all, &Shapes::new(), BooleanOp::Union, FillRule::Positive);
+    let union = union.map_err(|e| fail(e.to_string()))?;
+    Mask::polygons(union.shapes).ok_or_else(|| fail("there is no polygon to cut with".to_owned()))
+}
+
+/// Warnings of reading and of cutting.
+fn tell(messages: &Messages, name: &str, reader: &Source, report: &mut Report) {
+    messages.warnings(name, reader.warnings());
+    report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
+    let more = reader.further_warnings();
+    if more > 0 {
+        report.warnings.push(format!("and {more} more"));
+    }
+    if report.repaired > 0 {
+        let message = format!(
+            "polygons of {} features crossed or overlapped themselves or one another; made valid by \
+             the even-odd rule",
+            report.repaired
+        );
+        let warning = durer_formats::Warning { place: Default::default(), message };
+        messages.warnings(name, std::slice::from_ref(&warning));
+        report.warnings.push(warning.to_string());
+    }
+}
+
+/// One run over the features.
+struct Job<'a> {
+    args: &'a ClipArgs,
+    rules: Rules,
+    to: GeoFormat,
+    messages: &'a Messages,
+    reader: &'a mut Source,
+    report: &'a mut Report,
+}
+
+impl Job<'_> {
+    fn fail(&self, what: impl std::fmt::Display) -> Failure {
+        Failure::Data(format!("{}: {what}", display_name(&self.args.input)))
+    }
+
+    /// The next features; none at the end.
+    fn batch(&mut self) -> Result<Vec<Feature>, Failure> {
+        let mut features = Vec::new();
+        let mut positions = 0;
+        while features.len() < BATCH && positions < BATCH_POSITIONS {
+            let Some(feature) = self.reader.next_feature().map_err(|e| self.fail(words(&e)))?
+            else {
+                break;
+            };
+            self.report.given.add(feature.geometry.as_ref());
+            positions += feature.geometry.as_ref().map_or(0, Geometry::len);
+            features.push(feature);
+        }
+        let read = self.report.given.features;
+        self.messages.progress.stage(|| format!("{read} features"));
+        Ok(features)
+    }
+
+    /// A place for one file.
+    fn sink(&self) -> Result<Sink, Failure> {
+        if !is_stream(&self.args.output) {
+            return Sink::file(&self.args.output);
+        }
+        if self.to == GeoFormat::Wkb && std::io::stdout().is_terminal() {
+            let message = "--output -: WKB is no text for a terminal; use a pipe or a file";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        Ok(Sink::stdout())
+    }
+
+    /// Writes what there is, whole or not at all.
+    fn put(&mut self, writer: &mut Option<Writer<Sink>>, feature: &Feature) -> Result<(), Failure> {
+        if writer.is_none() {
+            let mut new = Writer::new(self.to, self.sink()?);
+            new.head(self.reader.members());
+            *writer = Some(new);
+        }
+        self.report.out.add(feature.geometry.as_ref());
+        match writer {
+            Some(writer) => writer.write(feature).map_err(|e| failure(&self.args.output, &e)),
+            None => Ok(()),
+        }
+    }
+
+    fn end(&mut self, writer: Option<Writer<Sink>>) -> Result<(), Failure> {
+        let writer = match writer {
+            Some(writer) => writer,
+            None => Writer::new(self.to, self.sink()?),
+        };
+        let done = writer.finish(self.reader.members());
+        done.map_err(|e| failure(&self.args.output, &e))?.commit()
+    }
+
+    /// Each feature for itself.
+    fn cut(&mut self, mask: Mask) -> Result<(), Failure> {
+        let outside = self.args.region.outside;
+        let op = if outside { BooleanOp::Difference } else { self.args.cutting.op };
+        let algorithm = self.args.cutting.algorithm;
+        let cutter = Cutter { mask, op, rules: self.rules, algorithm };
+        let mut writer = None;
+        loop {
+            let features = self.batch()?;
+            if features.is_empty() {
+                return self.end(writer);
+            }
+            let first = self.report.given.features - features.len() as u64;
+            let cuts: Vec<_> = features
+                .par_iter()
+                .map(|f| f.geometry.as_ref().map(|g| cutter.cut(g)).transpose())
+                .collect();
+            for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
+                let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
+                let cut = cut.unwrap_or_default();
+                self.report.repaired += u64::from(cut.repaired);
+                if cut.geometry.is_some() {
+                    feature.geometry = cut.geometry;
+                    self.put(&mut writer, &feature)?;
+                }
+            }
+        }
+    }
+
+    fn of_feature(&self, index: u64, error: &durer::Error) -> Failure {
+        self.fail(format!("feature {} (from 1): {error}", index + 1))
+    }
+
+    /// All polygons, those of the mask too, to one feature.
+    fn join(&mut self, mask: Option<&Mask>) -> Result<(), Failure> {
+        let mut all = Area::default();
+        loop {
+            let features = self.batch()?;
+            if features.is_empty() {
+                break;
+            }
+            let first = self.report.given.features - features.len() as u64;
+            let areas: Vec<_> = features
+                .par_iter()
+                .filter_map(|f| f.geometry.as_ref())
+                .map(|g| self.rules.clean(&Area::of_geometry(g)))
+                .collect();
+            for (i, area) in areas.into_iter().enumerate() {
+                all.append(&area.map_err(|e| self.of_feature(first + i as u64, &e))?);
+            }
+        }
+        let op = self.args.cutting.op;
+        let rule = if op == BooleanOp::Xor { FillRule::EvenOdd } else { FillRule::Positive };
+        let none = Shapes::new();
+        let mask = mask.map_or(&none, Mask::shapes);
+        let joined = self.rules.overlay(&all, mask, op, rule).map_err(|e| self.fail(e))?;
+        let mut writer = None;
+        if let Some(geometry) = joined.into_geometry() {
+            self.put(&mut writer, &Feature::of_geometry(geometry))?;
+        }
+        self.end(writer)
+    }
+
+    /// Each feature to the tiles that it touches.
+    fn tile(&mut self, zoom: u8) -> Result<(), Failure> {
+        let coordinates = self.args.region.tile_coordinates;
+        let one_file = self.to != GeoFormat::GeoJson || is_stream(&self.args.output);
+        if one_file && self.to == GeoFormat::GeoJson {
+            self.to = GeoFormat::GeoJsonSeq;
+        }
+        let mut writer = None;
+        let mut files: BTreeMap<Tile, (Writer<Vec<u8>>, Counts)> = BTreeMap::new();
+        let mut seen = std::collections::BTreeSet::new();
+        loop {
+            let features = self.batch()?;
+            if features.is_empty() {
+                break;
+            }
+            let first = self.report.given.features - features.len() as u64;
+            let cuts: Vec<_> = features
+                .par_iter()
+                .map(|f| {
+                    let cut = |g| tiles::cut(g, zoom, coordinates, self.rules);
+                    f.geometry.as_ref().map(cut).transpose()
+                })
+                .collect();
+            for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
+                let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
+                let (pieces, repaired) = cut.unwrap_or_default();
+                self.report.repaired += u64::from(repaired);
+                for (tile, geometry) in pieces {
+                    feature.geometry = Some(geometry);
+                    if one_file {
+                        seen.insert(tile);
+                        self.put(&mut writer, &with_tile(&feature, tile))?;
+                    } else {
+                        let new =
+                            || (Writer::new(GeoFormat::GeoJson, Vec::new()), Counts::default());
+                        let (file, counts) = files.entry(tile).or_insert_with(new);
+                        counts.add(feature.geometry.as_ref());
+                        file.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
+                    }
+                }
+            }
+        }
+        self.report.tiles = Some(seen.len().max(files.len()) as u64);
+        if one_file {
+            return self.end(writer);
+        }
+        files.into_iter().try_for_each(|(tile, file)| self.deliver(tile, file))
+    }
+
+    /// Writes the file of a tile, `z/x/y.geojson`.
+    fn deliver(
+        &mut self,
+        tile: Tile,
+        (writer, counts): (Writer<Vec<u8>>, Counts),
+    ) -> Result<(), Failure> {
+        self.report.out.join(&counts);
+        let path = self.args.output.join(format!("{tile}.geojson"));
+        output::make_folder(path.parent().unwrap_or(&self.args.output))?;
+        let whole = writer.finish(&[]).map_err(|e| failure(&path, &e))?;
+        let target = Target::File(path);
+        output::deliver(&target, |out| {
+            out.extend_from_slice(&whole);
+            Ok(())
+        })
+        .map(drop)
+    }
+}
+
+/// The feature with a member that names the tile.
+fn with_tile(feature: &Feature, tile: Tile) -> Feature {
+    let mut feature = feature.clone();
+    feature.members.retain(|member| member.name != "\"tile\"");
+    let value = format!("\"{tile}\"");
+    feature.members.push(Member { name: "\"tile\"".to_owned(), value });
+    feature
+}

@@ -1,0 +1,105 @@
+//! What `durer clip --json` says.
+
+use durer::clip::polygon::signed_area;
+use durer_formats::geo::{Geometry, Points};
+use serde::Serialize;
+
+/// The whole report.
+#[derive(Debug, Default, Serialize)]
+pub struct Report {
+    /// The version of durer.
+    pub version: &'static str,
+    /// As on the command line.
+    pub input: String,
+    /// As on the command line.
+    pub output: String,
+    /// The format that was read.
+    pub from: &'static str,
+    /// The format that was written.
+    pub to: &'static str,
+    /// What was read.
+    #[serde(rename = "in")]
+    pub given: Counts,
+    /// What was written.
+    pub out: Counts,
+    /// Features whose polygons crossed themselves or one another and were made valid.
+    pub repaired: u64,
+    /// Tiles that are not empty.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tiles: Option<u64>,
+    /// What was repaired or left out in reading.
+    pub warnings: Vec<String>,
+    /// From start to end.
+    pub total_seconds: f64,
+    /// The most memory that the process held, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+}
+
+/// Counts and sizes of geometries.
+#[derive(Debug, Default, Clone, Copy, Serialize)]
+pub struct Counts {
+    pub features: u64,
+    pub points: u64,
+    pub lines: u64,
+    pub polygons: u64,
+    pub holes: u64,
+    /// Positions; rings without the repeated one.
+    pub vertices: u64,
+    /// Of polygons as they are written, holes taken off; in squared units of the coordinates.
+    pub area: f64,
+    /// Of lines, in units of the coordinates.
+    pub length: f64,
+}
+
+impl Counts {
+    /// Counts a feature.
+    pub fn add(&mut self, geometry: Option<&Geometry>) {
+        self.features += 1;
+        if let Some(geometry) = geometry {
+            self.measure(geometry);
+        }
+    }
+
+    /// Adds other counts.
+    pub fn join(&mut self, other: &Self) {
+        self.features += other.features;
+        self.points += other.points;
+        self.lines += other.lines;
+        self.polygons += other.polygons;
+        self.holes += other.holes;
+        self.vertices += other.vertices;
+        self.area += other.area;
+        self.length += other.length;
+    }
+
+    fn measure(&mut self, geometry: &Geometry) {
+        match geometry {
+            Geometry::Point(points) | Geometry::MultiPoint(points) => {
+                self.points += points.len() as u64;
+                self.vertices += points.len() as u64;
+            }
+            Geometry::LineString(line) => self.line(line),
+            Geometry::MultiLineString(lines) => lines.iter().for_each(|line| self.line(line)),
+            Geometry::Polygon(rings) => self.polygon(rings),
+            Geometry::MultiPolygon(polygons) => polygons.iter().for_each(|p| self.polygon(p)),
+            Geometry::Collection(parts) => parts.iter().for_each(|part| self.measure(part)),
+        }
+    }
+
+    fn line(&mut self, line: &Points) {
+        self.lines += u64::from(!line.is_empty());
+        self.vertices += line.len() as u64;
+        self.length += line.xy.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+    }
+
+    fn polygon(&mut self, rings: &[Points]) {
+        self.polygons += u64::from(!rings.is_empty());
+        self.holes += rings.len().saturating_sub(1) as u64;
+        let mut sign = 1.0;
+        for ring in rings {
+            self.vertices += ring.len() as u64;
+            self.area += sign * signed_area(&ring.xy).abs();
+            sign = -1.0;
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Between the geometry of files and the library's polygons.
+
+use durer::clip::attribute::Source;
+use durer::clip::polygon::overlay::{Operand, Origin, Output};
+use durer::clip::polygon::{Shapes, signed_area};
+use durer::math::DVec2;
+use durer_formats::geo::{Dimensions, Geometry, Points};
+
+/// Height and measure of a vertex.
+type Zm = [f64; 2];
+
+/// Polygons with the heights and measures of their vertices.
+#[derive(Debug, Clone, Default)]
+pub struct Area {
+    pub shapes: Shapes,
+    dimensions: Dimensions,
+    /// One for each of the shapes' points; empty where there is neither height nor measure.
+    zm: Vec<Zm>,
+}
+
+impl Area {
+    /// Polygons without heights and measures.
+    pub fn flat(shapes: Shapes) -> Self {
+        Self { shapes, ..Self::default() }
+    }
+
+    /// The polygons of a geometry, of collections too.
+    pub fn of_geometry(geometry: &Geometry) -> Self {
+        let mut area = Self { dimensions: geometry.dimensions(), ..Self::default() };
+        area.add(geometry);
+        area
+    }
+
+    fn add(&mut self, geometry: &Geometry) {
+        match geometry {
+            Geometry::Polygon(rings) => self.add_polygon(rings),
+            Geometry::MultiPolygon(polygons) => polygons.iter().for_each(|p| self.add_polygon(p)),
+            Geometry::Collection(parts) => parts.iter().for_each(|part| self.add(part)),
+            _ => {}
+        }
+    }
+
+    fn add_polygon(&mut self, rings: &[Points]) {
+        for ring in rings {
+            self.shapes.push_ring(ring.xy.iter().copied());
+            if self.dimensions != Dimensions::Xy {
+                self.zm.extend((0..ring.len()).map(|i| ring.zm(i)));
+            }
+        }
+        self.shapes.end_polygon();
+    }
+
+    /// Adds the polygons of another area; heights and measures are kept where both have the same.
+    pub fn append(&mut self, other: &Self) {
+        if self.shapes.is_empty() {
+            *self = other.clone();
+            return;
+        }
+        self.shapes.append(&other.shapes);
+        if self.dimensions == other.dimensions {
+            self.zm.extend_from_slice(&other.zm);
+        } else {
+            (self.dimensions, self.zm) = (Dimensions::Xy, Vec::new());
+        }
+    }
+
+    /// The same region with outer rings counter-clockwise and holes clockwise.
+    pub fn oriented(&self) -> Self {
+        let mut out = Self { dimensions: self.dimensions, ..Self::default() };
+        for polygon in self.shapes.polygons() {
+            for (k, index) in polygon.ring_indices().enumerate() {
+                let range = self.shapes.ring_range(index);
+                let wrong = (signed_area(self.shapes.ring(index)) < 0.0) == (k == 0);
+                let order: Vec<usize> = if wrong { range.rev().collect() } else { range.collect() };
+                out.shapes.push_ring(order.iter().map(|&i| self.shapes.points()[i]));
+                if !self.zm.is_empty() {
+                    out.zm.extend(order.iter().map(|&i| self.zm[i]));
+                }
+            }
+            out.shapes.end_polygon();
+        }
+        out
+    }
+
+    /// A polygon, or several, or nothing.
+    pub fn into_geometry(self) -> Option<Geometry> {
+        let mut next = 0;
+        let mut polygons: Vec<Vec<Points>> = Vec::new();
+        for polygon in self.shapes.polygons() {
+            let mut rings = Vec::new();
+            for ring in polygon.rings() {
+                let mut points = Points::new(self.dimensions);
+                for &p in ring {
+                    points.push(p, self.zm.get(next).copied().unwrap_or_default());
+                    next += 1;
+                }
+                rings.push(points);
+            }
+            polygons.push(rings);
+        }
+        match polygons.len() {
+            0 => None,
+            1 => polygons.pop().map(Geometry::Polygon),
+            _ => Some(Geometry::MultiPolygon(polygons)),
+        }
+    }
+
+    /// What became of this area, from the sources of the new vertices.
+    pub fn cut(&self, shapes: Shapes, sources: &[Source]) -> Self {
+        if self.zm.is_empty() {
+            return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
+        }
+        let value = |i: usize| self.zm.get(i).copied();
+        let values = sources.iter().map(|source| match *source {
+            Source::Vertex(i) => value(i),
+            Source::Cut { from, to, t } => Some(mix(value(from)?, value(to)?, t)),
+            Source::Corner => None,
+        });
+        self.with_values(shapes, values.collect())
+    }
+
+    /// What became of this area, the subject of an overlay. Vertices of the input that are kept get
+    /// their own coordinates back where `exact` is set.
+    pub fn overlaid(&self, clip: &Shapes, output: &Output, exact: bool) -> Self {
+        let mut shapes = output.shapes.clone();
+        if exact {
+            for (point, origin) in shapes.points_mut().iter_mut().zip(&output.origins) {
+                if let Origin::Vertex { operand, index } = *origin {
+                    let of = if operand == Operand::Subject { &self.shapes } else { clip };
+                    *point = of.points().get(index).copied().unwrap_or(*point);
+                }
+            }
+        }
+        if self.zm.is_empty() {
+            return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
+        }
+        let values = output.attributes(
+            |operand, index| {
+                (operand == Operand::Subject).then(|| self.zm.get(index).copied()).flatten()
+            },
+            |a, b, t| Some(mix(a?, b?, t)),
+            |a, b| a.or(b),
+        );
+        self.with_values(shapes, values)
+    }
+
+    fn with_values(&self, shapes: Shapes, values: Vec<Option<Zm>>) -> Self {
+        let mut zm = Vec::with_capacity(values.len());
+        for index in 0..shapes.ring_count() {
+            let range = shapes.ring_range(index);
+            let known = values.get(range).unwrap_or_default();
+            zm.extend(fill(shapes.ring(index), known, |p| self.nearest(p)));
+        }
+        Self { shapes, dimensions: self.dimensions, zm }
+    }
+
+    /// The values of the vertex nearest to a place.
+    fn nearest(&self, place: DVec2) -> Zm {
+        let points = self.shapes.points().iter().zip(&self.zm);
+        let distance = |p: &DVec2| p.distance_squared(place);
+        points
+            .min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)))
+            .map_or([0.0; 2], |n| *n.1)
+    }
+}
+
+/// The values at t between a (0) and b (1).
+fn mix(a: Zm, b: Zm, t: f64) -> Zm {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
+}
+
+/// Values where none is known, such as at the window's corners: along the ring, by length, between
+/// the known ones before and after; where the ring has none, by `otherwise`.
+fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -> Vec<Zm> {
+    let count = ring.len();
+    let Some(first) = known.iter().position(Option::is_some) else {
+        return ring.iter().map(|&p| otherwise(p)).collect();
+    };
+    let mut values: Vec<Zm> = known.iter().map(|v| v.unwrap_or_default()).collect();
+    let mut start = first;
+    while start < first + count {
+        let mut end = start + 1;
+        while known[end % count].is_none() {
+            end += 1;
+        }
+        let step = |i: usize| ring[i % count].distance(ring[(i + 1) % count]);
+        let whole: f64 = (start..end).map(step).sum();
+        let (a, b) = (values[start % count], values[end % count]);
+        let mut walked = 0.0;
+        for i in start + 1..end {
+            walked += step(i - 1);
+            values[i % count] = mix(a, b, if whole > 0.0 { walked / whole } else { 0.0 });
+        }
+        start = end;
+    }
+    values
+}
+
+/// The pieces of lines, from the sources of their vertices.
+pub fn pieces(
+    lines: &[&Points],
+    cut: &durer::clip::polygon::rectangle::ClippedLines,
+) -> Vec<Points> {
+    let dimensions = lines.first().map(|line| line.dimensions).unwrap_or_default();
+    let zm: Vec<Zm> = match dimensions {
+        Dimensions::Xy => Vec::new(),
+        _ => lines.iter().flat_map(|line| (0..line.len()).map(|i| line.zm(i))).collect(),
+    };
+    let value = |i: usize| zm.get(i).copied().unwrap_or_default();
+    let mut next = 0;
+    let piece = |(_, run): (usize, &[DVec2])| {
+        let mut points = Points::new(dimensions);
+        for &p in run {
+            let values = match cut.sources.get(next) {
+                Some(Source::Vertex(i)) => value(*i),
+                Some(Source::Cut { from, to, t }) => mix(value(*from), value(*to), *t),
+                Some(Source::Corner) | None => [0.0; 2],
+            };
+            points.push(p, values);
+            next += 1;
+        }
+        points
+    };
+    cut.pieces().map(piece).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_values_lie_between_their_neighbours() {
+        let ring = [(0.0, 0.0), (1.0, 0.0), (3.0, 0.0), (3.0, 3.0)].map(DVec2::from);
+        let known = [Some([3.0, 0.0]), None, Some([9.0, 1.0]), None];
+        let filled = fill(&ring, &known, |_| [0.0; 2]);
+        assert_eq!(filled[1][0], 5.0);
+        assert!(filled[3][0] > 3.0 && filled[3][0] < 9.0);
+        assert_eq!(fill(&ring, &[None; 4], |p| [p.x, 0.0])[2], [3.0, 0.0]);
+    }
+}

@@ -1,0 +1,105 @@
+//! `durer pick`.
+
+use crate::args::PickArgs;
+use crate::camera::{self, Shot};
+use crate::failure::Failure;
+use crate::input;
+use crate::messages::Messages;
+use crate::report;
+use durer::scene::Scene;
+use durer::view::View;
+use durer::view::pick::{Area, Hit, objects, pick};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What lies behind a part of the picture.
+#[derive(Debug, Serialize)]
+struct Picked {
+    model: String,
+    /// Nearest first.
+    objects: Vec<Object>,
+    /// Nearest first.
+    triangles: Vec<Triangle>,
+}
+
+#[derive(Debug, Serialize)]
+struct Object {
+    instance: usize,
+    name: String,
+    /// Window depth of the nearest point: 0 at the near plane, 1 at the far.
+    depth: f64,
+    /// How many of its triangles were hit.
+    triangles: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct Triangle {
+    /// As in the pictures that `render --item` writes.
+    item: u32,
+    instance: usize,
+    /// Index in the mesh.
+    triangle: usize,
+    depth: f64,
+    /// In the world.
+    position: [f64; 3],
+}
+
+/// Reads a model and says what lies behind a part of the picture.
+pub fn run(args: &PickArgs) -> Result<(), Failure> {
+    camera::check(&args.view)?;
+    let name = input::display_name(&args.model);
+    let messages = Messages::new(&args.running, 1);
+    let mut model = input::read(&args.model, &input::read_options(&args.reading))?;
+    if let Some(axis) = args.view.up_axis {
+        model.scene.up_axis = axis.into();
+    }
+    messages.warnings(&name, &model.warnings);
+    drop(messages);
+    let usage = |e: durer::Error| Failure::Usage(e.to_string());
+    let shot = Shot { view: None, size: args.size, turn: None };
+    let camera = camera::camera(&args.view, &model.scene, &shot)?;
+    let view = View::new(camera, args.size.width, args.size.height).map_err(usage)?;
+    let area = match (args.at, args.rect) {
+        (_, Some(rect)) => Area::Rect(rect),
+        (Some(point), None) => Area::Point(point),
+        (None, None) => return Err(Failure::Usage("--at or --rect is needed".to_owned())),
+    };
+    let hits = pick(&model.scene, &view, area);
+    let picked = describe(name, &model.scene, &hits);
+    if args.json { report::print(&picked) } else { report::print_text(&text(&picked)) }
+}
+
+fn describe(model: String, scene: &Scene, hits: &[Hit]) -> Picked {
+    let objects = objects(hits).into_iter().map(|o| Object {
+        instance: o.instance,
+        name: scene.instances[o.instance].name.clone(),
+        depth: o.nearest.depth,
+        triangles: o.triangles,
+    });
+    let triangles = hits.iter().map(|h| Triangle {
+        item: h.item,
+        instance: h.instance,
+        triangle: h.triangle,
+        depth: h.depth,
+        position: h.position.to_array(),
+    });
+    Picked { model, objects: objects.collect(), triangles: triangles.collect() }
+}
+
+/// One line per object.
+fn text(picked: &Picked) -> String {
+    let mut text = String::new();
+    for o in &picked.objects {
+        let name = if o.name.is_empty() { "unnamed" } else { &o.name };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "object {} ({name}): {} triangles, nearest at depth {:.6}",
+            o.instance, o.triangles, o.depth
+        );
+    }
+    if picked.objects.is_empty() {
+        text.push_str("nothing\n");
+    }
+    text
+}

@@ -1,0 +1,215 @@
+//! `durer clip` on small files.
+
+use crate::harness::{Ended, Folder};
+use serde_json::Value;
+use std::io::Write;
+use std::process::Stdio;
+
+const SQUARE: &str = r#"{"type":"FeatureCollection","name":"n","features":[
+{"type":"Feature","id":3,"properties":{"a":"é"},"geometry":{"type":"Polygon","coordinates":[[[0,0,0],[4,0,8],[4,4,8],[0,4,0],[0,0,0]]]}},
+{"type":"Feature","properties":{"b":1.50},"geometry":{"type":"LineString","coordinates":[[-1,1],[1,1],[1,9],[3,9],[3,1]]}},
+{"type":"Feature","properties":null,"geometry":{"type":"MultiPoint","coordinates":[[0,0],[9,9],[2,2]]}},
+{"type":"Feature","properties":null,"geometry":null}]}"#;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("in.geojson", SQUARE);
+    folder
+}
+
+fn features(folder: &Folder, name: &str) -> Vec<Value> {
+    let whole: Value = serde_json::from_slice(&folder.read(name)).unwrap();
+    whole["features"].as_array().unwrap().clone()
+}
+
+fn piped(folder: &Folder, arguments: &str, input: &[u8]) -> Ended {
+    let mut command = folder.command(arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_owned();
+    // The command may stop before it has read all.
+    let feeder = std::thread::spawn(move || drop(stdin.write_all(&input)));
+    let ended = Ended::of(child.wait_with_output().unwrap());
+    feeder.join().unwrap();
+    ended
+}
+
+#[test]
+fn a_window_keeps_properties_order_and_heights() {
+    let folder = folder();
+    let report = folder.must("clip in.geojson --window -2,-1,3,2 -o out.geojson --json").json();
+    let out = String::from_utf8(folder.read("out.geojson")).unwrap();
+    assert!(
+        out.starts_with("{\"type\":\"FeatureCollection\",\"name\":\"n\",\"features\":[\n"),
+        "{out}"
+    );
+    let found = features(&folder, "out.geojson");
+    assert_eq!(found.len(), 3);
+    assert_eq!(
+        (&found[0]["id"], &found[0]["properties"]["a"]),
+        (&Value::from(3), &Value::from("é"))
+    );
+    let ring = found[0]["geometry"]["coordinates"][0].as_array().unwrap();
+    assert!(ring.iter().any(|p| p == &serde_json::json!([3, 0, 6])), "{ring:?}");
+    // The corner of the window in the square has the height between its neighbours on the border.
+    assert!(ring.iter().any(|p| p[0] == 3 && p[1] == 2), "{ring:?}");
+    assert!(out.contains("{\"b\":1.50}"), "{out}");
+    assert_eq!(
+        found[1]["geometry"],
+        serde_json::json!({"type":"MultiLineString","coordinates":[[[-1,1],[1,1],[1,2]],[[3,2],[3,1]]]})
+    );
+    assert_eq!(found[2]["geometry"]["coordinates"], serde_json::json!([[0, 0], [2, 2]]));
+    assert_eq!(
+        (&report["in"]["area"], &report["out"]["area"]),
+        (&Value::from(16.0), &Value::from(6.0))
+    );
+    assert_eq!(report["out"]["length"], 4.0);
+    assert_eq!(report["in"]["features"], 4);
+}
+
+#[test]
+fn masks_operations_and_the_outside() {
+    let folder = folder();
+    folder.write("mask.wkt", "POLYGON((2 -1,9 -1,9 3,2 3,2 -1))\nPOLYGON((1 2,9 2,9 3,1 3,1 2))");
+    let area = |arguments: &str| {
+        let report =
+            folder.must(&format!("clip in.geojson {arguments} -o o.geojson --json")).json();
+        report["out"]["area"].as_f64().unwrap()
+    };
+    assert_eq!(area("--by mask.wkt"), 7.0);
+    assert_eq!(area("--by mask.wkt --outside"), 9.0);
+    assert_eq!(area("--by mask.wkt --op difference"), 9.0);
+    assert_eq!(area("--by mask.wkt --op union"), 38.0);
+    assert_eq!(area("--by mask.wkt --op xor"), 31.0);
+    assert_eq!(area("--window 0,0,1,1 --outside"), 15.0);
+    assert_eq!(area("--op union"), 16.0);
+    for algorithm in [
+        "overlay",
+        "vatti",
+        "weiler-atherton",
+        "greiner-hormann",
+        "rectangle",
+        "sutherland-hodgman",
+        "liang-barsky",
+    ] {
+        assert_eq!(
+            area(&format!("--window -1,-1,3,3 --algorithm {algorithm}")),
+            9.0,
+            "{algorithm}"
+        );
+    }
+    // The window's borders are nearest to 0.5 and 3.
+    assert_eq!(area("--window 0.3,0.3,3.2,3.2 --grid 0.5"), 6.25);
+}
+
+#[test]
+fn fill_rules_decide_what_crossing_rings_enclose() {
+    let folder = Folder::new();
+    folder.write(
+        "a.wkt",
+        "POLYGON((0 0,4 0,4 4,0 4,0 0),(1 1,3 1,3 3,1 3,1 1))\nPOLYGON((0 0,4 4,4 0,0 4,0 0))",
+    );
+    for (rule, areas) in
+        [("even-odd", 20.0), ("non-zero", 24.0), ("positive", 20.0), ("negative", 4.0)]
+    {
+        let report = folder
+            .must(&format!("clip a.wkt --window -9,-9,9,9 --fill-rule {rule} -o o.wkt -q --json"));
+        assert_eq!(report.json()["out"]["area"], areas, "{rule}");
+    }
+    let warned = folder.must("clip a.wkt --window -9,-9,9,9 -o o.wkt");
+    assert!(warned.err.contains("1 features crossed"), "{}", warned.err);
+}
+
+#[test]
+fn streams_and_formats() {
+    let folder = folder();
+    for (suffix, start) in [
+        ("geojsonl", "{\"type\":\"Feature\",\"id\":3"),
+        ("geojsons", "\u{1e}{\"type\":\"Feature\""),
+        ("wkt", "POLYGON Z ((0 0 0, "),
+        ("hex", "01EB030000"),
+        ("svg", "<svg "),
+    ] {
+        folder.must(&format!("clip in.geojson --window 0,0,9,9 -o o.{suffix}"));
+        let out = folder.read(&format!("o.{suffix}"));
+        assert!(String::from_utf8_lossy(&out).starts_with(start), "{suffix}");
+        let report = folder
+            .must(&format!("clip o.{suffix} --window 0,0,9,9 -o again.geojson --json"))
+            .json();
+        assert_eq!(report["out"]["area"], 16.0, "{suffix}");
+    }
+    let wkb = piped(&folder, "clip - --window 0,0,3,3 -o - --to wkb", SQUARE.as_bytes());
+    let wkt = piped(&folder, "clip - --window 0,0,3,3 -o - --format wkt", &wkb.out);
+    assert!(String::from_utf8_lossy(&wkt.out).starts_with("POLYGON Z (("), "{wkt:?}");
+    let names = folder.names();
+    assert!(names.iter().all(|n| !n.contains("durer")), "{names:?}");
+}
+
+#[test]
+fn long_sequences_take_no_memory() {
+    let folder = Folder::new();
+    let line = "{\"type\":\"Feature\",\"properties\":{\"n\":1},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[2,0],[2,2],[0,0]]]}}\n";
+    let peak = |count: usize| {
+        folder.write("long.geojsonl", line.repeat(count));
+        let report = folder
+            .must("clip long.geojsonl --window 0,0,1,1 -o o.geojsonl --json --threads 1")
+            .json();
+        assert_eq!(report["out"]["features"], count);
+        report["peak_memory_bytes"].as_u64()
+    };
+    if let (Some(few), Some(many)) = (peak(2_000), peak(100_000)) {
+        assert!(many < few + (2 << 20), "{few} bytes for 2,000 features, {many} for 100,000");
+    }
+}
+
+#[test]
+fn tiles_are_files_or_a_sequence() {
+    let folder = Folder::new();
+    folder.write("a.geojson", r#"{"type":"Feature","properties":{"k":1},"geometry":{"type":"Polygon","coordinates":[[[-10,-10],[10,-10],[10,10],[-10,10],[-10,-10]]]}}"#);
+    let report = folder.must("clip a.geojson --tiles 1 -o tiles --json").json();
+    assert_eq!((&report["tiles"], &report["out"]["area"]), (&Value::from(4), &Value::from(400.0)));
+    for tile in ["1/0/0", "1/0/1", "1/1/0", "1/1/1"] {
+        let found = features(&folder, &format!("tiles/{tile}.geojson"));
+        assert_eq!(found[0]["properties"]["k"], 1, "{tile}");
+    }
+    folder.must("clip a.geojson --tiles 2 -o t.geojsonl");
+    let text = String::from_utf8(folder.read("t.geojsonl")).unwrap();
+    assert_eq!(text.lines().count(), 4);
+    assert!(text.contains("\"tile\":\"2/1/2\""), "{text}");
+    folder.must("clip a.geojson --tiles 3 --tile-coordinates mercator -o m.geojsonl");
+    assert_eq!(String::from_utf8(folder.read("m.geojsonl")).unwrap().lines().count(), 4);
+    folder.run("clip a.geojson --tiles 2 -o t.geojson").fails(2, "a file per tile");
+}
+
+#[test]
+fn wrong_use_and_bad_data_are_told() {
+    let folder = folder();
+    folder.write("bad.geojsonl", "{\"type\":\"Point\",\"coordinates\":[1,1]}\n{\"type\":\"Point\",\"coordinates\":[1,oops]}\n");
+    folder.write("old.geojsonl", "old");
+    folder.run("clip in.geojson -o a.geojson").fails(2, "nothing to cut with");
+    folder.run("clip in.geojson --window 1,2,3 -o a.geojson").fails(2, "four numbers");
+    folder.run("clip in.geojson --window 3,0,1,1 -o a.geojson").fails(2, "the window is empty");
+    folder.run("clip in.geojson --window 0,0,1,1 -o a.png").fails(2, "--to");
+    folder.run("clip in.geojson --window 0,0,1,1 -o - --json").fails(2, "--json");
+    folder
+        .run("clip in.geojson --by in.geojson --algorithm rectangle -o a.wkt")
+        .fails(2, "--window");
+    folder.run("clip in.geojson --window 0,0,1,1 --algorithm magic -o a.wkt").fails(2, "overlay");
+    folder.run("clip none.geojson --window 0,0,1,1 -o a.wkt").fails(1, "none.geojson: ");
+    folder
+        .run("clip bad.geojsonl --window 0,0,9,9 -o old.geojsonl")
+        .fails(1, "bad.geojsonl: line 2, column 34: ");
+    assert_eq!(folder.read("old.geojsonl"), b"old");
+    assert_eq!(folder.names(), ["bad.geojsonl", "in.geojson", "old.geojsonl"]);
+    piped(&folder, "clip - --window 0,0,1,1 -o -", b"")
+        .fails(1, "standard input: the file is empty");
+}
+
+#[test]
+fn threads_change_nothing() {
+    let folder = folder();
+    folder.must("clip in.geojson --window 0,0,3,3 -o a.geojson --threads 1");
+    folder.must("clip in.geojson --window 0,0,3,3 -o b.geojson --threads 3");
+    assert_eq!(folder.read("a.geojson"), folder.read("b.geojson"));
+}

@@ -1,0 +1,169 @@
+//! The documents tell the truth: their commands run, their links lead somewhere.
+
+use crate::harness::{Ended, Folder, Picture};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn document(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// The lines of all code blocks marked `sh`.
+fn shell_lines(document: &str) -> Vec<&str> {
+    let mut inside = false;
+    let mut lines = Vec::new();
+    for line in document.lines() {
+        if line.starts_with("```") {
+            inside = line == "```sh";
+        } else if inside {
+            lines.push(line);
+        }
+    }
+    lines
+}
+
+/// What a line gives to `durer`, if it calls it.
+fn arguments(line: &str) -> Option<Vec<String>> {
+    let rest = line.strip_prefix("durer ").or(line.strip_prefix("cargo run --release -- "))?;
+    assert!(!rest.contains(['|', '*', '$', '\\', '"', '&']), "needs a shell: {line}");
+    // Words parted by blanks, as a shell parts them; single quotes take part in no word.
+    Some(rest.split_whitespace().map(|w| w.trim_matches('\'').to_owned()).collect())
+}
+
+/// The same command for a small picture.
+fn made_small(mut arguments: Vec<String>) -> Vec<String> {
+    if arguments[0] != "render" {
+        return arguments;
+    }
+    if let Some(at) = arguments.iter().position(|a| a == "--size") {
+        arguments.drain(at..at + 2);
+    }
+    arguments.extend(["--size", "96x64"].map(str::to_owned));
+    arguments
+}
+
+/// What `durer clip` has to cut in the examples, and what with.
+const COUNTRIES: &str = r#"{"type":"Feature","properties":{"name":"A"},"geometry":{"type":"Polygon",
+"coordinates":[[[0,40],[50,40],[50,50],[0,50],[0,40]]]}}"#;
+const MASK: &str = r#"{"type":"Polygon","coordinates":[[[10,30],[20,30],[15,60],[10,30]]]}"#;
+
+/// A folder with a copy of the samples, and map data.
+fn folder_with_samples() -> Folder {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("samples")).unwrap();
+    for entry in fs::read_dir(root().join("samples")).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        fs::copy(entry.path(), folder.path("samples").join(name)).unwrap();
+    }
+    folder.write("countries.geojson", COUNTRIES);
+    folder.write("mask.geojson", MASK);
+    folder
+}
+
+/// The values of options that name one picture.
+fn pictures(arguments: &[String]) -> impl Iterator<Item = &str> {
+    let names = |a: &str| ["-o", "--item", "--depth", "--normal"].contains(&a);
+    let pairs = arguments.windows(2).filter(move |p| names(&p[0]));
+    pairs.map(|p| p[1].as_str()).filter(|f| f.ends_with(".png") && !f.contains('%'))
+}
+
+#[test]
+fn every_command_of_the_readme_runs() {
+    let readme = document("README.md");
+    let commands: Vec<_> = shell_lines(&readme).into_iter().filter_map(arguments).collect();
+    assert!(commands.len() >= 15, "only {} commands found", commands.len());
+    let folder = folder_with_samples();
+    for arguments in commands.into_iter().map(made_small) {
+        let ended = Ended::of(folder.command("").args(&arguments).output().unwrap());
+        assert_eq!(ended.code, 0, "durer {}: {}", arguments.join(" "), ended.err);
+        for name in pictures(&arguments) {
+            let picture = Picture::decode(&folder.read(name));
+            assert_eq!(picture.size(), (96, 64), "{name}");
+            assert!(picture.shows_something(), "durer {}: {name} is empty", arguments.join(" "));
+        }
+    }
+    for name in ["turn/teapot_11.png", "thumbnails/crate.png", "europe.geojson", "within.svg"] {
+        assert!(!folder.read(name).is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn the_gallery_shows_what_its_commands_make() {
+    let readme = document("README.md");
+    let block = readme.split("<!-- gallery -->").nth(1).and_then(|s| s.split("\n```\n").next());
+    let commands: Vec<_> = block.unwrap().lines().filter_map(arguments).collect();
+    let made: Vec<&str> = commands.iter().flat_map(|a| pictures(a)).collect();
+    let shown: Vec<&str> =
+        links(&readme).into_iter().filter_map(|l| l.strip_prefix("docs/gallery/")).collect();
+    for name in shown.iter().filter(|l| l.ends_with(".png")) {
+        assert!(made.contains(name), "no command makes {name}");
+    }
+    for entry in fs::read_dir(root().join("docs/gallery")).unwrap() {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        assert!(shown.contains(&name.as_str()), "docs/gallery/{name} is shown nowhere");
+        assert!(entry.metadata().unwrap().len() <= 150_000, "docs/gallery/{name} is too large");
+    }
+}
+
+#[test]
+fn ci_runs_the_command_of_the_readme() {
+    let test = "cargo test --workspace";
+    assert!(shell_lines(&document("README.md")).contains(&test));
+    let ci = document(".ci/run");
+    assert_eq!(ci.lines().rfind(|l| !l.is_empty()), Some(test));
+}
+
+/// Targets of Markdown links, without anchors.
+fn links(document: &str) -> Vec<&str> {
+    let targets = document.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    targets.map(|t| t.split('#').next().unwrap_or_default()).collect()
+}
+
+#[test]
+fn links_lead_to_files() {
+    let documents = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "DESIGN.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "docs/performance.md",
+        "docs/clip.md",
+        "samples/README.md",
+        "peers/render/README.md",
+    ];
+    for name in documents {
+        let text = document(name);
+        let folder = root().join(Path::new(name).parent().unwrap());
+        for link in links(&text).into_iter().filter(|l| !l.is_empty() && !l.contains("://")) {
+            assert!(folder.join(link).exists(), "{name}: {link}");
+        }
+    }
+}
+
+/// Paths of this repository that a document names in backquotes.
+fn named_paths(document: &str) -> impl Iterator<Item = &str> {
+    let quoted = document.split('`').skip(1).step_by(2);
+    let roots = ["crates/", "peers/", "samples/", "docs/", ".ci/", ".cargo/"];
+    let plain = |p: &&str| !p.contains(['*', '<', '…', '{', ' ', '\n']);
+    quoted.filter(move |p| roots.iter().any(|r| p.starts_with(r))).filter(plain)
+}
+
+#[test]
+fn paths_in_documents_exist() {
+    for name in
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "DESIGN.md", "docs/performance.md"]
+    {
+        // Fences would shift what is inside backquotes and what is not.
+        let text = document(name).replace("```", "");
+        for path in named_paths(&text) {
+            assert!(root().join(path).exists(), "{name}: {path}");
+        }
+    }
+}

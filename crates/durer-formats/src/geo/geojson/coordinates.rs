@@ -1,0 +1,206 @@
+//! Geometry objects: `coordinates` by their type, with what is repaired.
+
+use super::object::{Cursor, Text};
+use crate::geo::{Dimensions, Geometry, MAX_DEPTH, Points, Warnings};
+use crate::{Place, Result};
+use durer::math::DVec2;
+
+/// Reads geometries; keeps what was repaired.
+#[derive(Debug, Default)]
+pub struct Geometries {
+    pub warnings: Warnings,
+}
+
+/// What positions of one run must make up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Run {
+    Points,
+    Line,
+    Ring,
+}
+
+impl Geometries {
+    /// A geometry by its type; `None` where there is no such type.
+    pub fn geometry(
+        &mut self,
+        kind: &str,
+        whole: Text<'_>,
+        members: &[super::object::RawMember<'_>],
+    ) -> Result<Option<Geometry>> {
+        self.nested(kind, whole, members, 0)
+    }
+
+    fn nested(
+        &mut self,
+        kind: &str,
+        whole: Text<'_>,
+        members: &[super::object::RawMember<'_>],
+        depth: usize,
+    ) -> Result<Option<Geometry>> {
+        let member = |name: &str| {
+            let found = members.iter().rfind(|(n, _)| n.as_bytes() == name.as_bytes());
+            found
+                .map(|(_, value)| value.cursor())
+                .ok_or_else(|| whole.error(format!("a {kind} needs the member {name}")))
+        };
+        let coordinates = || member("\"coordinates\"");
+        let geometry = match kind {
+            "Point" => Geometry::Point(self.point(coordinates()?)?),
+            "MultiPoint" => Geometry::MultiPoint(self.run(&mut coordinates()?, Run::Points)?),
+            "LineString" => Geometry::LineString(self.run(&mut coordinates()?, Run::Line)?),
+            "MultiLineString" => {
+                Geometry::MultiLineString(self.runs(&mut coordinates()?, Run::Line)?)
+            }
+            "Polygon" => Geometry::Polygon(self.runs(&mut coordinates()?, Run::Ring)?),
+            "MultiPolygon" => {
+                let mut polygons = Vec::new();
+                coordinates()?.array("an array of polygons", |cursor| {
+                    polygons.push(self.runs(cursor, Run::Ring)?);
+                    Ok(())
+                })?;
+                polygons.retain(|polygon| !polygon.is_empty());
+                Geometry::MultiPolygon(polygons)
+            }
+            "GeometryCollection" => {
+                let mut parts = Vec::new();
+                member("\"geometries\"")?.array("an array of geometries", |cursor| {
+                    let part = cursor.value("a geometry")?;
+                    parts.push(self.object(part, depth + 1)?);
+                    Ok(())
+                })?;
+                Geometry::Collection(parts)
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(geometry))
+    }
+
+    /// A geometry object.
+    pub fn object(&mut self, text: Text<'_>, depth: usize) -> Result<Geometry> {
+        if depth > MAX_DEPTH {
+            return Err(text.error("geometries are nested too deep"));
+        }
+        let members = text.members()?;
+        let kind = super::read::kind(&members)
+            .ok_or_else(|| text.error("a geometry needs the member \"type\", a string"))?;
+        let unknown = || {
+            text.error(format!("`{}` is no type of geometry", crate::text::quote(kind.as_bytes())))
+        };
+        self.nested(&kind, text, &members, depth)?.ok_or_else(unknown)
+    }
+
+    fn point(&mut self, mut cursor: Cursor<'_>) -> Result<Points> {
+        let mut points = Points::default();
+        if cursor.clone().begins_empty() {
+            return Ok(points);
+        }
+        self.position(&mut cursor, &mut points)?;
+        Ok(points)
+    }
+
+    fn runs(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Vec<Points>> {
+        let mut runs = Vec::new();
+        let mut outer_lost = false;
+        let what = if kind == Run::Ring { "an array of rings" } else { "an array of lines" };
+        let mut first = true;
+        cursor.array(what, |cursor| {
+            let start = cursor.clone();
+            let run = self.run(cursor, kind)?;
+            let lost = run.is_empty();
+            outer_lost |= first && lost && kind == Run::Ring;
+            first = false;
+            if outer_lost && !lost {
+                self.warnings.push(
+                    start.clone().place(),
+                    "the hole of a ring that was left out; left out too",
+                );
+            } else if !lost {
+                runs.push(run);
+            }
+            Ok(())
+        })?;
+        Ok(runs)
+    }
+
+    /// An array of positions; empty where it had to be left out.
+    fn run(&mut self, cursor: &mut Cursor<'_>, kind: Run) -> Result<Points> {
+        // Places cost a look at all of the text before them, so they wait until they are needed.
+        let start = cursor.clone();
+        let place = || start.clone().place();
+        let mut points = Points::default();
+        let what = if kind == Run::Ring {
+            "a ring, an array of positions"
+        } else {
+            "an array of positions"
+        };
+        cursor.array(what, |cursor| self.position(cursor, &mut points))?;
+        match kind {
+            Run::Points => {}
+            Run::Line => finish_line(&mut points, place, &mut self.warnings),
+            Run::Ring => finish_ring(&mut points, place, &mut self.warnings),
+        }
+        Ok(points)
+    }
+
+    fn position(&mut self, cursor: &mut Cursor<'_>, points: &mut Points) -> Result<()> {
+        let start = cursor.clone();
+        let mut numbers = [0.0; 4];
+        let mut count = 0;
+        cursor.array("a position, an array of numbers", |cursor| {
+            let number = cursor.number()?;
+            if let Some(place) = numbers.get_mut(count) {
+                *place = number;
+            }
+            count += 1;
+            Ok(())
+        })?;
+        let place = || start.clone().place();
+        if count < 2 {
+            return Err(start.clone().error("a position needs at least two numbers"));
+        }
+        if count > 4 {
+            self.warnings
+                .push(place(), "a position of more than four numbers; the rest is left out");
+        }
+        if points.is_empty() {
+            points.dimensions = Dimensions::new(count > 2, count > 3);
+        } else if count.min(4) != points.dimensions.count() {
+            let message = "a position with more or fewer numbers than the one before; what is missing is taken as 0";
+            self.warnings.push(place(), message);
+        }
+        points.push(DVec2::new(numbers[0], numbers[1]), [numbers[2], numbers[3]]);
+        Ok(())
+    }
+}
+
+/// Leaves out a line of a single position.
+pub fn finish_line(points: &mut Points, place: impl Fn() -> Place, warnings: &mut Warnings) {
+    if points.len() == 1 {
+        warnings.push(place(), "a line needs two positions; this one is left out");
+        *points = Points::default();
+    }
+}
+
+/// Opens a ring as [`Geometry`] has it; closes those that are not closed, leaves out those that are
+/// too short.
+pub fn finish_ring(points: &mut Points, place: impl Fn() -> Place, warnings: &mut Warnings) {
+    if points.is_empty() {
+        return;
+    }
+    if points.len() > 1 && points.xy.first() == points.xy.last() {
+        points.pop();
+    } else {
+        warnings.push(place(), "the ring is not closed; closed");
+    }
+    if points.len() < 3 {
+        let message = "a ring needs four positions, the last like the first; this one is left out";
+        warnings.push(place(), message);
+        *points = Points::default();
+    }
+}
+
+impl Cursor<'_> {
+    fn begins_empty(mut self) -> bool {
+        self.take(b'[') && self.take(b']')
+    }
+}

@@ -1,0 +1,11 @@
+//! GeoJSON (RFC 7946), read and written as a stream.
+
+mod coordinates;
+mod object;
+mod read;
+mod scan;
+mod write;
+
+pub(super) use coordinates::{finish_line, finish_ring};
+pub(super) use read::Reader;
+pub(super) use write::{write_feature, write_member, write_members};

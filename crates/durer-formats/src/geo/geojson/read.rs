@@ -1,0 +1,360 @@
+//! Features from a stream, one at a time; only the feature at hand is held.
+
+use super::coordinates::Geometries;
+use super::object::{RawMember, Text};
+use super::scan::{Progress, Scan};
+use crate::geo::{Feature, Member, Warnings};
+use crate::{Error, Place, Result};
+use std::io::Read;
+
+/// Bytes asked for at a time.
+const CHUNK: usize = 64 << 10;
+
+/// A value cut out of the stream, with line and column of its first byte.
+#[derive(Debug, Default)]
+struct Piece {
+    bytes: Vec<u8>,
+    start: (u64, u64),
+}
+
+impl Piece {
+    fn text(&self) -> Text<'_> {
+        Text::new(&self.bytes, self.start)
+    }
+}
+
+/// The bytes of a source, with the place of the next one.
+struct Stream<R> {
+    source: R,
+    chunk: Vec<u8>,
+    at: usize,
+    /// Line and column of the next byte, from 1.
+    here: (u64, u64),
+}
+
+impl<R: Read> Stream<R> {
+    fn peek(&mut self) -> Result<Option<u8>> {
+        if self.at == self.chunk.len() {
+            self.refill()?;
+        }
+        Ok(self.chunk.get(self.at).copied())
+    }
+
+    /// Takes what the source has, so that a slow source is read as it comes.
+    fn refill(&mut self) -> Result<()> {
+        self.at = 0;
+        self.chunk.resize(CHUNK, 0);
+        loop {
+            match self.source.read(&mut self.chunk) {
+                Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+                read => {
+                    self.chunk.truncate(*read.as_ref().unwrap_or(&0));
+                    return read.map(drop).map_err(Error::from);
+                }
+            }
+        }
+    }
+
+    fn bump(&mut self, byte: u8) {
+        self.at += 1;
+        self.here =
+            if byte == b'\n' { (self.here.0 + 1, 1) } else { (self.here.0, self.here.1 + 1) };
+    }
+
+    fn error(&self, message: impl Into<String>) -> Error {
+        Error::line(self.here.0, self.here.1, message)
+    }
+
+    /// The next byte that is no blank.
+    fn next(&mut self) -> Result<Option<u8>> {
+        while let Some(byte) = self.peek()? {
+            if !matches!(byte, b' ' | b'\t' | b'\r' | b'\n') {
+                return Ok(Some(byte));
+            }
+            self.bump(byte);
+        }
+        Ok(None)
+    }
+
+    /// Steps over a byte if it comes next.
+    fn take(&mut self, byte: u8) -> Result<bool> {
+        let found = self.next()? == Some(byte);
+        if found {
+            self.bump(byte);
+        }
+        Ok(found)
+    }
+
+    fn expect(&mut self, byte: u8, what: &str) -> Result<()> {
+        if self.take(byte)? { Ok(()) } else { Err(self.unexpected(what)?) }
+    }
+
+    fn unexpected(&mut self, what: &str) -> Result<Error> {
+        let found = match self.next()? {
+            None => "the end of the file".to_owned(),
+            Some(byte @ 0x21..=0x7e) => format!("`{}`", char::from(byte)),
+            Some(byte) => format!("byte {byte:#04x}"),
+        };
+        Ok(self.error(format!("{what} is expected, not {found}")))
+    }
+
+    /// Cuts out the next value.
+    fn value(&mut self, what: &str) -> Result<Piece> {
+        self.next()?;
+        let mut piece = Piece { bytes: Vec::new(), start: self.here };
+        let mut scan = Scan::default();
+        while let Some(byte) = self.peek()? {
+            let progress = scan.feed(byte);
+            match progress {
+                Progress::Over => break,
+                Progress::TooDeep => return Err(self.error("this is nested too deep")),
+                Progress::More | Progress::Last => {}
+            }
+            piece.bytes.push(byte);
+            self.bump(byte);
+            if progress == Progress::Last {
+                return Ok(piece);
+            }
+        }
+        if piece.bytes.is_empty() {
+            return Err(self.unexpected(what)?);
+        }
+        let cut = matches!(piece.bytes.first(), Some(b'{' | b'[' | b'"'));
+        if cut { Err(self.error("the file ends within a value")) } else { Ok(piece) }
+    }
+}
+
+/// Where the reader is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Between,
+    /// In the array `features` of a collection; whether features came before.
+    Features(bool),
+}
+
+/// Reads features from any sequence of GeoJSON documents.
+pub struct Reader<R> {
+    stream: Stream<R>,
+    state: State,
+    geometries: Geometries,
+    /// Members of the collection or document being read.
+    open: Vec<(Piece, Piece)>,
+    collection: (u64, u64),
+    members: Vec<Member>,
+    documents: u64,
+}
+
+impl<R: Read> Reader<R> {
+    pub fn new(source: R) -> Self {
+        let stream = Stream { source, chunk: Vec::new(), at: 0, here: (1, 1) };
+        Self {
+            stream,
+            state: State::Between,
+            geometries: Geometries::default(),
+            open: Vec::new(),
+            collection: (1, 1),
+            members: Vec::new(),
+            documents: 0,
+        }
+    }
+
+    pub fn warnings(&mut self) -> &mut Warnings {
+        &mut self.geometries.warnings
+    }
+
+    /// Foreign members of the collections, as far as they have been read.
+    pub fn members(&self) -> &[Member] {
+        &self.members
+    }
+
+    pub fn next_feature(&mut self) -> Result<Option<Feature>> {
+        loop {
+            match self.state {
+                State::Between => {
+                    if !self.begin()? {
+                        return Ok(None);
+                    }
+                    if self.state == State::Between {
+                        return self.document().map(Some);
+                    }
+                }
+                State::Features(_) if self.stream.take(b']')? => {
+                    if self.stream.take(b'}')? {
+                        self.state = State::Between;
+                    } else {
+                        self.stream.expect(b',', "`,` or `}` after the features")?;
+                        self.object_members()?;
+                    }
+                    if self.state == State::Between {
+                        self.end_collection()?;
+                    }
+                }
+                State::Features(began) => {
+                    if began {
+                        self.stream.expect(b',', "`,` or `]` after a feature")?;
+                    }
+                    self.state = State::Features(true);
+                    let piece = self.stream.value("a feature")?;
+                    return self.feature(piece.text()).map(Some);
+                }
+            }
+        }
+    }
+
+    /// Goes into the next document, to its end or its array of features; false where there is none.
+    fn begin(&mut self) -> Result<bool> {
+        // Byte-order mark, and the separators of RFC 8142.
+        if self.documents == 0 && self.stream.peek()? == Some(0xef) {
+            for byte in [0xef, 0xbb, 0xbf] {
+                self.stream.expect(byte, "a document")?;
+            }
+            self.stream.here = (1, 1);
+        }
+        while self.stream.take(0x1e)? {}
+        if self.stream.next()?.is_none() {
+            return if self.documents > 0 {
+                Ok(false)
+            } else {
+                Err(self.stream.error("there is no GeoJSON in the file"))
+            };
+        }
+        self.documents += 1;
+        self.collection = self.stream.here;
+        self.open.clear();
+        self.stream.expect(b'{', "a GeoJSON object")?;
+        if !self.stream.take(b'}')? {
+            self.object_members()?;
+        }
+        Ok(true)
+    }
+
+    /// Reads members of the document, to its end or its array of features.
+    fn object_members(&mut self) -> Result<()> {
+        self.state = State::Between;
+        loop {
+            let name = self.stream.value("a member's name")?;
+            if name.bytes.first() != Some(&b'"') {
+                return Err(name.text().error("the name of a member must be a string"));
+            }
+            self.stream.expect(b':', "`:` after a member's name")?;
+            if name.bytes == b"\"features\"" && self.may_be_collection() {
+                self.stream.expect(b'[', "the array of features")?;
+                self.open.push((name, Piece { bytes: b"[]".to_vec(), start: self.stream.here }));
+                self.state = State::Features(false);
+                return Ok(());
+            }
+            let value = self.stream.value("a value")?;
+            self.open.push((name, value));
+            if self.stream.take(b'}')? {
+                return Ok(());
+            }
+            self.stream.expect(b',', "`,` or `}` after a member")?;
+        }
+    }
+
+    /// Whether nothing that has been read says that this is no collection.
+    fn may_be_collection(&self) -> bool {
+        let kind = self.open.iter().find(|(name, _)| name.bytes == b"\"type\"");
+        kind.is_none_or(|(_, value)| value.bytes == b"\"FeatureCollection\"")
+    }
+
+    fn end_collection(&mut self) -> Result<()> {
+        let open = std::mem::take(&mut self.open);
+        let kind = open.iter().find(|(name, _)| name.bytes == b"\"type\"");
+        if kind.is_none_or(|(_, value)| value.bytes != b"\"FeatureCollection\"") {
+            let (line, column) = self.collection;
+            return Err(Error::line(
+                line,
+                column,
+                "an object with features needs \"type\": \"FeatureCollection\"",
+            ));
+        }
+        for (name, value) in &open {
+            if !matches!(&name.bytes[..], b"\"type\"" | b"\"features\"" | b"\"bbox\"") {
+                let name = name.text().checked()?;
+                self.members.push(Member { name, value: value.text().checked()? });
+            }
+        }
+        Ok(())
+    }
+
+    /// The document whose members have been read.
+    fn document(&mut self) -> Result<Feature> {
+        let open = std::mem::take(&mut self.open);
+        let members: Vec<RawMember<'_>> = open.iter().map(|(n, v)| (n.text(), v.text())).collect();
+        let whole = Text::new(b"", self.collection);
+        self.interpret(whole, &members)
+    }
+
+    fn feature(&mut self, text: Text<'_>) -> Result<Feature> {
+        self.interpret(text, &text.members()?)
+    }
+
+    fn interpret(&mut self, whole: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
+        let Some(kind) = kind(members) else {
+            return Err(whole.error("a GeoJSON object needs the member \"type\", a string"));
+        };
+        match &kind[..] {
+            "Feature" => self.members_of_feature(whole, members),
+            "Topology" => Err(unsupported(whole.place(), "TopoJSON", "convert it to GeoJSON")),
+            "FeatureCollection" => {
+                Err(whole.error("a FeatureCollection needs features, and cannot be a feature"))
+            }
+            _ => {
+                let geometry = self.geometries.geometry(&kind, whole, members)?;
+                let geometry = geometry.ok_or_else(|| {
+                    let kind = crate::text::quote(kind.as_bytes());
+                    whole.error(format!("`{kind}` is no type of GeoJSON"))
+                })?;
+                Ok(Feature::of_geometry(geometry))
+            }
+        }
+    }
+
+    fn members_of_feature(
+        &mut self,
+        whole: Text<'_>,
+        members: &[RawMember<'_>],
+    ) -> Result<Feature> {
+        let mut feature = Feature::default();
+        let mut has_geometry = false;
+        for (name, value) in members {
+            match name.as_bytes() {
+                b"\"type\"" | b"\"bbox\"" => {}
+                b"\"geometry\"" => {
+                    has_geometry = true;
+                    let object = (!value.is_null()).then(|| self.geometries.object(*value, 0));
+                    feature.geometry = object.transpose()?;
+                }
+                b"\"properties\"" if value.is_null() => feature.properties = None,
+                b"\"properties\"" if value.as_bytes().first() == Some(&b'{') => {
+                    feature.properties = Some(value.checked()?);
+                }
+                b"\"properties\"" => {
+                    return Err(value.error("properties must be an object or null"));
+                }
+                b"\"id\"" if value.is_null() => {}
+                b"\"id\"" => feature.id = Some(value.checked()?),
+                _ => {
+                    let name = name.checked()?;
+                    feature.members.push(Member { name, value: value.checked()? });
+                }
+            }
+        }
+        if has_geometry {
+            Ok(feature)
+        } else {
+            Err(whole.error("a Feature needs the member \"geometry\""))
+        }
+    }
+}
+
+/// The value of the member `type`, if it is a string.
+pub fn kind(members: &[RawMember<'_>]) -> Option<String> {
+    let (_, value) = members.iter().rfind(|(name, _)| name.as_bytes() == b"\"type\"")?;
+    serde_json::from_slice(value.as_bytes()).ok()
+}
+
+fn unsupported(place: Place, what: &str, hint: &str) -> Error {
+    Error::Unsupported { place, what: what.to_owned(), hint: hint.to_owned() }
+}

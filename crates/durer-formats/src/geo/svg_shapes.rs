@@ -1,0 +1,393 @@
+//! The shapes of an SVG document as features.
+//!
+//! Read are `path` (all but arcs), `polygon`, `polyline`, `line` and `rect` without round corners, with
+//! the `transform`s and `id`s on them and on the groups around them. Curves become [`STEPS`] edges
+//! each. Closed parts become polygons (several of one path: by the even-odd rule of a clip), open
+//! parts lines. Styles, `use`, text, clipping and nested documents are not looked at. Coordinates are
+//! those of the document turned over, so that y is up, as [`super::svg`] writes them.
+
+use super::{Feature, Geometry, Points, Warnings};
+use crate::{Error, Place, Result};
+use durer::math::DVec2;
+use quick_xml::events::{BytesStart, Event};
+
+/// Edges that a curve becomes.
+const STEPS: u32 = 16;
+
+/// The matrix (a, b, c, d, e, f) of SVG: x' = a·x + c·y + e, y' = b·x + d·y + f.
+type Matrix = [f64; 6];
+
+const UPRIGHT: Matrix = [1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
+
+fn apply(m: &Matrix, p: DVec2) -> DVec2 {
+    DVec2::new(m[0] * p.x + m[2] * p.y + m[4], m[1] * p.x + m[3] * p.y + m[5])
+}
+
+/// First `inner`, then `outer`.
+fn compose(outer: &Matrix, inner: &Matrix) -> Matrix {
+    let linear = [outer[0], outer[1], outer[2], outer[3], 0.0, 0.0];
+    let x = apply(&linear, DVec2::new(inner[0], inner[1]));
+    let y = apply(&linear, DVec2::new(inner[2], inner[3]));
+    let o = apply(outer, DVec2::new(inner[4], inner[5]));
+    [x.x, x.y, y.x, y.y, o.x, o.y]
+}
+
+/// Where an element's coordinates and name come from.
+#[derive(Debug, Clone)]
+struct Level {
+    matrix: Matrix,
+    id: Option<String>,
+}
+
+/// Reads the shapes of a document.
+pub fn read(text: &[u8], warnings: &mut Warnings) -> Result<Vec<Feature>> {
+    let mut reader = quick_xml::Reader::from_reader(text);
+    let mut levels = vec![Level { matrix: UPRIGHT, id: None }];
+    let mut features = Vec::new();
+    let mut seen_svg = false;
+    loop {
+        let at = reader.buffer_position();
+        let place = || place(text, at);
+        let fail = |message: String| Error::Decode { place: place(), message };
+        match reader.read_event().map_err(|e| fail(e.to_string()))? {
+            Event::Eof if seen_svg => return Ok(features),
+            Event::Eof => return Err(fail("there is no svg element".to_owned())),
+            event @ (Event::Start(_) | Event::Empty(_)) => {
+                let (element, open) = match &event {
+                    Event::Start(element) => (element, true),
+                    Event::Empty(element) => (element, false),
+                    _ => continue,
+                };
+                if levels.len() > super::MAX_DEPTH * 8 {
+                    return Err(fail("elements are nested too deep".to_owned()));
+                }
+                seen_svg |= element.local_name().as_ref() == "svg";
+                let level = enter(element, levels.last()).map_err(fail)?;
+                match shape(element, &level) {
+                    Ok(Some(geometry)) => features.push(Feature {
+                        id: level
+                            .id
+                            .as_ref()
+                            .map(|id| serde_json::Value::from(&id[..]).to_string()),
+                        ..Feature::of_geometry(geometry)
+                    }),
+                    Ok(None) => {}
+                    Err(message) => {
+                        warnings.push(place(), format!("{message}; the shape is left out"))
+                    }
+                }
+                if open {
+                    levels.push(level);
+                }
+            }
+            Event::End(_) if levels.len() > 1 => drop(levels.pop()),
+            _ => {}
+        }
+    }
+}
+
+fn place(text: &[u8], at: u64) -> Place {
+    let before = text.get(..at as usize).unwrap_or(text);
+    let line = before.iter().filter(|&&b| b == b'\n').count() as u64 + 1;
+    let column = before.iter().rev().take_while(|&&b| b != b'\n').count() as u64 + 1;
+    Place::Line(line, column)
+}
+
+fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>, String> {
+    let found = element.try_get_attribute(name).map_err(|e| e.to_string())?;
+    let Some(found) = found else { return Ok(None) };
+    quick_xml::escape::unescape(&found.value)
+        .map(|t| Some(t.into_owned()))
+        .map_err(|e| e.to_string())
+}
+
+fn enter(element: &BytesStart<'_>, outer: Option<&Level>) -> Result<Level, String> {
+    let (matrix, outer_id) = outer.map_or((UPRIGHT, None), |l| (l.matrix, l.id.clone()));
+    let transform = attribute(element, "transform")?.unwrap_or_default();
+    let id = attribute(element, "id")?;
+    Ok(Level { matrix: compose(&matrix, &transforms(&transform)?), id: id.or(outer_id) })
+}
+
+fn transforms(text: &str) -> Result<Matrix, String> {
+    let mut all = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+    for part in text.split(')').map(|p| p.trim_matches([' ', ',', '\n', '\t', '\r'])) {
+        if part.is_empty() {
+            continue;
+        }
+        let (name, numbers) = part.split_once('(').ok_or("a transform needs brackets")?;
+        let numbers = Scanner::new(numbers).all()?;
+        let matrix = match (name.trim(), &numbers[..]) {
+            ("matrix", &[a, b, c, d, e, f]) => [a, b, c, d, e, f],
+            ("translate", &[x]) => [1.0, 0.0, 0.0, 1.0, x, 0.0],
+            ("translate", &[x, y]) => [1.0, 0.0, 0.0, 1.0, x, y],
+            ("scale", &[s]) => [s, 0.0, 0.0, s, 0.0, 0.0],
+            ("scale", &[x, y]) => [x, 0.0, 0.0, y, 0.0, 0.0],
+            ("rotate", &[angle]) => rotation(angle, DVec2::ZERO),
+            ("rotate", &[angle, x, y]) => rotation(angle, DVec2::new(x, y)),
+            _ => {
+                return Err(format!(
+                    "the transform `{}` is not known",
+                    crate::text::quote(part.as_bytes())
+                ));
+            }
+        };
+        all = compose(&all, &matrix);
+    }
+    Ok(all)
+}
+
+fn rotation(degrees: f64, center: DVec2) -> Matrix {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let (x, y) = (center.x, center.y);
+    [cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y]
+}
+
+/// The geometry of an element; `None` where it is no shape.
+fn shape(element: &BytesStart<'_>, level: &Level) -> Result<Option<Geometry>, String> {
+    let text = |name: &str| attribute(element, name).map(Option::unwrap_or_default);
+    let number =
+        |name: &str| Ok::<f64, String>(Scanner::new(&text(name)?).number()?.unwrap_or(0.0));
+    let local = element.local_name();
+    let mut path = Path::default();
+    match local.as_ref() {
+        "path" => path.run(&text("d")?)?,
+        "polygon" | "polyline" => {
+            let numbers = Scanner::new(&text("points")?).all()?;
+            for pair in numbers.chunks_exact(2) {
+                path.line_to(DVec2::new(pair[0], pair[1]));
+            }
+            if local.as_ref() == "polygon" {
+                path.close();
+            }
+        }
+        "line" => {
+            path.line_to(DVec2::new(number("x1")?, number("y1")?));
+            path.line_to(DVec2::new(number("x2")?, number("y2")?));
+        }
+        "rect" if text("rx")?.is_empty() && text("ry")?.is_empty() => {
+            let p = DVec2::new(number("x")?, number("y")?);
+            let q = p + DVec2::new(number("width")?, number("height")?);
+            for corner in [p, DVec2::new(q.x, p.y), q, DVec2::new(p.x, q.y)] {
+                path.line_to(corner);
+            }
+            path.close();
+        }
+        "rect" | "circle" | "ellipse" | "text" | "use" | "image" => {
+            return Err(format!("`{}` of this kind is not read", local.as_ref()));
+        }
+        _ => return Ok(None),
+    }
+    path.geometry(&level.matrix)
+}
+
+/// Sub-paths in the element's coordinates, each open or closed.
+#[derive(Debug, Default)]
+struct Path {
+    done: Vec<(Vec<DVec2>, bool)>,
+    open: Vec<DVec2>,
+    at: DVec2,
+    /// The last control point, for smooth curves, and of what degree its curve was.
+    control: Option<(DVec2, u8)>,
+}
+
+impl Path {
+    fn line_to(&mut self, p: DVec2) {
+        self.open.push(p);
+        self.at = p;
+        self.control = None;
+    }
+
+    fn end(&mut self) {
+        let points = std::mem::take(&mut self.open);
+        if points.len() > 1 {
+            self.done.push((points, false));
+        }
+    }
+
+    fn close(&mut self) {
+        let points = std::mem::take(&mut self.open);
+        self.at = points.first().copied().unwrap_or(self.at);
+        self.control = None;
+        self.done.push((points, true));
+    }
+
+    /// The commands of the attribute `d`.
+    fn run(&mut self, text: &str) -> Result<(), String> {
+        let mut scanner = Scanner::new(text);
+        let mut command = None;
+        while !scanner.at_end() {
+            if let Some(next) = scanner.letter() {
+                command = Some(next);
+            }
+            let Some(letter) = command else { return Err("a path begins with M or m".to_owned()) };
+            self.step(letter, &mut scanner)?;
+            // Further pairs of a move are lines; nothing can follow a Z without a letter.
+            command = match letter {
+                'M' => Some('L'),
+                'm' => Some('l'),
+                'Z' | 'z' => None,
+                other => Some(other),
+            };
+        }
+        self.end();
+        Ok(())
+    }
+
+    fn step(&mut self, letter: char, s: &mut Scanner<'_>) -> Result<(), String> {
+        let base = if letter.is_ascii_lowercase() { self.at } else { DVec2::ZERO };
+        if self.open.is_empty() && !matches!(letter, 'M' | 'm' | 'Z' | 'z') {
+            self.open.push(self.at);
+        }
+        let mirrored = |path: &Self, degree: u8| match path.control {
+            Some((control, d)) if d == degree => path.at * 2.0 - control,
+            _ => path.at,
+        };
+        match letter.to_ascii_uppercase() {
+            'M' => {
+                self.end();
+                let p = base + s.pair()?;
+                self.line_to(p);
+            }
+            'L' => {
+                let p = base + s.pair()?;
+                self.line_to(p);
+            }
+            'H' => {
+                let p = DVec2::new(base.x + s.need()?, self.at.y);
+                self.line_to(p);
+            }
+            'V' => {
+                let p = DVec2::new(self.at.x, base.y + s.need()?);
+                self.line_to(p);
+            }
+            'C' => {
+                let points = [base + s.pair()?, base + s.pair()?, base + s.pair()?];
+                self.curve(points, points[1], 3);
+            }
+            'S' => {
+                let points = [mirrored(self, 3), base + s.pair()?, base + s.pair()?];
+                self.curve(points, points[1], 3);
+            }
+            'Q' | 'T' => {
+                let control = if letter.eq_ignore_ascii_case(&'Q') {
+                    base + s.pair()?
+                } else {
+                    mirrored(self, 2)
+                };
+                let end = base + s.pair()?;
+                let raise = |p: DVec2| p + (control - p) * (2.0 / 3.0);
+                self.curve([raise(self.at), raise(end), end], control, 2);
+            }
+            'Z' => self.close(),
+            'A' => return Err("arcs in paths are not read".to_owned()),
+            _ => return Err(format!("`{letter}` is no command of a path")),
+        }
+        Ok(())
+    }
+
+    /// A cubic Bézier curve from the current point.
+    fn curve(&mut self, [p1, p2, p3]: [DVec2; 3], control: DVec2, degree: u8) {
+        let p0 = self.at;
+        for i in 1..=STEPS {
+            let t = f64::from(i) / f64::from(STEPS);
+            let u = 1.0 - t;
+            let p = p0 * (u * u * u)
+                + p1 * (3.0 * u * u * t)
+                + p2 * (3.0 * u * t * t)
+                + p3 * (t * t * t);
+            self.line_to(if i == STEPS { p3 } else { p });
+        }
+        self.control = Some((control, degree));
+    }
+
+    fn geometry(mut self, matrix: &Matrix) -> Result<Option<Geometry>, String> {
+        self.end();
+        let (mut rings, mut lines) = (Vec::new(), Vec::new());
+        for (points, closed) in &self.done {
+            let mut xy: Vec<DVec2> = points.iter().map(|&p| apply(matrix, p)).collect();
+            if xy.iter().any(|p| !p.is_finite()) {
+                return Err("a coordinate is not finite".to_owned());
+            }
+            if *closed && xy.len() > 1 && xy.first() == xy.last() {
+                xy.pop();
+            }
+            match (closed, xy.len()) {
+                (true, 3..) => rings.push(vec![Points::flat(xy)]),
+                (false, 2..) => lines.push(Points::flat(xy)),
+                _ => {}
+            }
+        }
+        let area = match rings.len() {
+            0 => None,
+            1 => rings.pop().map(Geometry::Polygon),
+            _ => Some(Geometry::MultiPolygon(rings)),
+        };
+        let line = match lines.len() {
+            0 => None,
+            1 => lines.pop().map(Geometry::LineString),
+            _ => Some(Geometry::MultiLineString(lines)),
+        };
+        Ok(match (area, line) {
+            (Some(area), Some(line)) => Some(Geometry::Collection(vec![area, line])),
+            (area, line) => area.or(line),
+        })
+    }
+}
+
+/// Numbers and letters, parted by blanks and commas or nothing.
+struct Scanner<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Scanner<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { rest: text.as_bytes() }
+    }
+
+    fn skip(&mut self) {
+        while let [b' ' | b',' | b'\t' | b'\n' | b'\r', rest @ ..] = self.rest {
+            self.rest = rest;
+        }
+    }
+
+    fn at_end(&mut self) -> bool {
+        self.skip();
+        self.rest.is_empty()
+    }
+
+    fn letter(&mut self) -> Option<char> {
+        self.skip();
+        let (first, rest) = self.rest.split_first().filter(|(b, _)| b.is_ascii_alphabetic())?;
+        self.rest = rest;
+        Some(char::from(*first))
+    }
+
+    /// A number, or `None` at the end.
+    fn number(&mut self) -> Result<Option<f64>, String> {
+        if self.at_end() {
+            return Ok(None);
+        }
+        let found = crate::number::float(self.rest).filter(|(value, _)| value.is_finite());
+        let (value, length) = found.ok_or_else(|| {
+            format!("a number is expected, not `{}`", crate::text::quote(self.rest))
+        })?;
+        self.rest = self.rest.get(length..).unwrap_or_default();
+        Ok(Some(value))
+    }
+
+    fn need(&mut self) -> Result<f64, String> {
+        self.number()?.ok_or_else(|| "a number is missing at the end".to_owned())
+    }
+
+    fn pair(&mut self) -> Result<DVec2, String> {
+        Ok(DVec2::new(self.need()?, self.need()?))
+    }
+
+    fn all(mut self) -> Result<Vec<f64>, String> {
+        let mut numbers = Vec::new();
+        while let Some(number) = self.number()? {
+            numbers.push(number);
+        }
+        Ok(numbers)
+    }
+}

@@ -1,0 +1,339 @@
+//! Geodata: all formats give back what they were given, and errors say where.
+
+use durer::math::DVec2;
+use durer_formats::geo::{
+    Dimensions, Feature, GeoFormat, Geometry, Points, Reader, Writer, read_all,
+};
+use proptest::prelude::*;
+
+fn features(format: GeoFormat, bytes: &[u8]) -> Vec<Feature> {
+    let mut reader = Reader::new(format, bytes).expect("a reader");
+    let mut all = Vec::new();
+    while let Some(feature) = reader.next_feature().expect("a feature") {
+        all.push(feature);
+    }
+    assert_eq!(reader.warnings(), []);
+    all
+}
+
+fn written(format: GeoFormat, features: &[Feature]) -> Vec<u8> {
+    let mut writer = Writer::new(format, Vec::new());
+    features.iter().for_each(|feature| writer.write(feature).expect("memory"));
+    writer.finish(&[]).expect("memory")
+}
+
+/// The error of reading a text, as it is told.
+fn error(format: GeoFormat, bytes: &[u8]) -> String {
+    let mut reader = Reader::new(format, bytes).expect("a reader");
+    loop {
+        match reader.next_feature() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("no error in {}", String::from_utf8_lossy(bytes)),
+            Err(e) => return e.to_string(),
+        }
+    }
+}
+
+#[test]
+fn geojson_keeps_what_it_does_not_know() {
+    let text = r#"{ "type":"FeatureCollection", "name":"n\u00e4h", "bbox":[0,0,1,1], "features":[
+ {"type":"Feature","id":"a","bbox":[1,2,1,2],"style":{"x":1.50},"properties":{"n":1e3,"s":"\"}]"},"geometry":{"type":"Point","coordinates":[1,2.0,3]}},
+ {"type":"Feature","properties":null,"geometry":null} ], "crs":{"k":[1, 2]} }"#;
+    let mut reader = Reader::new(GeoFormat::GeoJson, text.as_bytes()).expect("a reader");
+    let first = reader.next_feature().expect("read").expect("a feature");
+    assert_eq!(first.properties.as_deref(), Some(r#"{"n":1e3,"s":"\"}]"}"#));
+    assert_eq!(first.id.as_deref(), Some("\"a\""));
+    assert_eq!(reader.members().len(), 0);
+    let mut writer = Writer::new(GeoFormat::GeoJson, Vec::new());
+    writer.write(&first).expect("memory");
+    while let Some(feature) = reader.next_feature().expect("read") {
+        writer.write(&feature).expect("memory");
+    }
+    let out = writer.finish(reader.members()).expect("memory");
+    let expected = r#"{"type":"FeatureCollection","features":[
+{"type":"Feature","id":"a","style":{"x":1.50},"properties":{"n":1e3,"s":"\"}]"},"geometry":{"type":"Point","coordinates":[1,2,3]}},
+{"type":"Feature","properties":null,"geometry":null}
+],"name":"n\u00e4h","crs":{"k":[1, 2]}}
+"#;
+    assert_eq!(String::from_utf8_lossy(&out), expected);
+}
+
+#[test]
+fn every_layout_of_geojson_is_read() {
+    let point = r#"{"type":"Point","coordinates":[1,2]}"#;
+    for text in [
+        point.to_owned(),
+        format!("\u{feff}{point}\r\n{point}\n\n{point}"),
+        format!("\x1e{point}\n\x1e{point}\n"),
+        format!(
+            r#"{{"features":[{{"geometry":{point},"type":"Feature"}}],"type":"FeatureCollection"}}"#
+        ),
+        format!(
+            r#"{{"type":"FeatureCollection","features":[]}}{{"type":"Feature","geometry":{point}}}"#
+        ),
+    ] {
+        let all = features(GeoFormat::GeoJson, text.as_bytes());
+        assert!(!all.is_empty() && all.iter().all(|f| f.geometry.is_some()), "{text}");
+    }
+}
+
+#[test]
+fn a_million_features_need_no_memory() {
+    /// The same line over and over.
+    struct Lines(u64);
+    impl std::io::Read for Lines {
+        fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+            let line = b"{\"type\":\"Point\",\"coordinates\":[1,2]}\n";
+            if self.0 == 0 {
+                return Ok(0);
+            }
+            self.0 -= 1;
+            out[..line.len()].copy_from_slice(line);
+            Ok(line.len())
+        }
+    }
+    let mut reader = Reader::new(GeoFormat::GeoJsonSeq, Lines(100_000)).expect("a reader");
+    let mut count = 0;
+    while reader.next_feature().expect("a feature").is_some() {
+        count += 1;
+    }
+    assert_eq!(count, 100_000);
+}
+
+#[test]
+fn errors_of_geojson_say_where() {
+    for (text, expected) in [
+        ("{\"type\":\"Point\",\n \"coordinates\":[1,x]}", "line 2, column 19: a number"),
+        ("\n{\"type\":\"Point\",\"coordinates\":[1]}", "line 2, column 31: a position"),
+        ("{\"type\":\"Point\",\"coordinates\":[NaN,1]}", "line 1, column 32: a number"),
+        (
+            "{\"type\":\"Point\",\"coordinates\":[1e999,1]}",
+            "line 1, column 32: the number is too large",
+        ),
+        ("{\"type\":\"LineString\",\"coordinates\":[1,2]}", "line 1, column 37: a position"),
+        ("{\"type\":\"Blob\",\"coordinates\":[1,2]}", "line 1, column 1: `Blob`"),
+        ("{\"type\":\"Topology\"}", "TopoJSON is not supported"),
+        (
+            "{\"type\":\"Feature\",\"properties\":[],\"geometry\":null}",
+            "line 1, column 32: properties",
+        ),
+        (
+            "{\"type\":\"Feature\",\"properties\":{\"a\":tru},\"geometry\":null}",
+            "line 1, column 40: expected",
+        ),
+        ("{\"type\":\"FeatureCollection\",\"features\":[{\"type\":", "ends within a value"),
+        ("{\"features\":[]}", "line 1, column 1: an object with features"),
+        ("[1,2]", "line 1, column 1: a GeoJSON object"),
+        ("", "no GeoJSON"),
+    ] {
+        let message = error(GeoFormat::GeoJson, text.as_bytes());
+        assert!(message.contains(expected), "{text}: {message}");
+    }
+}
+
+#[test]
+fn repairs_are_told() {
+    let polygon = |rings: &str| format!("{{\"type\":\"Polygon\",\"coordinates\":[{rings}]}}");
+    for (text, rings, told) in [
+        (polygon("[[0,0],[4,0],[4,4]]"), 1, "line 1, column 34: the ring is not closed; closed"),
+        (polygon("[[0,0],[4,0],[0,0]]"), 0, "a ring needs four positions"),
+        (polygon("[[0,0],[4,0],[0,0]],[[1,1],[2,1],[2,2],[1,1]]"), 0, "left out too"),
+    ] {
+        let (features, warnings) = read_all(text.as_bytes(), "").expect("read");
+        assert!(matches!(&features[0].geometry, Some(Geometry::Polygon(r)) if r.len() == rings));
+        assert!(warnings.iter().any(|w| w.to_string().contains(told)), "{warnings:?}");
+    }
+}
+
+#[test]
+fn wkt_is_read_in_all_its_spellings() {
+    let text = "SRID=4326;POINT(1 2)\npoint z (1 2 3);POINTM(1 2 9) POINT ZM (1 2 3 9)
+MULTIPOINT(1 2,3 4) MULTIPOINT((1 2),EMPTY,\n(3 4))\nPOLYGON EMPTY
+GEOMETRYCOLLECTION(POINT(1 2),LINESTRING(0 0,1 1))\nPOLYGON((0 0,4 0,4 4,0 0),(1 1,2 1,2 2,1 1))";
+    let all = features(GeoFormat::Wkt, text.as_bytes());
+    let kinds: Vec<_> = all
+        .iter()
+        .filter_map(|f| f.geometry.as_ref())
+        .map(|g| (g.name(), g.dimensions(), g.len()))
+        .collect();
+    use Dimensions::{Xy, Xym, Xyz, Xyzm};
+    assert_eq!(
+        kinds,
+        [
+            ("Point", Xy, 1),
+            ("Point", Xyz, 1),
+            ("Point", Xym, 1),
+            ("Point", Xyzm, 1),
+            ("MultiPoint", Xy, 2),
+            ("MultiPoint", Xy, 2),
+            ("Polygon", Xy, 0),
+            ("GeometryCollection", Xy, 3),
+            ("Polygon", Xy, 6)
+        ]
+    );
+    assert_eq!((all[0].srid, all[1].srid), (Some(4326), None));
+    for (text, expected) in [
+        (
+            "POINT (1 2)\nPOINT (1)",
+            "line 2, column 9: a position of 2 numbers is expected, this one has 1",
+        ),
+        ("POINT (1 nan)", "line 1, column 10: coordinates must be finite"),
+        ("POLYGON ((0 0, 1 1", "the end of the file"),
+        ("LINESTRING (0 0, 1 1 2)", "this one has 3"),
+        ("CIRCULARSTRING (0 0, 1 1, 2 0)", "line 1, column 1: CIRCULARSTRING is not supported"),
+        ("BLOB (1 2)", "line 1, column 1: `BLOB` is no type"),
+        ("POINT (1 2))", "line 1, column 12: the end of the geometry"),
+    ] {
+        let message = error(GeoFormat::Wkt, text.as_bytes());
+        assert!(message.contains(expected), "{text}: {message}");
+    }
+    let deep = "GEOMETRYCOLLECTION(".repeat(100_000);
+    assert!(error(GeoFormat::Wkt, deep.as_bytes()).contains("nested too deep"));
+}
+
+#[test]
+fn wkb_of_both_byte_orders_and_postgis_is_read() {
+    for (hex, expected) in [
+        ("0101000000000000000000F03F0000000000000040", "POINT (1 2)"),
+        ("00000000013FF00000000000004000000000000000", "POINT (1 2)"),
+        ("01E9030000000000000000F03F00000000000000400000000000000840", "POINT Z (1 2 3)"),
+        (
+            "01010000A0E6100000000000000000F03F00000000000000400000000000000840",
+            "SRID=4326;POINT Z (1 2 3)",
+        ),
+        ("0101000040000000000000F03F00000000000000400000000000000840", "POINT M (1 2 3)"),
+        ("0101000000000000000000F87F000000000000F87F", "POINT EMPTY"),
+    ] {
+        let all = features(GeoFormat::WkbHex, hex.as_bytes());
+        let text = written(GeoFormat::Wkt, &all);
+        assert_eq!(String::from_utf8_lossy(&text).trim(), expected, "{hex}");
+    }
+    for (hex, expected) in [
+        ("0102000000FFFFFFFF", "column 11: a count of 4294967295, but only 0 bytes are left"),
+        ("0101000000", "line 1, column 11: the data end"),
+        ("0109000000", "type 9 is not supported"),
+        ("05", "byte order 5"),
+        ("01010000000000000000F07F0000000000000040", "the data end"),
+        ("0101000000000000000000F07F0000000000000040", "column 11: coordinates must be finite"),
+        ("01zz", "column 3: two hexadecimal digits"),
+    ] {
+        let message = error(GeoFormat::WkbHex, hex.as_bytes());
+        assert!(message.contains(expected), "{hex}: {message}");
+    }
+    let deep = [&b"\x01\x07\0\0\0\x01\0\0\0"[..]; 5000].concat();
+    assert!(error(GeoFormat::Wkb, &deep).contains("nested too deep"));
+}
+
+#[test]
+fn shapes_of_svg_are_read_and_written() {
+    let svg = r#"<svg xmlns="http://www.w3.org/2000/svg"><g id="g" transform="translate(10 0)">
+<path d="M0,0h4v4H0zm1,1l1 0 0 1z"/><polyline id="p" points="0,0 1,2"/><circle r="3"/>
+<rect x="1" y="2" width="3" height="4" transform="scale(2)"/><path d="M0 0Q1 2 2 0"/></g></svg>"#;
+    let (all, warnings) = read_all(svg.as_bytes(), "").expect("read");
+    let names: Vec<_> =
+        all.iter().filter_map(|f| f.geometry.as_ref()).map(Geometry::name).collect();
+    assert_eq!(names, ["MultiPolygon", "LineString", "Polygon", "LineString"]);
+    assert_eq!(all[0].id.as_deref(), Some("\"g\""));
+    assert!(
+        warnings.len() == 1 && warnings[0].to_string().starts_with("line 2, column"),
+        "{warnings:?}"
+    );
+    let bounds = all[2].geometry.as_ref().and_then(Geometry::bounds).expect("bounds");
+    assert_eq!((bounds.min(), bounds.max()), (DVec2::new(12.0, -12.0), DVec2::new(18.0, -4.0)));
+    let again = read_all(&written(GeoFormat::Svg, &all), "").expect("read").0;
+    let bare = |all: &[Feature]| all.iter().map(|f| f.geometry.clone()).collect::<Vec<_>>();
+    assert_eq!(bare(&again), bare(&all));
+    assert!(read_all(b"<svg><g", "").expect_err("cut").to_string().contains("line 1"));
+}
+
+fn points(dimensions: Dimensions, least: usize) -> impl Strategy<Value = Points> {
+    let number = || prop_oneof![-1e3..1e3f64, -4.0..4.0f64, Just(0.1), Just(1e-9), Just(-1e300)];
+    let vertex = (number(), number(), number(), number());
+    prop::collection::vec(vertex, least..least + 4).prop_map(move |all| {
+        let mut points = Points::new(dimensions);
+        for (x, y, z, m) in all {
+            let z = if dimensions.has_z() { z } else { 0.0 };
+            points.push(DVec2::new(x, y), [z, if dimensions.has_m() { m } else { 0.0 }]);
+        }
+        // A ring that ends as it begins would be taken for a closed one.
+        if points.xy.first() == points.xy.last() && points.len() > 1 {
+            points.xy[0].x += 1.0;
+        }
+        points
+    })
+}
+
+fn geometry() -> impl Strategy<Value = Geometry> {
+    let dimensions = prop::sample::select(vec![
+        Dimensions::Xy,
+        Dimensions::Xyz,
+        Dimensions::Xym,
+        Dimensions::Xyzm,
+    ]);
+    dimensions.prop_flat_map(|d| {
+        let rings = || prop::collection::vec(points(d, 3), 1..3);
+        let simple = prop_oneof![
+            points(d, 1).prop_map(|mut p| {
+                while p.len() > 1 {
+                    p.pop();
+                }
+                Geometry::Point(p)
+            }),
+            points(d, 2).prop_map(Geometry::LineString),
+            points(d, 1).prop_map(Geometry::MultiPoint),
+            rings().prop_map(Geometry::Polygon),
+            prop::collection::vec(points(d, 2), 1..3).prop_map(Geometry::MultiLineString),
+            prop::collection::vec(rings(), 1..3).prop_map(Geometry::MultiPolygon),
+        ];
+        prop_oneof![
+            4 => simple.clone(),
+            1 => prop::collection::vec(simple, 1..3).prop_map(Geometry::Collection),
+        ]
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn every_format_gives_back_what_it_was_given(
+        geometries in prop::collection::vec(geometry(), 1..4),
+        srid in prop::option::of(1..99999i32),
+    ) {
+        let all: Vec<Feature> = geometries.into_iter().map(Feature::of_geometry).collect();
+        for format in GeoFormat::ALL.into_iter().filter(|f| *f != GeoFormat::Svg) {
+            let mut all = all.clone();
+            if format.is_geojson() {
+                // GeoJSON knows no measure without a height.
+                all.retain(|f| f.geometry.as_ref().is_some_and(|g| g.dimensions() != Dimensions::Xym));
+            } else {
+                all.iter_mut().for_each(|f| f.srid = srid);
+            }
+            if !all.is_empty() {
+                prop_assert_eq!(features(format, &written(format, &all)), all, "{}", format);
+            }
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_readers_panic(
+        text in "[ -~\n]{0,80}",
+        cut in 0usize..400,
+        at in 0usize..400,
+        byte in any::<u8>(),
+        given in geometry(),
+    ) {
+        for format in GeoFormat::ALL {
+            let mut bytes = written(format, &[Feature::of_geometry(given.clone())]);
+            if let Some(place) = bytes.get_mut(at) {
+                *place = byte;
+            }
+            bytes.truncate(bytes.len().saturating_sub(cut));
+            for bytes in [&bytes[..], text.as_bytes()] {
+                if let Ok(mut reader) = Reader::new(format, bytes) {
+                    while let Ok(Some(_)) = reader.next_feature() {}
+                }
+            }
+        }
+    }
+}

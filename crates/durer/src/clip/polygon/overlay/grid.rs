@@ -1,0 +1,311 @@
+//! A hierarchical grid: squares of pixels, crowded ones divided again, each with the segments that
+//! come near it.
+//!
+//! Every pixel lies in exactly one leaf, and a segment is listed in every leaf it comes within one
+//! pixel of, before and after snap rounding. So leaves can be worked on alone.
+
+use super::lattice::{Coord, Point, Segment};
+
+/// Leaves with no more segments than this are not divided.
+const SMALL_LEAF: usize = 24;
+
+/// A crowded leaf is divided only where its parts hold at most this many times its segments, in
+/// sixteenths; long parallel segments do not come apart in squares.
+const GROWTH: usize = 40;
+
+/// Segments per square if they were spread evenly; curves leave most squares empty, and the full
+/// ones are divided again.
+const PER_SQUARE: f64 = 8.0;
+
+/// The first division has at most this many times more squares than segments call for, so that
+/// empty squares cost little.
+const SPARSEST: f64 = 1.0 / 16.0;
+
+/// The sides of a cell are at least 2³ pixels, so that the margin of a pixel stays a margin.
+const SMALLEST_SHIFT: u32 = 3;
+
+/// A rectangle of pixels; both corners belong to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Block {
+    pub min: (i64, i64),
+    pub max: (i64, i64),
+}
+
+impl Block {
+    /// The block around all segments; `None` where there is none.
+    pub fn around<C: Coord>(segments: &[Segment<C>]) -> Option<Self> {
+        let first = segments.first()?;
+        let start = (first.a.x, first.b.x, first.a.y, first.a.y);
+        let (l, r, b, t) = segments.iter().fold(start, |(l, r, b, t), s| {
+            let (low, high) = s.y_range();
+            (l.min(s.a.x), r.max(s.b.x), b.min(low), t.max(high))
+        });
+        Some(Self { min: (l.i64(), b.i64()), max: (r.i64(), t.i64()) })
+    }
+
+    /// Whether the pixel lies in the block.
+    #[inline(always)]
+    pub fn contains<C: Coord>(&self, p: Point<C>) -> bool {
+        self.holds(p.x.i64(), p.y.i64())
+    }
+
+    #[inline(always)]
+    fn holds(&self, x: i64, y: i64) -> bool {
+        self.min.0 <= x && x <= self.max.0 && self.min.1 <= y && y <= self.max.1
+    }
+}
+
+/// A block that is not divided further.
+#[derive(Debug, Clone, Copy)]
+pub struct Leaf {
+    /// Its pixels.
+    pub block: Block,
+    start: u32,
+    end: u32,
+}
+
+/// A square, in one word, as most of them may be empty: a leaf, a division, or nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Node(u32);
+
+impl Node {
+    /// No segment comes near.
+    const EMPTY: Self = Self(u32::MAX);
+    /// Below this, the word is the index of a leaf; from here on, that of a division.
+    const FIRST_SPLIT: u32 = 1 << 31;
+}
+
+/// How a block is divided into squares.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    block: Block,
+    shift: u32,
+    columns: usize,
+    rows: usize,
+}
+
+/// See the module.
+#[derive(Debug, Default)]
+pub struct Grid {
+    nodes: Vec<Node>,
+    /// Divided blocks, and where the nodes of their squares start.
+    splits: Vec<(Frame, u32)>,
+    leaves: Vec<Leaf>,
+    items: Vec<u32>,
+}
+
+impl Frame {
+    fn new<C: Coord>(
+        block: Block,
+        segments: &[Segment<C>],
+        items: &[u32],
+        occupied: f64,
+    ) -> Option<Self> {
+        let width = (block.max.0 - block.min.0 + 1) as f64;
+        let height = (block.max.1 - block.min.1 + 1) as f64;
+        let total: f64 = items
+            .iter()
+            .filter_map(|&i| segments.get(i as usize))
+            .map(|s| {
+                let (low, high) = s.y_range();
+                (s.b.x.f64() - s.a.x.f64()).min(width) + (high.f64() - low.f64()).min(height)
+            })
+            .sum();
+        let count = items.len() as f64;
+        // A few segments per square, none much shorter than a mean segment.
+        let side = (width * height * occupied / count * PER_SQUARE).sqrt().max(total / count * 0.8);
+        let side = side.max(width.max(height) / count);
+        let shift = (side.log2_floor()).max(SMALLEST_SHIFT);
+        let columns = ((block.max.0 - block.min.0) >> shift) as usize + 1;
+        let rows = ((block.max.1 - block.min.1) >> shift) as usize + 1;
+        (columns * rows > 1).then_some(Self { block, shift, columns, rows })
+    }
+
+    /// Calls `f` with the index of every square the segment comes within a pixel of.
+    #[inline]
+    fn visit<C: Coord>(&self, s: &Segment<C>, mut f: impl FnMut(usize)) {
+        let (min, max) = (self.block.min, self.block.max);
+        let column = |x: i64| ((x.clamp(min.0, max.0) - min.0) >> self.shift) as usize;
+        let row = |y: i64| ((y.clamp(min.1, max.1) - min.1) >> self.shift) as usize;
+        let (low, high) = s.y_range();
+        let (low, high) = (low.i64() - 1, high.i64() + 1);
+        let (left, right) = (column(s.a.x.i64() - 1), column(s.b.x.i64() + 1));
+        let (bottom, top) = (row(low), row(high));
+        if left == right || bottom == top || s.a.x == s.b.x {
+            for r in bottom..=top {
+                for c in left..=right {
+                    f(r * self.columns + c);
+                }
+            }
+            return;
+        }
+        let (ax, ay) = (s.a.x.f64(), s.a.y.f64());
+        let slope = (s.b.y.f64() - ay) / (s.b.x.f64() - ax);
+        for c in left..=right {
+            let start = min.0 + ((c as i64) << self.shift);
+            let x0 = (start as f64 - 1.5).max(ax);
+            let x1 = ((start + (1 << self.shift)) as f64 + 0.5).min(s.b.x.f64());
+            let (y0, y1) = (ay + (x0 - ax) * slope, ay + (x1 - ax) * slope);
+            let (y0, y1) = if y0 <= y1 { (y0, y1) } else { (y1, y0) };
+            let (y0, y1) = ((y0 - 1.6).floor() as i64, (y1 + 1.6).ceil() as i64);
+            if y1 < min.1 || y0 > max.1 {
+                continue;
+            }
+            for r in row(y0.max(low))..=row(y1.min(high)) {
+                f(r * self.columns + c);
+            }
+        }
+    }
+
+    /// The square of a pixel of the block.
+    fn index(&self, x: i64, y: i64) -> usize {
+        let (c, r) = ((x - self.block.min.0) >> self.shift, (y - self.block.min.1) >> self.shift);
+        r as usize * self.columns + c as usize
+    }
+
+    fn square(&self, index: usize) -> Block {
+        let (r, c) = ((index / self.columns) as i64, (index % self.columns) as i64);
+        let min = (self.block.min.0 + (c << self.shift), self.block.min.1 + (r << self.shift));
+        let last = (1 << self.shift) - 1;
+        let max = ((min.0 + last).min(self.block.max.0), (min.1 + last).min(self.block.max.1));
+        Block { min, max }
+    }
+
+    /// The segments of every square, one after the other, and where each square's list starts.
+    fn distribute<C: Coord>(&self, segments: &[Segment<C>], items: &[u32]) -> (Vec<u32>, Vec<u32>) {
+        let mut starts = vec![0u32; self.columns * self.rows + 1];
+        for &i in items {
+            self.visit(&segments[i as usize], |square| starts[square + 1] += 1);
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut lists = vec![0u32; starts[starts.len() - 1] as usize];
+        for &i in items {
+            self.visit(&segments[i as usize], |square| {
+                lists[next[square] as usize] = i;
+                next[square] += 1;
+            });
+        }
+        (starts, lists)
+    }
+}
+
+/// ⌊log2⌋ of numbers from 1 up.
+trait Log2Floor {
+    fn log2_floor(self) -> u32;
+}
+
+impl Log2Floor for f64 {
+    fn log2_floor(self) -> u32 {
+        (self.clamp(1.0, (1u64 << 50) as f64) as u64).ilog2()
+    }
+}
+
+/// The order in which segments that start close together have close indices, so that all that
+/// follows finds its data in the cache.
+///
+/// Also the share of squares of a rough grid in which a segment starts: small for curves.
+pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> (Vec<u32>, f64) {
+    let items: Vec<u32> = (0..segments.len() as u32).collect();
+    let Some(frame) = Frame::new(block, segments, &items, 1.0) else { return (items, 1.0) };
+    let square = |s: &Segment<C>| frame.index(s.a.x.i64(), s.a.y.i64());
+    let mut starts = vec![0u32; frame.columns * frame.rows + 1];
+    for s in segments {
+        starts[square(s) + 1] += 1;
+    }
+    let filled = starts.iter().filter(|&&count| count > 0).count();
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut order = vec![0; segments.len()];
+    for (i, s) in segments.iter().enumerate() {
+        let next = &mut starts[square(s)];
+        order[*next as usize] = i as u32;
+        *next += 1;
+    }
+    (order, (filled as f64 / (starts.len() - 1) as f64).max(SPARSEST))
+}
+
+impl Grid {
+    /// Distributes the segments; `block` must hold them all.
+    pub fn new<C: Coord>(segments: &[Segment<C>], block: Block, occupied: f64) -> Self {
+        let mut grid = Self::default();
+        let items: Vec<u32> = (0..segments.len() as u32).collect();
+        grid.nodes.push(Node::EMPTY);
+        grid.divide(segments, 0, block, &items, Some(occupied));
+        grid
+    }
+
+    fn divide<C: Coord>(
+        &mut self,
+        segments: &[Segment<C>],
+        node: usize,
+        block: Block,
+        items: &[u32],
+        top: Option<f64>,
+    ) {
+        let occupied = top.unwrap_or(1.0);
+        let frame = (items.len() > SMALL_LEAF)
+            .then(|| Frame::new(block, segments, items, occupied))
+            .flatten();
+        let parts = frame.map(|frame| (frame, frame.distribute(segments, items)));
+        match parts {
+            Some((frame, (starts, lists)))
+                if top.is_some() || lists.len() * 16 <= items.len() * GROWTH =>
+            {
+                let first = self.nodes.len();
+                self.nodes[node] = Node(Node::FIRST_SPLIT + self.splits.len() as u32);
+                self.splits.push((frame, first as u32));
+                self.nodes.resize(first + starts.len() - 1, Node::EMPTY);
+                for square in 0..starts.len() - 1 {
+                    let list = &lists[starts[square] as usize..starts[square + 1] as usize];
+                    if list.is_empty() {
+                        continue;
+                    }
+                    self.divide(segments, first + square, frame.square(square), list, None);
+                }
+            }
+            _ => {
+                self.nodes[node] = Node(self.leaves.len() as u32);
+                let start = self.items.len() as u32;
+                self.items.extend_from_slice(items);
+                self.leaves.push(Leaf { block, start, end: self.items.len() as u32 });
+            }
+        }
+    }
+
+    /// All leaves; they cover the block without overlap.
+    pub fn leaves(&self) -> &[Leaf] {
+        &self.leaves
+    }
+
+    /// The segments that come within a pixel of a leaf, in the order of their indices.
+    pub fn items(&self, leaf: &Leaf) -> &[u32] {
+        &self.items[leaf.start as usize..leaf.end as usize]
+    }
+
+    /// The smallest block around a pixel, and the segments that come within a pixel of it; `None`
+    /// outside the grid.
+    pub fn locate(&self, x: i64, y: i64) -> Option<(Block, &[u32])> {
+        let mut node = *self.nodes.first()?;
+        let mut block = None;
+        loop {
+            if node == Node::EMPTY {
+                return block.map(|block| (block, &[][..]));
+            }
+            if node.0 < Node::FIRST_SPLIT {
+                let leaf = self.leaves.get(node.0 as usize)?;
+                return leaf.block.holds(x, y).then(|| (leaf.block, self.items(leaf)));
+            }
+            let (frame, first) = self.splits.get((node.0 - Node::FIRST_SPLIT) as usize)?;
+            if !frame.block.holds(x, y) {
+                return None;
+            }
+            let square = frame.index(x, y);
+            block = Some(frame.square(square));
+            node = self.nodes[*first as usize + square];
+        }
+    }
+}

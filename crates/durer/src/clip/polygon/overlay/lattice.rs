@@ -1,0 +1,373 @@
+//! The integer grid that everything is decided on, and the exact predicates on it.
+//!
+//! Two widths share one code: [`i32`] with 64-bit products for up to 2³⁰ cells across, [`i64`] with
+//! 128-bit products for up to 2⁴¹. Pixel (x, y) of the grid is the square
+//! `[x − ½, x + ½) × [y − ½, y + ½)` around the grid point.
+
+use std::cmp::Ordering;
+use std::fmt::Debug;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use crate::math::{DVec2, Rect};
+use crate::{Error, Result};
+
+/// A coordinate on the grid.
+pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
+    /// Wide enough for four times the difference of two products of coordinate differences.
+    type Wide: Copy
+        + Ord
+        + Default
+        + Add<Output = Self::Wide>
+        + Sub<Output = Self::Wide>
+        + Mul<Output = Self::Wide>
+        + Neg<Output = Self::Wide>;
+    /// Coordinates lie in `−LIMIT … LIMIT`.
+    const LIMIT: i64;
+    /// Widens.
+    fn wide(self) -> Self::Wide;
+    /// The coordinate of a whole number within ± LIMIT.
+    fn from_i64(value: i64) -> Self;
+    /// Widens.
+    fn i64(self) -> i64;
+    /// Widens a product.
+    fn i128(wide: Self::Wide) -> i128;
+    /// A product as a float, rounded.
+    fn approximate(wide: Self::Wide) -> f64;
+    /// Exact as long as the coordinate keeps within LIMIT.
+    fn f64(self) -> f64 {
+        self.i64() as f64
+    }
+}
+
+impl Coord for i32 {
+    type Wide = i64;
+    const LIMIT: i64 = 1 << 29;
+    #[inline(always)]
+    fn wide(self) -> i64 {
+        i64::from(self)
+    }
+    #[inline(always)]
+    fn from_i64(value: i64) -> Self {
+        value as i32
+    }
+    #[inline(always)]
+    fn i64(self) -> i64 {
+        i64::from(self)
+    }
+    #[inline(always)]
+    fn i128(wide: i64) -> i128 {
+        i128::from(wide)
+    }
+    #[inline(always)]
+    fn approximate(wide: i64) -> f64 {
+        wide as f64
+    }
+    #[inline(always)]
+    fn f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Coord for i64 {
+    type Wide = i128;
+    const LIMIT: i64 = 1 << 40;
+    #[inline(always)]
+    fn wide(self) -> i128 {
+        i128::from(self)
+    }
+    #[inline(always)]
+    fn from_i64(value: i64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn i64(self) -> i64 {
+        self
+    }
+    #[inline(always)]
+    fn i128(wide: i128) -> i128 {
+        wide
+    }
+    #[inline(always)]
+    fn approximate(wide: i128) -> f64 {
+        wide as f64
+    }
+}
+
+/// A grid point; ordered by x, then y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
+pub struct Point<C> {
+    /// In cells, to the right.
+    pub x: C,
+    /// In cells, upwards.
+    pub y: C,
+}
+
+impl<C: Coord> Point<C> {
+    /// From whole numbers within ± [`Coord::LIMIT`].
+    #[inline(always)]
+    pub fn new(x: i64, y: i64) -> Self {
+        Self { x: C::from_i64(x), y: C::from_i64(y) }
+    }
+}
+
+/// Twice the signed area of the triangle a, b, c; exact.
+#[inline(always)]
+pub fn cross<C: Coord>(a: Point<C>, b: Point<C>, c: Point<C>) -> C::Wide {
+    (b.x.wide() - a.x.wide()) * (c.y.wide() - a.y.wide())
+        - (b.y.wide() - a.y.wide()) * (c.x.wide() - a.x.wide())
+}
+
+/// A segment whose first end is the lexicographically smaller one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Segment<C> {
+    /// The left end; the lower one of a vertical segment.
+    pub a: Point<C>,
+    /// The right end; the upper one of a vertical segment.
+    pub b: Point<C>,
+}
+
+impl<C: Coord> Segment<C> {
+    /// The smaller and the larger y of its ends.
+    #[inline(always)]
+    pub fn y_range(&self) -> (C, C) {
+        if self.a.y <= self.b.y { (self.a.y, self.b.y) } else { (self.b.y, self.a.y) }
+    }
+
+    /// Where the pixel around `p` lies: `Less` where it is entirely below the segment's line,
+    /// `Greater` where it is entirely above, `Equal` where the line passes through it.
+    ///
+    /// The line |cross| ≤ (|dx| + |dy|)/2 reaches the square; where it is equal it only touches a
+    /// corner, and of the corners only the lower left one belongs to the pixel.
+    #[inline(always)]
+    pub fn side_of_pixel(&self, p: Point<C>) -> Ordering {
+        let (dx, dy) = (self.b.x.wide() - self.a.x.wide(), self.b.y.wide() - self.a.y.wide());
+        let zero = C::Wide::default();
+        let reach = dx + if dy < zero { -dy } else { dy };
+        let side = dx * (p.y.wide() - self.a.y.wide()) - dy * (p.x.wide() - self.a.x.wide());
+        let side = side + side;
+        if side > reach || (side == reach && dy >= zero) {
+            Ordering::Greater
+        } else if side <= -reach {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        }
+    }
+
+    /// Whether the segment passes through the pixel around `p`; exact.
+    #[inline(always)]
+    pub fn hits_pixel(&self, p: Point<C>) -> bool {
+        let (low, high) = self.y_range();
+        let in_box = self.a.x <= p.x && p.x <= self.b.x && low <= p.y && p.y <= high;
+        in_box && self.side_of_pixel(p) == Ordering::Equal
+    }
+
+    /// The pixel in which two segments cross, each in the other's interior; `None` where they
+    /// touch, overlap or keep apart. Exact, and the same whichever comes first.
+    #[inline(always)]
+    pub fn crossing(&self, other: &Self) -> Option<Point<C>> {
+        let zero = C::Wide::default();
+        let (from, to) = (cross(self.a, self.b, other.a), cross(self.a, self.b, other.b));
+        if from == zero || to == zero || (from > zero) == (to > zero) {
+            return None;
+        }
+        let (left, right) = (cross(other.a, other.b, self.a), cross(other.a, other.b, self.b));
+        if left == zero || right == zero || (left > zero) == (right > zero) {
+            return None;
+        }
+        Some(self.point_at(left, left - right))
+    }
+
+    /// The pixel of the point a + (b − a)·num/den, for 0 < num/den < 1.
+    #[inline]
+    fn point_at(&self, num: C::Wide, den: C::Wide) -> Point<C> {
+        let t = C::approximate(num) / C::approximate(den);
+        let axis = |a: C, b: C| {
+            let delta = b.f64() - a.f64();
+            let value = a.f64() + delta * t + 0.5;
+            // t carries four roundings, the rest two more: 2⁻⁵⁰ bounds them all.
+            let error = (delta.abs() + a.f64().abs() + 1.0) * (1.0 / (1u64 << 50) as f64);
+            let whole = value.floor();
+            if value - whole > error && whole + 1.0 - value > error {
+                return C::from_i64(whole as i64);
+            }
+            let (num, den) = (C::i128(num), C::i128(den));
+            let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
+            let offset = (2 * i128::from(b.i64() - a.i64()) * num + den).div_euclid(2 * den);
+            C::from_i64(a.i64() + offset as i64)
+        };
+        Point { x: axis(self.a.x, self.b.x), y: axis(self.a.y, self.b.y) }
+    }
+
+    /// Compares the heights of two segments at x = `doubled`/2, which both must span; exact.
+    #[inline]
+    pub fn compare_at(&self, other: &Self, doubled: i64) -> Ordering {
+        let (f, g) = (self.height_at(doubled), other.height_at(doubled));
+        let error = (self.b.y.f64() - self.a.y.f64()).abs()
+            + (other.b.y.f64() - other.a.y.f64()).abs()
+            + f.abs()
+            + g.abs()
+            + 1.0;
+        let error = error * (1.0 / (1u64 << 50) as f64);
+        if (f - g).abs() > error {
+            return if f < g { Ordering::Less } else { Ordering::Greater };
+        }
+        self.compare_exactly(other, doubled)
+    }
+
+    #[inline]
+    fn height_at(&self, doubled: i64) -> f64 {
+        let (dx, dy) = (self.b.x.f64() - self.a.x.f64(), self.b.y.f64() - self.a.y.f64());
+        self.a.y.f64() + dy * ((doubled as f64 * 0.5 - self.a.x.f64()) / dx)
+    }
+
+    /// Both heights as fractions over twice the segment's width, multiplied out.
+    #[cold]
+    fn compare_exactly(&self, other: &Self, doubled: i64) -> Ordering {
+        // Heights relative to one point, so that 2 · 2⁴¹ · 2⁴¹ · 2 · 2⁴¹ stays below 2¹²⁷.
+        let base = i128::from(self.a.y.i64());
+        let fraction = |s: &Self| {
+            let dx = i128::from(s.b.x.i64() - s.a.x.i64());
+            let dy = i128::from(s.b.y.i64() - s.a.y.i64());
+            let run = i128::from(doubled - 2 * s.a.x.i64());
+            (2 * (i128::from(s.a.y.i64()) - base) * dx + dy * run, dx)
+        };
+        let ((n, d), (m, e)) = (fraction(self), fraction(other));
+        (n * e).cmp(&(m * d))
+    }
+}
+
+/// The map between the caller's coordinates and the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    origin: DVec2,
+    cell: f64,
+    /// The largest grid coordinate that occurs, without its sign.
+    reach: f64,
+}
+
+/// Cells from the middle of the extent to its border, where the caller names no cell size.
+const DEFAULT_REACH: f64 = (1u64 << 29) as f64;
+
+/// Beyond this, differences and products of coordinates could overflow f64.
+const FARTHEST: f64 = 1e300;
+
+impl Lattice {
+    /// The grid for points in `bounds`, with cells of the given size, or the smallest power of two
+    /// that leaves at most 2³⁰ cells across.
+    pub fn new(bounds: Rect, cell: Option<f64>) -> Result<Self> {
+        let farthest = bounds.min().abs().max(bounds.max().abs()).max_element();
+        if farthest > FARTHEST {
+            return Err(Error::parameter("coordinate", farthest, "within ±1e300"));
+        }
+        let middle = bounds.min() * 0.5 + bounds.max() * 0.5;
+        let half = (bounds.max() - middle).max(middle - bounds.min()).max_element();
+        let cell = match cell {
+            None => power_of_two((half / (DEFAULT_REACH - 2.0)).max(farthest * f64::EPSILON)),
+            Some(size) if size.is_normal() && size > 0.0 => size,
+            Some(size) => return Err(Error::parameter("grid", size, "a finite size above zero")),
+        };
+        let origin = (middle / cell).round() * cell;
+        let origin = if origin.is_finite() { origin } else { middle };
+        let reach = (half / cell).ceil() + 1.0;
+        if reach > i64::LIMIT as f64 || farthest / cell > 2f64.powi(52) {
+            let expected = "coarse enough for 2^41 cells across and 2^52 from the origin";
+            return Err(Error::parameter("grid", cell, expected));
+        }
+        Ok(Self { origin, cell, reach })
+    }
+
+    /// Whether all coordinates fit the width.
+    pub fn fits<C: Coord>(&self) -> bool {
+        self.reach <= C::LIMIT as f64
+    }
+
+    /// The grid point whose pixel holds `p`.
+    #[inline]
+    pub fn snap<C: Coord>(&self, p: DVec2) -> Point<C> {
+        let q = ((p - self.origin) / self.cell)
+            .clamp(DVec2::splat(-self.reach), DVec2::splat(self.reach));
+        Point::new((q.x + 0.5).floor() as i64, (q.y + 0.5).floor() as i64)
+    }
+
+    /// The grid point in the caller's coordinates.
+    #[inline]
+    pub fn unsnap<C: Coord>(&self, p: Point<C>) -> DVec2 {
+        self.origin + DVec2::new(p.x.f64(), p.y.f64()) * self.cell
+    }
+
+    /// The size of a cell in the caller's units.
+    pub fn cell(&self) -> f64 {
+        self.cell
+    }
+}
+
+/// The smallest power of two that is not below `x`; 2⁻¹⁰⁰⁰ for anything smaller.
+fn power_of_two(x: f64) -> f64 {
+    let smallest = f64::from_bits(23 << 52);
+    if x <= smallest {
+        return smallest;
+    }
+    let bits = x.to_bits();
+    let floor = f64::from_bits(bits & 0x7ff0_0000_0000_0000);
+    if floor == x { x } else { floor * 2.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn segment<C: Coord>(a: (i64, i64), b: (i64, i64)) -> Segment<C> {
+        let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
+        if a <= b { Segment { a, b } } else { Segment { a: b, b: a } }
+    }
+
+    /// The half-open pixel by definition, in doubled coordinates, on fine samples of the segment.
+    fn hits_slowly(s: &Segment<i32>, p: Point<i32>) -> bool {
+        let (dx, dy) = (s.b.x - s.a.x, s.b.y - s.a.y);
+        // The parameter enters and leaves each slab at multiples of 1/(2·dx·dy).
+        let n = (4 * dx.abs().max(1) * dy.abs().max(1)) as i64;
+        (0..=n).any(|i| {
+            let x2 = 2 * s.a.x as i64 * n + 2 * dx as i64 * i;
+            let y2 = 2 * s.a.y as i64 * n + 2 * dy as i64 * i;
+            let (l, r) = ((2 * p.x as i64 - 1) * n, (2 * p.x as i64 + 1) * n);
+            let (b, t) = ((2 * p.y as i64 - 1) * n, (2 * p.y as i64 + 1) * n);
+            l <= x2 && x2 < r && b <= y2 && y2 < t
+        })
+    }
+
+    #[test]
+    fn pixels_are_hit_as_defined() {
+        let ends = (-5..=5).flat_map(|x| (-5..=5).map(move |y| (x, y)));
+        for (x, y) in ends.filter(|&end| end != (0, 0)) {
+            let s = segment::<i32>((0, 0), (x, y));
+            for (u, v) in (-6..=6).flat_map(|x| (-6..=6).map(move |y| (x, y))) {
+                let p = Point::new(u, v);
+                assert_eq!(s.hits_pixel(p), hits_slowly(&s, p), "{s:?} {p:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn crossings_round_alike_from_all_sides() {
+        let far = i32::LIMIT;
+        let s = segment::<i32>((-far, -far), (far, far - 1));
+        let t = segment::<i32>((-far, far), (far, -far));
+        assert_eq!(s.crossing(&t), t.crossing(&s));
+        let wide = segment::<i64>((-i64::LIMIT, -i64::LIMIT), (i64::LIMIT, i64::LIMIT - 1));
+        let other = segment::<i64>((-i64::LIMIT, i64::LIMIT), (i64::LIMIT, -i64::LIMIT));
+        assert_eq!(wide.crossing(&other), other.crossing(&wide));
+        assert_eq!(wide.compare_at(&other, 1), Ordering::Greater);
+        let half = segment::<i32>((0, 0), (1, 1)).crossing(&segment((0, 1), (1, 0)));
+        assert_eq!(half, Some(Point::new(1, 1)), "ties go up and right");
+    }
+
+    #[test]
+    fn integers_stay_as_they_are() {
+        let bounds = Rect::new(DVec2::splat(-3.0), DVec2::splat(1000.0)).expect("valid");
+        let lattice = Lattice::new(bounds, None).expect("fits");
+        for p in [DVec2::splat(-3.0), DVec2::new(17.0, 1000.0)] {
+            assert_eq!(lattice.unsnap(lattice.snap::<i32>(p)), p);
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Vatti's way: a sweep line with a list of active edges that counts windings.
+//!
+//! B. R. Vatti, *A generic solution to polygon clipping*, Communications of the ACM 35(7), 1992.
+//! He sweeps upwards and finds crossings between scan beams; we sweep from left to right over edges
+//! that are noded and snap-rounded already, so that the list never changes order between two nodes
+//! and every operation, fill rule and degenerate input is decided exactly.
+
+use super::overlay::{self, Winder};
+use super::{BooleanOp, Shapes};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::trace::Tracer;
+
+pub use super::overlay::{Options, Output, Step, replay};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "vatti",
+    title: "Vatti",
+    authors: "B. R. Vatti",
+    year: 1992,
+    source: "A generic solution to polygon clipping, Communications of the ACM 35(7)",
+    class: Class::ObjectSpace,
+    cost: "O((n + k) a) time for n edges, k crossings and a edges active at once; O(n + k) memory",
+    limits: "as overlay: at most 2^41 grid cells across, 2^29 points",
+};
+
+/// Boolean operation on any two sets of polygons, self-crossing too, by any fill rules.
+///
+/// The result's polygons nest: each outer ring comes with its own holes, islands in a hole are
+/// polygons of their own. It equals that of [`overlay::overlay()`] bit for bit.
+///
+/// ```
+/// use durer::clip::polygon::{BooleanOp, Shapes, vatti::vatti};
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let square = |x: f64| [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(|(u, v)| DVec2::new(x + u, x + v));
+/// let (a, b) = (Shapes::from_rings([square(0.0)]), Shapes::from_rings([square(1.0)]));
+/// let xor = vatti(&a, &b, BooleanOp::Xor, &Default::default(), &mut NoTrace)?;
+/// assert_eq!(xor.shapes.area(), 6.0);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`overlay::overlay()`].
+pub fn vatti(
+    subject: &Shapes,
+    clip: &Shapes,
+    op: BooleanOp,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Output> {
+    overlay::solve(subject, clip, op, options, Winder::Sweep, t)
+}

@@ -1,0 +1,200 @@
+//! B-splines and their rational form, NURBS.
+//!
+//! Points by de Boor's algorithm (C. de Boor, *On calculating with B-splines*, J. Approx. Theory 6, 1972), basis
+//! functions by the recursion of M. G. Cox (1972) and de Boor. Cost: O(p²) per point for degree p, plus a
+//! search for the knot span.
+
+use super::bezier::{Point, project};
+use crate::math::{DVec2, DVec3};
+use crate::{Error, Result};
+
+/// A B-spline curve.
+///
+/// # Guarantees
+/// There are more control points than the degree; knots are finite, do not fall, and are as many as control
+/// points + degree + 1; the domain, from knot `degree` to knot `control points`, has a length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BSpline<P> {
+    degree: usize,
+    control: Vec<P>,
+    knots: Vec<f64>,
+}
+
+impl<P: Point> BSpline<P> {
+    /// A curve from its parts.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where a guarantee would not hold.
+    pub fn new(degree: usize, control: Vec<P>, knots: Vec<f64>) -> Result<Self> {
+        let count = control.len();
+        if degree == 0 || degree > 64 || count <= degree {
+            return Err(Error::parameter(
+                "degree",
+                degree,
+                "1 … 64 and less than the control points",
+            ));
+        }
+        if knots.len() != count + degree + 1 {
+            return Err(Error::parameter(
+                "knots",
+                knots.len(),
+                "control points + degree + 1 in number",
+            ));
+        }
+        let rising = knots.windows(2).all(|w| w[0] <= w[1]) && knots.iter().all(|k| k.is_finite());
+        if !rising || knots[degree] >= knots[count] {
+            return Err(Error::parameter(
+                "knots",
+                "given",
+                "finite, not falling, not all the same",
+            ));
+        }
+        Ok(Self { degree, control, knots })
+    }
+
+    /// A curve with equally spaced knots, the ends repeated so that it starts and ends in its first and
+    /// last control point; the parameter runs from 0 to 1.
+    ///
+    /// # Errors
+    /// As [`BSpline::new`].
+    pub fn clamped(degree: usize, control: Vec<P>) -> Result<Self> {
+        let inner = control.len().saturating_sub(degree);
+        let knot = |i: usize| i.saturating_sub(degree).min(inner) as f64 / inner.max(1) as f64;
+        let knots = (0..control.len() + degree + 1).map(knot).collect();
+        Self::new(degree, control, knots)
+    }
+
+    /// First and last parameter.
+    pub fn domain(&self) -> (f64, f64) {
+        (self.knots[self.degree], self.knots[self.control.len()])
+    }
+
+    /// The knot span of a parameter, which is moved into the domain.
+    fn span(&self, t: f64) -> (usize, f64) {
+        let (start, end) = self.domain();
+        let t = if t.is_nan() { start } else { t.clamp(start, end) };
+        let after = self.knots.partition_point(|k| *k <= t);
+        let mut span = after.saturating_sub(1).clamp(self.degree, self.control.len() - 1);
+        while span > self.degree && self.knots[span] >= self.knots[span + 1] {
+            span -= 1;
+        }
+        (span, t)
+    }
+
+    /// The point at a parameter, by de Boor's algorithm; parameters outside the domain are moved to its ends.
+    pub fn point(&self, t: f64) -> P {
+        let (p, (span, t)) = (self.degree, self.span(t));
+        let mut points = self.control[span - p..=span].to_vec();
+        for level in 1..=p {
+            for i in (level..=p).rev() {
+                let (low, high) = (self.knots[span - p + i], self.knots[span + 1 + i - level]);
+                let share = if high > low { (t - low) / (high - low) } else { 0.0 };
+                points[i] = points[i - 1].mix(points[i], share);
+            }
+        }
+        points[p]
+    }
+
+    /// The values of all basis functions at a parameter, by the recursion of Cox and de Boor: they are
+    /// not negative and add up to one.
+    pub fn basis(&self, t: f64) -> Vec<f64> {
+        let (span, t) = self.span(t);
+        let mut values = vec![0.0; self.knots.len() - 1];
+        values[span] = 1.0;
+        let part = |top: f64, bottom: f64| if bottom > 0.0 { top / bottom } else { 0.0 };
+        for degree in 1..=self.degree {
+            for i in 0..values.len() - degree {
+                let k = |j: usize| self.knots[i + j];
+                let rising = part(t - k(0), k(degree) - k(0)) * values[i];
+                let falling = part(k(degree + 1) - t, k(degree + 1) - k(1)) * values[i + 1];
+                values[i] = rising + falling;
+            }
+        }
+        values.truncate(self.control.len());
+        values
+    }
+}
+
+/// A non-uniform rational B-spline in the plane: control points with weights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Nurbs {
+    lifted: BSpline<DVec3>,
+}
+
+impl Nurbs {
+    /// A curve from control points, weights and knots.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for weights that are not positive and finite, or as [`BSpline::new`].
+    ///
+    /// ```
+    /// use durer::curve::b_spline::Nurbs;
+    /// use durer::math::DVec2;
+    ///
+    /// let w = 0.5_f64.sqrt();
+    /// let control = vec![(DVec2::X, 1.0), (DVec2::ONE, w), (DVec2::Y, 1.0)];
+    /// let quarter = Nurbs::new(2, &control, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0]).unwrap();
+    /// assert!((quarter.point(0.3).length() - 1.0).abs() < 1e-14);
+    /// ```
+    pub fn new(degree: usize, control: &[(DVec2, f64)], knots: Vec<f64>) -> Result<Self> {
+        if let Some((_, weight)) = control.iter().find(|(_, w)| !(w.is_finite() && *w > 0.0)) {
+            return Err(Error::parameter("weight", weight, "positive and finite"));
+        }
+        let lifted = control.iter().map(|(p, w)| (*p * *w).extend(*w)).collect();
+        Ok(Self { lifted: BSpline::new(degree, lifted, knots)? })
+    }
+
+    /// First and last parameter.
+    pub fn domain(&self) -> (f64, f64) {
+        self.lifted.domain()
+    }
+
+    /// The point at a parameter.
+    pub fn point(&self, t: f64) -> DVec2 {
+        project(self.lifted.point(t)).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::bezier::de_casteljau;
+    use crate::trace::NoTrace;
+
+    fn control() -> Vec<DVec2> {
+        (0..7).map(|i| DVec2::new(f64::from(i), f64::from(i * i % 5))).collect()
+    }
+
+    #[test]
+    fn de_boor_agrees_with_cox() {
+        for degree in 1..=5 {
+            let spline = BSpline::clamped(degree, control()).unwrap();
+            for i in 0..=40 {
+                let t = f64::from(i) / 40.0;
+                let basis = spline.basis(t);
+                assert!((basis.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+                assert!(basis.iter().all(|b| *b >= -1e-15));
+                let sum: DVec2 = basis.iter().zip(control()).map(|(b, p)| p * *b).sum();
+                assert!(sum.distance(spline.point(t)) < 1e-12, "degree {degree}, t {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_inner_knots_it_is_a_bezier_curve() {
+        let spline = BSpline::clamped(6, control()).unwrap();
+        for i in 0..=10 {
+            let t = f64::from(i) / 10.0;
+            let p = de_casteljau(&control(), t, &mut NoTrace).unwrap();
+            assert!(p.distance(spline.point(t)) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn bad_knots_are_refused() {
+        assert!(BSpline::new(3, control(), vec![0.0; 11]).is_err());
+        assert!(BSpline::new(3, control(), vec![f64::NAN; 11]).is_err());
+        assert!(BSpline::new(0, control(), vec![0.0; 8]).is_err());
+        assert!(BSpline::<DVec2>::clamped(3, vec![]).is_err());
+    }
+}

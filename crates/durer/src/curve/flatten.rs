@@ -1,0 +1,195 @@
+//! Curves to chains of lines with a bounded distance between the two.
+//!
+//! Each Bézier curve is cut into equal steps of its parameter; their number follows from the bound
+//! on the second derivative (G.-Z. Wang, *The subdivision method for finding the intersection
+//! between two Bézier curves or surfaces*, 1984): a curve of degree n whose largest second
+//! difference of control points is m stays within n(n − 1)/8 · m/k² of its chain of k chords.
+
+use super::path::{Path, PathElement};
+use crate::math::DVec2;
+
+/// No curve is cut into more pieces: with control points a billion pixels away the tolerance gives way.
+const MAX_SEGMENTS: f64 = 4096.0;
+
+/// Chains of points, one after the other: flattened paths.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Contours {
+    points: Vec<DVec2>,
+    /// For each contour: index one past its last point, and whether it was closed.
+    ends: Vec<(usize, bool)>,
+}
+
+impl Contours {
+    /// No contours.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Appends one contour.
+    pub fn push(&mut self, points: impl IntoIterator<Item = DVec2>, closed: bool) {
+        self.points.extend(points);
+        self.end(closed);
+    }
+
+    /// One closed contour.
+    pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Self {
+        let mut contours = Self::new();
+        contours.push(points, true);
+        contours
+    }
+
+    /// Each contour's points and whether it was closed.
+    pub fn iter(&self) -> impl Iterator<Item = (&[DVec2], bool)> {
+        let starts = std::iter::once(0).chain(self.ends.iter().map(|e| e.0));
+        starts
+            .zip(&self.ends)
+            .map(|(start, (end, closed))| (self.points.get(start..*end).unwrap_or(&[]), *closed))
+    }
+
+    /// All points of all contours.
+    pub fn points(&self) -> &[DVec2] {
+        &self.points
+    }
+
+    /// Forgets the contours and keeps the memory.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.ends.clear();
+    }
+
+    fn start(&self) -> usize {
+        self.ends.last().map_or(0, |e| e.0)
+    }
+
+    fn end(&mut self, closed: bool) {
+        if self.points.len() > self.start() {
+            self.ends.push((self.points.len(), closed));
+        }
+    }
+}
+
+/// How many equal parameter steps keep a Bézier curve of the given degree and largest second
+/// difference of control points within `tolerance` of its chords.
+pub fn segments_for(degree: u32, second_difference: f64, tolerance: f64) -> u32 {
+    let bound = f64::from(degree) * f64::from(degree.saturating_sub(1)) / 8.0 * second_difference;
+    let steps = (bound / tolerance.max(1e-9)).sqrt().ceil();
+    if steps.is_finite() { steps.clamp(1.0, MAX_SEGMENTS) as u32 } else { 1 }
+}
+
+/// Replaces the curves of a path by chains of lines that stay within `tolerance` of them, in the
+/// path's unit.
+///
+/// For pixels, 0.1 cannot be seen under anti-aliasing and 0.25 hardly; the number of lines grows
+/// with 1/√tolerance. Contours that are not closed stay marked as open.
+pub fn flatten(path: &Path, tolerance: f64) -> Contours {
+    let mut contours = Contours::new();
+    flatten_into(path, tolerance, &mut contours);
+    contours
+}
+
+/// As [`flatten`], appending to contours whose memory is used again.
+pub(crate) fn flatten_into(path: &Path, tolerance: f64, out: &mut Contours) {
+    let (mut start, mut at) = (None, DVec2::ZERO);
+    for element in path.elements() {
+        let open = start.is_some();
+        match *element {
+            PathElement::MoveTo(p) => {
+                out.end(false);
+                out.points.push(p);
+                (start, at) = (Some(p), p);
+            }
+            PathElement::Close => {
+                out.end(true);
+                at = start.take().unwrap_or(at);
+            }
+            PathElement::LineTo(p) | PathElement::QuadTo(_, p) | PathElement::CubicTo(_, _, p) => {
+                if !open {
+                    let first = if out.ends.is_empty() { p } else { at };
+                    out.points.push(first);
+                    (start, at) = (Some(first), first);
+                }
+                curve(at, element, tolerance, &mut out.points);
+                at = p;
+            }
+        }
+    }
+    out.end(false);
+}
+
+/// Appends the points of one element after its start `a`, its end last and exact.
+fn curve(a: DVec2, element: &PathElement, tolerance: f64, out: &mut Vec<DVec2>) {
+    match *element {
+        PathElement::LineTo(p) => out.push(p),
+        PathElement::QuadTo(b, c) => {
+            let steps = segments_for(2, (a - 2.0 * b + c).length(), tolerance);
+            out.extend((1..steps).map(|i| {
+                let t = f64::from(i) / f64::from(steps);
+                a.lerp(b, t).lerp(b.lerp(c, t), t)
+            }));
+            out.push(c);
+        }
+        PathElement::CubicTo(b, c, d) => {
+            let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
+            let steps = segments_for(3, bend, tolerance);
+            out.extend((1..steps).map(|i| {
+                let t = f64::from(i) / f64::from(steps);
+                let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
+                ab.lerp(bc, t).lerp(bc.lerp(cd, t), t)
+            }));
+            out.push(d);
+        }
+        PathElement::MoveTo(_) | PathElement::Close => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distance of a point from a chain of lines.
+    fn distance(p: DVec2, chain: &[DVec2]) -> f64 {
+        let to = |w: &[DVec2]| {
+            let d = w[1] - w[0];
+            let t = if d == DVec2::ZERO { 0.0 } else { (p - w[0]).dot(d) / d.length_squared() };
+            (w[0] + d * t.clamp(0.0, 1.0)).distance(p)
+        };
+        chain.windows(2).map(to).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn chords_stay_within_the_tolerance() {
+        let mut seed = 7u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 12) / 4096.0
+        };
+        for _ in 0..200 {
+            let p: Vec<DVec2> = (0..4).map(|_| DVec2::new(random(), random())).collect();
+            for tolerance in [1.0, 0.1, 0.01] {
+                let mut path = Path::new();
+                path.move_to(p[0].x, p[0].y).cubic_to(p[1], p[2], p[3]);
+                let chain = flatten(&path, tolerance);
+                for i in 0..=100 {
+                    let t = f64::from(i) / 100.0;
+                    let s = 1.0 - t;
+                    let q = p[0] * (s * s * s)
+                        + p[1] * (3.0 * s * s * t)
+                        + p[2] * (3.0 * s * t * t)
+                        + p[3] * (t * t * t);
+                    let d = distance(q, chain.points());
+                    assert!(d <= tolerance * (1.0 + 1e-9), "{d} > {tolerance}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn contours_keep_their_ends() {
+        let mut path = Path::rectangle(0.0, 0.0, 2.0, 1.0);
+        path.move_to(5.0, 5.0).line_to(6.0, 5.0);
+        path.push(PathElement::LineTo(DVec2::NAN));
+        let contours = flatten(&path, 0.1);
+        let found: Vec<(usize, bool)> = contours.iter().map(|(p, c)| (p.len(), c)).collect();
+        assert_eq!(found, [(4, true), (3, false)]);
+    }
+}

@@ -1,0 +1,251 @@
+//! Edges in fixed point: snapped, clipped to the target's columns, directed from top to bottom.
+//!
+//! Everything here depends on the two end points alone and not on the direction of travel, so two
+//! faces that share an edge get the same integers, once with each sign.
+
+use crate::curve::Contours;
+use crate::math::DVec2;
+
+/// Bits below the pixel: fine enough that snapping moves no area by more than 2⁻¹⁷ of a pixel.
+pub(crate) const BITS: u32 = 16;
+/// One pixel, and one whole pixel's area.
+pub(crate) const ONE: i32 = 1 << BITS;
+/// Sides of a target in pixels: coordinates are 16.16.
+pub(crate) const MAX_SIDE: u32 = 32_767;
+/// Farther coordinates are moved here first, so that products stay finite.
+const FARTHEST: f64 = 1e15;
+
+/// The edge goes upwards in the path (horizontal: to the left).
+const REVERSED: u32 = 1;
+/// At its start it cannot meet another edge of its path but the one it continues.
+const CHAINED_START: u32 = 2;
+/// At its end likewise: it closes its contour.
+const CHAINED_END: u32 = 4;
+
+/// An edge from top to bottom; coordinates are 16.16 pixels, x within the target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Edge {
+    pub x0: i32,
+    pub y0: i32,
+    pub x1: i32,
+    /// Not above `y0`; equal for horizontal edges, which carry no area.
+    pub y1: i32,
+    /// x where the edge first crosses a border of rows, at or below `y0`.
+    pub crossing: i32,
+    flags: u32,
+    /// Change of x from one row to the next, 32.32 pixels.
+    pub slope: i64,
+}
+
+impl Edge {
+    fn new(from: (i32, i32), to: (i32, i32)) -> Self {
+        let reversed = (to.1, to.0) < (from.1, from.0);
+        let ((x0, y0), (x1, y1)) = if reversed { (to, from) } else { (from, to) };
+        let per_row = f64::from(x1 - x0) / f64::from((y1 - y0).max(1));
+        let below = (ONE - (y0 & (ONE - 1))) & (ONE - 1);
+        let crossing = x0.saturating_add((per_row * f64::from(below)) as i32);
+        Self {
+            x0,
+            y0,
+            x1,
+            y1,
+            crossing: crossing.clamp(x0.min(x1), x0.max(x1)),
+            flags: u32::from(reversed) * REVERSED,
+            slope: (per_row * 4_294_967_296.0) as i64,
+        }
+    }
+
+    /// +1 for an edge that goes down in its path (horizontal: to the right), −1 for others.
+    pub fn sign(&self) -> i32 {
+        1 - 2 * (self.flags & REVERSED) as i32
+    }
+
+    pub fn is_horizontal(&self) -> bool {
+        self.y0 == self.y1
+    }
+
+    /// First row touched and one past the last; a horizontal edge on a border of rows touches none.
+    pub fn rows(&self) -> (i32, i32) {
+        (self.y0 >> BITS, (self.y1 + ONE - 1) >> BITS)
+    }
+
+    /// The row and x of the end points that are chained: where the edge may meet its neighbour.
+    /// On a border of pixels the two may touch different ones, so such points do not count.
+    pub fn chained(&self) -> [Option<(i32, i32)>; 2] {
+        let top = (self.y0 >> BITS, self.x0);
+        let bottom =
+            if self.is_horizontal() { (top.0, self.x1) } else { ((self.y1 - 1) >> BITS, self.x1) };
+        let (start, end) = if self.flags & REVERSED == 0 { (top, bottom) } else { (bottom, top) };
+        let inside = |v: i32| v & (ONE - 1) != 0;
+        let (at_start, at_end) =
+            if self.flags & REVERSED == 0 { (self.y0, self.y1) } else { (self.y1, self.y0) };
+        let has = |flag, y: i32, x: i32| self.flags & flag != 0 && inside(y) && inside(x);
+        [
+            has(CHAINED_START, at_start, start.1).then_some(start),
+            has(CHAINED_END, at_end, end.1).then_some(end),
+        ]
+    }
+
+    /// Which of eight half-planes of directions the edge's own direction lies in.
+    fn directions(&self) -> u8 {
+        let sign = self.sign();
+        let (dx, dy) = ((self.x1 - self.x0) * sign, (self.y1 - self.y0) * sign);
+        let (sum, difference) = (dx.saturating_add(dy), dx.saturating_sub(dy));
+        let halves = [
+            dx >= 0,
+            dx <= 0,
+            dy >= 0,
+            dy <= 0,
+            sum >= 0,
+            sum <= 0,
+            difference >= 0,
+            difference <= 0,
+        ];
+        halves.iter().enumerate().fold(0, |bits, (i, half)| bits | (u8::from(*half) << i))
+    }
+}
+
+/// Whether two 16.16 points lie in the same pixel or on its border.
+fn share_pixel(a: (i32, i32), b: (i32, i32)) -> bool {
+    let near = |a: i32, b: i32| (a >> BITS) == (b >> BITS) || (a - b).abs() <= 1;
+    near(a.0, b.0) && near(a.1, b.1)
+}
+
+/// Turns contours into edges and knows which of them run on without being able to cross.
+pub(crate) struct EdgeBuilder<'a> {
+    edges: &'a mut Vec<Edge>,
+    /// Size of the target in pixels.
+    width: f64,
+    height: f64,
+    /// The last edge's start and end in the direction of travel.
+    last: Option<((i32, i32), (i32, i32))>,
+    last_directions: u8,
+    /// Directions common to all edges since the chain last turned back.
+    run: u8,
+    /// The contour's first edge, start and end.
+    first: Option<((i32, i32), (i32, i32))>,
+}
+
+impl<'a> EdgeBuilder<'a> {
+    /// A builder for a target of the given size in pixels, at most [`MAX_SIDE`] each way.
+    pub fn new(edges: &'a mut Vec<Edge>, width: u32, height: u32) -> Self {
+        let (width, height) = (f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)));
+        Self { edges, width, height, last: None, last_directions: 0, run: 0, first: None }
+    }
+
+    /// Adds the contours, each closed; points that are not finite are left out.
+    pub fn contours(&mut self, contours: &Contours) {
+        for (points, _) in contours.iter() {
+            self.contour(points);
+        }
+    }
+
+    fn contour(&mut self, points: &[DVec2]) {
+        (self.last, self.first) = (None, None);
+        let mut finite = points.iter().filter(|p| p.is_finite());
+        let Some(first) = finite.next() else { return };
+        let mut from = *first;
+        for to in finite.chain(std::iter::once(first)) {
+            self.line(from, *to);
+            from = *to;
+        }
+        self.close();
+    }
+
+    fn line(&mut self, a: DVec2, b: DVec2) {
+        let inside = |p: DVec2| p.x >= 0.0 && p.x <= self.width && p.y >= 0.0 && p.y <= self.height;
+        if inside(a) && inside(b) {
+            self.edge(snap(a), snap(b));
+        } else {
+            self.clipped(a, b);
+        }
+    }
+
+    /// The part of a line that matters: within the rows, and left of the right border; what is
+    /// left of the left border is moved onto it, for it winds around everything in its rows.
+    fn clipped(&mut self, a: DVec2, b: DVec2) {
+        let far = DVec2::splat(FARTHEST);
+        let (a, b) = (a.clamp(-far, far), b.clamp(-far, far));
+        let reversed = (b.y, b.x) < (a.y, a.x);
+        let (top, bottom) = if reversed { (b, a) } else { (a, b) };
+        if bottom.y < 0.0 || top.y > self.height || top.x.min(bottom.x) > self.width {
+            return;
+        }
+        // Cut at the first and last row, then at the left and right border.
+        let at_y = |y: f64| {
+            let t = (y - top.y) / (bottom.y - top.y);
+            DVec2::new(top.x + (bottom.x - top.x) * t, y)
+        };
+        let start = if top.y < 0.0 { at_y(0.0) } else { top };
+        let end = if bottom.y > self.height { at_y(self.height) } else { bottom };
+        let at_x = |x: f64| {
+            let y = top.y + (bottom.y - top.y) * ((x - top.x) / (bottom.x - top.x));
+            DVec2::new(x, y.clamp(start.y, end.y))
+        };
+        let mut cuts = [start, start, end, end];
+        let crosses = |x: f64| (start.x < x) != (end.x < x) && start.x != x && end.x != x;
+        let (left, right) =
+            (crosses(0.0).then(|| at_x(0.0)), crosses(self.width).then(|| at_x(self.width)));
+        let (near, far) = if start.x <= end.x { (left, right) } else { (right, left) };
+        cuts[1] = near.unwrap_or(start);
+        cuts[2] = far.unwrap_or(end);
+        if near.is_none() && far.is_some() {
+            cuts[1] = start;
+        }
+        let mut pieces = [(cuts[0], cuts[1]), (cuts[1], cuts[2]), (cuts[2], cuts[3])];
+        if reversed {
+            pieces.reverse();
+            pieces.iter_mut().for_each(|p| std::mem::swap(&mut p.0, &mut p.1));
+        }
+        for (p, q) in pieces {
+            if p != q && (p.x.min(q.x) < self.width) {
+                let bound = |p: DVec2| p.clamp(DVec2::ZERO, DVec2::new(self.width, self.height));
+                self.edge(snap(bound(p)), snap(bound(q)));
+            }
+        }
+    }
+
+    fn edge(&mut self, from: (i32, i32), to: (i32, i32)) {
+        if from == to {
+            return;
+        }
+        let mut edge = Edge::new(from, to);
+        let directions = edge.directions();
+        self.run = match self.last {
+            Some((start, end)) if end == from => {
+                let run = self.run & directions;
+                // Two edges with a common end cannot cross; more of them not while they run on in
+                // one direction.
+                if run != 0 || !share_pixel(start, from) {
+                    edge.flags |= CHAINED_START;
+                }
+                if run != 0 { run } else { self.last_directions & directions }
+            }
+            _ => directions,
+        };
+        self.last_directions = directions;
+        self.last = Some((from, to));
+        self.first = self.first.or(self.last);
+        self.edges.push(edge);
+    }
+
+    /// Marks the closing edge where it and the first one are alone in their common pixel.
+    fn close(&mut self) {
+        let (Some(first), Some(last), Some(edge)) = (self.first, self.last, self.edges.last_mut())
+        else {
+            return;
+        };
+        let alone = !share_pixel(first.1, first.0) && !share_pixel(last.0, first.0);
+        if last.1 == first.0 && alone && first != last {
+            edge.flags |= CHAINED_END;
+        }
+    }
+}
+
+/// The nearest grid point to a point within the target, ties to even.
+fn snap(p: DVec2) -> (i32, i32) {
+    // Adding 1.5 · 2⁵² leaves the rounded integer in the low bits of the mantissa.
+    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    let fixed = |v: f64| (v * f64::from(ONE) + MAGIC).to_bits() as u32 as i32;
+    (fixed(p.x), fixed(p.y))
+}

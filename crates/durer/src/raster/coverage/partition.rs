@@ -1,0 +1,77 @@
+//! Faces that share edges, in one pass and without seams.
+
+use super::band::{BandFiller, PathEdges, coverage_of_area};
+use super::cells::BAND_ROWS;
+use super::check_size;
+use crate::Result;
+use crate::curve::Contours;
+use crate::target::Pixels;
+
+/// One face of a partition: a simple polygon, perhaps with holes, of one colour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Face {
+    /// The outline in pixels, y down; a face's holes run against its outer contour.
+    pub contours: Contours,
+    /// 8-bit colour with straight alpha.
+    pub color: [u8; 4],
+}
+
+/// Sums of one pixel: area 0 … 65,536, and area · colour for three channels and alpha.
+type Sums = [u32; 5];
+
+/// Paints faces that do not overlap over the target as one shape: their areas and colours are added in
+/// each pixel before anything is rounded, so where faces meet nothing of what is behind shines through.
+///
+/// The same picture whatever the order of the faces and their vertices. Faces that do overlap mix in
+/// proportion to their areas. Returns how many pixels are fully covered by the faces together.
+///
+/// # Errors
+/// [`crate::Error::Limit`] for sides beyond 32,767 pixels.
+pub fn fill_partition(faces: &[Face], target: &mut Pixels<[u8; 4]>) -> Result<u64> {
+    let (width, height) = (target.width(), target.height());
+    check_size(width, height)?;
+    let paths: Vec<PathEdges> =
+        faces.iter().map(|f| PathEdges::new(&f.contours, width, height)).collect();
+    let mut filler = BandFiller::new(width);
+    let mut full = 0;
+    for top in (0..height as i32).step_by(BAND_ROWS as usize) {
+        let mut sums: Vec<Sums> = vec![[0; 5]; width as usize * BAND_ROWS as usize];
+        for (face, path) in faces.iter().zip(&paths).filter(|(_, p)| !p.misses(top)) {
+            let [r, g, b, a] = face.color.map(u32::from);
+            let weights = [1, r * a / 255, g * a / 255, b * a / 255, a];
+            filler.areas(path, top, |row, x, area| {
+                let sum = &mut sums[row as usize * width as usize + x];
+                for (sum, weight) in sum.iter_mut().zip(weights) {
+                    *sum = sum.saturating_add(area as u32 * weight);
+                }
+            });
+        }
+        for (i, sum) in sums.iter().enumerate().filter(|(_, s)| s[0] != 0) {
+            let (x, y) = (i as u32 % width, top as u32 + i as u32 / width);
+            full += u64::from(coverage_of_area(sum[0].min(65_536) as i32) == 255);
+            if let Some(below) = target.get(x, y) {
+                target.set(x, y, over(sum, below));
+            }
+        }
+    }
+    Ok(full)
+}
+
+/// The sums of a pixel over what was there, straight alpha in and out.
+fn over(sum: &Sums, below: [u8; 4]) -> [u8; 4] {
+    // All in units of 1/65,536 · 1/255; faces that overlap are scaled down to one pixel.
+    let total = u64::from(sum[0].max(65_536));
+    let part = |i: usize| u64::from(sum[i]) * 65_536 / total;
+    let full = 65_536 * 255;
+    let through = full - part(4).min(full);
+    let behind = u64::from(below[3]) * through / 255;
+    let alpha = part(4) + behind;
+    if alpha == 0 {
+        return [0; 4];
+    }
+    let channel = |i: usize| {
+        let value = part(i + 1) * 255 + u64::from(below[i]) * behind;
+        ((value + alpha / 2) / alpha).min(255) as u8
+    };
+    [channel(0), channel(1), channel(2), ((alpha + 32_768) >> 16).min(255) as u8]
+}

@@ -1,0 +1,60 @@
+//! Bresenham's line algorithm, the midpoint algorithm in its integer form.
+//!
+//! J. E. Bresenham, *Algorithm for computer control of a digital plotter*, IBM Systems Journal 4 (1965).
+//! Class: image space. Cost: one or two additions and a comparison per pixel, integers only. Clipping
+//! enters the line with the error term it would have there, so exactly the unclipped pixels are lit.
+
+use super::{Course, Options, Step};
+use crate::info::{Class, Info};
+use crate::math::IVec2;
+use crate::trace::Tracer;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "bresenham",
+    title: "Bresenham's algorithm",
+    authors: "J. E. Bresenham",
+    year: 1965,
+    source: "Algorithm for computer control of a digital plotter, IBM Systems Journal 4",
+    class: Class::ImageSpace,
+    cost: "O(n), two integer additions per pixel",
+    limits: "none",
+};
+
+/// Calls `plot` for the pixels of the line between two pixels, both included; any 32-bit coordinates.
+///
+/// ```
+/// use durer::math::IVec2;
+/// use durer::raster::line::{Options, bresenham};
+/// use durer::trace::NoTrace;
+///
+/// let mut pixels = Vec::new();
+/// let (from, to) = (IVec2::new(0, 0), IVec2::new(4, 2));
+/// bresenham::draw(from, to, &Options::default(), |p| pixels.push((p.x, p.y)), &mut NoTrace);
+/// assert_eq!(pixels, [(0, 0), (1, 0), (2, 1), (3, 1), (4, 2)]);
+/// ```
+pub fn draw(
+    from: IVec2,
+    to: IVec2,
+    options: &Options,
+    mut plot: impl FnMut(IVec2),
+    t: &mut impl Tracer<Step>,
+) {
+    let course = Course::new(from, to, options);
+    if course.first > course.last {
+        return;
+    }
+    let (start, whole) = (course.numerator(course.first), course.denominator());
+    let mut distance = (start / whole) as i64;
+    let (mut error, whole, rise) = ((start % whole) as i64, whole as i64, 2 * course.rise);
+    for step in course.first..=course.last {
+        let pixel = course.pixel(step, distance);
+        t.step(|| Step { pixel });
+        plot(pixel);
+        error += rise;
+        if error >= whole {
+            error -= whole;
+            distance += 1;
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! A line from its equation: for every step along the longer axis, y = y₀ + (x − x₀) · Δy / Δx, rounded.
+//!
+//! Class: image space. Cost: a multiplication and a division per pixel; the plainest way, and the one the
+//! others are checked against. Exact for all 32-bit end points.
+
+use super::{Course, Options, Step};
+use crate::info::{Class, Info};
+use crate::math::IVec2;
+use crate::trace::Tracer;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "equation",
+    title: "Equation of the line",
+    authors: "R. Descartes",
+    year: 1637,
+    source: "La géométrie",
+    class: Class::ImageSpace,
+    cost: "O(n), one division per pixel",
+    limits: "none",
+};
+
+/// Calls `plot` for the pixels of the line between two pixels, both included.
+pub fn draw(
+    from: IVec2,
+    to: IVec2,
+    options: &Options,
+    mut plot: impl FnMut(IVec2),
+    t: &mut impl Tracer<Step>,
+) {
+    let course = Course::new(from, to, options);
+    for step in course.first..=course.last {
+        let pixel = course.pixel(step, (course.numerator(step) / course.denominator()) as i64);
+        t.step(|| Step { pixel });
+        plot(pixel);
+    }
+}

@@ -1,0 +1,146 @@
+//! Lines: three ways to the pixels of a thin one, smooth ones, and the outline of a wide one.
+//!
+//! The thin ones light one pixel per step along the longer axis: the one nearest to the line, of two equally
+//! near ones that with the smaller coordinate across. All three light the same pixels, from either end.
+
+pub mod anti_aliased;
+pub mod bresenham;
+pub mod dda;
+pub mod equation;
+pub mod wide;
+
+use crate::info::family;
+use crate::math::IVec2;
+use crate::trace::Tracer;
+
+family! {
+    /// The ways to the pixels of a thin line.
+    pub enum LineRasterizer {
+        /// The equation of the line, solved for every column.
+        Equation => equation::INFO,
+        /// The digital differential analyzer.
+        Dda => dda::INFO,
+        /// Bresenham's algorithm.
+        Bresenham => bresenham::INFO,
+    }
+}
+
+impl LineRasterizer {
+    /// Calls `plot` for the line's pixels within the window, along its longer axis.
+    pub fn draw(
+        self,
+        from: IVec2,
+        to: IVec2,
+        options: &Options,
+        plot: impl FnMut(IVec2),
+        t: &mut impl Tracer<Step>,
+    ) {
+        match self {
+            Self::Equation => equation::draw(from, to, options, plot, t),
+            Self::Dda => dda::draw(from, to, options, plot, t),
+            Self::Bresenham => bresenham::draw(from, to, options, plot, t),
+        }
+    }
+}
+
+/// How a thin line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Only pixels from the first corner to the second, both included, are lit; `None` = all. The line is
+    /// entered where it meets the window, not walked to from its end.
+    pub window: Option<(IVec2, IVec2)>,
+}
+
+/// One step: a pixel is lit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    /// Column and row.
+    pub pixel: IVec2,
+}
+
+/// A line seen along its longer axis, in the direction of rising coordinates: every algorithm starts
+/// from here, so all octants and both directions are one case.
+#[derive(Debug, Clone, Copy)]
+struct Course {
+    /// Whether y is the longer axis.
+    steep: bool,
+    /// Start along and across.
+    along: i64,
+    across: i64,
+    /// Steps along, and the distance across that they cover, at most as many.
+    steps: i64,
+    rise: i64,
+    /// The direction across.
+    sign: i64,
+    /// The steps to take, both included; empty where `first > last`.
+    first: i64,
+    last: i64,
+}
+
+impl Course {
+    fn new(from: IVec2, to: IVec2, options: &Options) -> Self {
+        let wide = |p: IVec2| (i64::from(p.x), i64::from(p.y));
+        let ((ax, ay), (bx, by)) = (wide(from), wide(to));
+        let steep = (by - ay).abs() > (bx - ax).abs();
+        let turn = |(x, y): (i64, i64)| if steep { (y, x) } else { (x, y) };
+        let (a, b) = (turn((ax, ay)), turn((bx, by)));
+        let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
+        let mut course = Self {
+            steep,
+            along: a.0,
+            across: a.1,
+            steps: b.0 - a.0,
+            rise: (b.1 - a.1).abs(),
+            sign: (b.1 - a.1).signum(),
+            first: 0,
+            last: b.0 - a.0,
+        };
+        if let Some((low, high)) = options.window {
+            course.restrict(turn(wide(low)), turn(wide(high)));
+        }
+        course
+    }
+
+    /// Twice the numerator of the distance across after `step` steps, rounded: floor(n / 2·steps) is that
+    /// distance. Ties go to the smaller coordinate.
+    fn numerator(&self, step: i64) -> i128 {
+        let half = i128::from(self.steps) - i128::from(self.sign >= 0);
+        2 * i128::from(step) * i128::from(self.rise) + half.max(0)
+    }
+
+    fn denominator(&self) -> i128 {
+        2 * i128::from(self.steps.max(1))
+    }
+
+    /// Leaves only the steps whose pixel lies within the window, computed from its borders.
+    fn restrict(&mut self, low: (i64, i64), high: (i64, i64)) {
+        self.first = self.first.max(low.0 - self.along);
+        self.last = self.last.min(high.0 - self.along);
+        let (near, far) = if self.sign < 0 {
+            (self.across - high.1, self.across - low.1)
+        } else {
+            (low.1 - self.across, high.1 - self.across)
+        };
+        self.first = self.first.max(self.reaches(near));
+        self.last = self.last.min(self.reaches(far + 1) - 1);
+    }
+
+    /// The first step whose distance across is at least `distance`; one past the last where none is.
+    fn reaches(&self, distance: i64) -> i64 {
+        if distance <= 0 {
+            return 0;
+        }
+        if distance > self.rise {
+            return self.steps + 1;
+        }
+        let wanted = self.denominator() * i128::from(distance) - self.numerator(0);
+        let twice = 2 * i128::from(self.rise);
+        ((wanted + twice - 1) / twice).clamp(0, i128::from(self.steps) + 1) as i64
+    }
+
+    fn pixel(&self, step: i64, distance: i64) -> IVec2 {
+        let (along, across) = (self.along + step, self.across + self.sign * distance);
+        let (x, y) = if self.steep { (across, along) } else { (along, across) };
+        IVec2::new(x as i32, y as i32)
+    }
+}

@@ -1,0 +1,155 @@
+//! Wide lines: the outline of a stroke with caps, joins and dashes.
+//!
+//! Offsets of curves, caps and joins come from kurbo (R. Levien, *Parallel curves of cubic Béziers*,
+//! 2022); this module states the style in the terms of SVG and keeps strange input out.
+
+use kurbo::{BezPath, PathEl, Point, StrokeOpts};
+
+use crate::curve::{Path, PathElement};
+use crate::math::DVec2;
+use crate::{Error, Result};
+
+/// How a stroke ends where its path does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Cap {
+    /// At the end point, straight.
+    #[default]
+    Butt,
+    /// With a half circle.
+    Round,
+    /// Half a width beyond the end point, straight.
+    Square,
+}
+
+/// How two pieces of a stroke meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Join {
+    /// With a sharp corner, cut off where it would be longer than the miter limit.
+    #[default]
+    Miter,
+    /// With a part of a circle.
+    Round,
+    /// Cut off straight.
+    Bevel,
+}
+
+/// The look of a stroke; lengths in the unit of the path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stroke {
+    /// Width, at least 0; a stroke of width 0 has no area.
+    pub width: f64,
+    /// Both ends of open contours, and of dashes.
+    pub cap: Cap,
+    /// Corners.
+    pub join: Join,
+    /// Longest miter over the width, at least 1.
+    pub miter_limit: f64,
+    /// Lengths of dashes and gaps in turn; empty for a solid line.
+    pub dashes: Vec<f64>,
+    /// How far into the dashes the line starts.
+    pub dash_offset: f64,
+}
+
+impl Default for Stroke {
+    fn default() -> Self {
+        let (cap, join) = (Cap::Butt, Join::Miter);
+        Self { width: 1.0, cap, join, miter_limit: 4.0, dashes: vec![], dash_offset: 0.0 }
+    }
+}
+
+/// No contour gets more dashes than this; with more the line is drawn solid, as it looks anyway.
+const MAX_DASHES: f64 = 100_000.0;
+
+/// The outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is
+/// at most `tolerance`. Elements with points that are not finite are left out.
+///
+/// # Errors
+/// [`Error::Parameter`] for a negative width, a miter limit below 1, or negative or non-finite dashes.
+pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
+    let not_negative = |v: f64| v.is_finite() && v >= 0.0;
+    if !not_negative(stroke.width) {
+        return Err(Error::parameter("stroke width", stroke.width, "finite and at least 0"));
+    }
+    if stroke.miter_limit.is_nan() || stroke.miter_limit < 1.0 {
+        return Err(Error::parameter("miter limit", stroke.miter_limit, "at least 1"));
+    }
+    if !stroke.dashes.iter().all(|d| not_negative(*d)) || !stroke.dash_offset.is_finite() {
+        return Err(Error::parameter("dashes", "given", "finite lengths of at least 0"));
+    }
+    let source = to_kurbo(path);
+    if stroke.width == 0.0 || source.elements().is_empty() {
+        return Ok(Path::new());
+    }
+    let style = style(stroke, &source);
+    let tolerance = tolerance.max(1e-3);
+    Ok(from_kurbo(&kurbo::stroke(source, &style, &StrokeOpts::default(), tolerance)))
+}
+
+fn style(stroke: &Stroke, source: &BezPath) -> kurbo::Stroke {
+    let cap = match stroke.cap {
+        Cap::Butt => kurbo::Cap::Butt,
+        Cap::Round => kurbo::Cap::Round,
+        Cap::Square => kurbo::Cap::Square,
+    };
+    let join = match stroke.join {
+        Join::Miter => kurbo::Join::Miter,
+        Join::Round => kurbo::Join::Round,
+        Join::Bevel => kurbo::Join::Bevel,
+    };
+    let mut style = kurbo::Stroke::new(stroke.width)
+        .with_caps(cap)
+        .with_join(join)
+        .with_miter_limit(stroke.miter_limit);
+    let period: f64 = stroke.dashes.iter().sum();
+    let bounds = source.control_box();
+    let reach = (bounds.width() + bounds.height()) * source.elements().len() as f64;
+    if period > 0.0 && reach / period < MAX_DASHES {
+        // SVG repeats a list of odd length, so that dashes and gaps change places.
+        let twice = if stroke.dashes.len() % 2 == 1 { 2 } else { 1 };
+        let dashes: Vec<f64> = (0..twice).flat_map(|_| stroke.dashes.iter().copied()).collect();
+        let offset = stroke.dash_offset.rem_euclid(dashes.iter().sum());
+        style = style.with_dashes(offset, dashes);
+    }
+    style
+}
+
+fn to_kurbo(path: &Path) -> BezPath {
+    let at = |p: DVec2| Point::new(p.x, p.y);
+    let mut out = BezPath::new();
+    let mut open = false;
+    for element in path.elements() {
+        let element = match *element {
+            PathElement::MoveTo(p) => PathEl::MoveTo(at(p)),
+            PathElement::LineTo(p) => PathEl::LineTo(at(p)),
+            PathElement::QuadTo(c, p) => PathEl::QuadTo(at(c), at(p)),
+            PathElement::CubicTo(a, b, p) => PathEl::CurveTo(at(a), at(b), at(p)),
+            PathElement::Close => PathEl::ClosePath,
+        };
+        if !element.is_finite() || (element == PathEl::ClosePath && !open) {
+            continue;
+        }
+        if let (false, Some(end)) = (open, element.end_point())
+            && !matches!(element, PathEl::MoveTo(_))
+        {
+            out.move_to(end);
+        }
+        open = element != PathEl::ClosePath;
+        out.push(element);
+    }
+    out
+}
+
+fn from_kurbo(path: &BezPath) -> Path {
+    let at = |p: Point| DVec2::new(p.x, p.y);
+    let mut out = Path::new();
+    for element in path.elements() {
+        out.push(match *element {
+            PathEl::MoveTo(p) => PathElement::MoveTo(at(p)),
+            PathEl::LineTo(p) => PathElement::LineTo(at(p)),
+            PathEl::QuadTo(c, p) => PathElement::QuadTo(at(c), at(p)),
+            PathEl::CurveTo(a, b, p) => PathElement::CubicTo(at(a), at(b), at(p)),
+            PathEl::ClosePath => PathElement::Close,
+        });
+    }
+    out
+}

@@ -1,0 +1,306 @@
+//! The two spaces in which colours are mixed: sRGB bytes, and linear light in 16 bits.
+
+use std::sync::OnceLock;
+
+use fearless_simd::prelude::*;
+use fearless_simd::{u8x32, u16x16, u32x8};
+use fearless_simd_macros::simd;
+
+use crate::math::powf;
+
+/// A premultiplied pixel in which source-over can be computed.
+pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
+    /// Nothing.
+    const CLEAR: Self;
+    /// From straight sRGB 0 … 1 and an opacity.
+    fn from_srgb(color: [f32; 4], opacity: f32) -> Self;
+    /// The same memory as pixels of this space, where they look alike; to be premultiplied.
+    fn in_place(_rows: &mut [[u8; 4]]) -> Option<&mut [Self]> {
+        None
+    }
+    /// From straight 8-bit sRGB.
+    fn load(color: [u8; 4]) -> Self;
+    /// To straight 8-bit sRGB.
+    fn store(self) -> [u8; 4];
+    /// In-place forms of [`Space::load`] and [`Space::store`].
+    fn premultiplied(self) -> Self {
+        self
+    }
+    /// See [`Space::premultiplied`].
+    fn straight(self) -> Self {
+        self
+    }
+    /// Whether nothing behind shines through.
+    fn is_opaque(self) -> bool;
+    /// Whether that holds for all pixels.
+    fn all_opaque(pixels: &[Self]) -> bool {
+        pixels.iter().all(|p| p.is_opaque())
+    }
+    /// This with a coverage 0 … 255.
+    fn scaled(self, coverage: u8) -> Self;
+    /// `self` over `below`, after `self` has been scaled by the coverage.
+    fn over(self, coverage: u8, below: Self) -> Self;
+    /// One colour over pixels, each with its coverage 0 … 255.
+    fn color_over<S: Simd>(simd: S, color: Self, coverage: &[u32], below: &mut [Self]);
+    /// Colours over pixels, each with its coverage 0 … 255.
+    fn colors_over<S: Simd>(simd: S, colors: &[Self], coverage: &[u32], below: &mut [Self]);
+}
+
+/// Straight 8-bit sRGB with an opacity.
+pub(crate) fn premultiply<P: Space>(color: [u8; 4], opacity: f64) -> P {
+    P::from_srgb(color.map(|c| f32::from(c) / 255.0), opacity as f32)
+}
+
+/// `x / 255`, rounded, for x up to 255².
+#[inline(always)]
+fn div255(x: u32) -> u32 {
+    (x + 128 + ((x + 128) >> 8)) >> 8
+}
+
+/// A pixel of sRGB bytes, premultiplied.
+pub(crate) type Srgb = [u8; 4];
+
+impl Space for Srgb {
+    const CLEAR: Self = [0; 4];
+
+    fn in_place(rows: &mut [[u8; 4]]) -> Option<&mut [Self]> {
+        Some(rows)
+    }
+
+    fn from_srgb(color: [f32; 4], opacity: f32) -> Self {
+        let alpha = color[3] * opacity;
+        let byte = |v: f32| (v * 255.0 + 0.5) as u8;
+        [byte(color[0] * alpha), byte(color[1] * alpha), byte(color[2] * alpha), byte(alpha)]
+    }
+
+    #[inline(always)]
+    fn load(color: [u8; 4]) -> Self {
+        let alpha = u32::from(color[3]);
+        if alpha == 255 {
+            return color;
+        }
+        let part = |c: u8| div255(u32::from(c) * alpha) as u8;
+        [part(color[0]), part(color[1]), part(color[2]), color[3]]
+    }
+
+    #[inline(always)]
+    fn store(self) -> [u8; 4] {
+        let alpha = u32::from(self[3]);
+        if alpha == 255 || alpha == 0 {
+            return self;
+        }
+        let whole = |c: u8| ((u32::from(c) * 255 + alpha / 2) / alpha).min(255) as u8;
+        [whole(self[0]), whole(self[1]), whole(self[2]), self[3]]
+    }
+
+    #[inline(always)]
+    fn premultiplied(self) -> Self {
+        Self::load(self)
+    }
+
+    #[inline(always)]
+    fn straight(self) -> Self {
+        self.store()
+    }
+
+    #[inline(always)]
+    fn is_opaque(self) -> bool {
+        self[3] == 255
+    }
+
+    fn all_opaque(pixels: &[Self]) -> bool {
+        pixels.iter().fold(u32::MAX, |all, p| all & u32::from_le_bytes(*p)) >> 24 == 255
+    }
+
+    #[inline(always)]
+    fn scaled(self, coverage: u8) -> Self {
+        self.map(|c| div255(u32::from(c) * u32::from(coverage)) as u8)
+    }
+
+    #[inline(always)]
+    fn over(self, coverage: u8, below: Self) -> Self {
+        let coverage = u32::from(coverage);
+        let through = 255 - div255(u32::from(self[3]) * coverage);
+        std::array::from_fn(|i| {
+            div255(u32::from(self[i]) * coverage + u32::from(below[i]) * through).min(255) as u8
+        })
+    }
+
+    #[simd]
+    fn color_over<S: Simd>(simd: S, color: Self, coverage: &[u32], below: &mut [Self]) {
+        let whole = below.len().min(coverage.len()) / 8 * 8;
+        let word = u32::from_le_bytes(color);
+        let source: u8x32<S> = u32x8::splat(simd, word).bitcast();
+        let alpha = u8x32::splat(simd, color[3]);
+        let (coverage, rest) = coverage.split_at(whole);
+        let (below, below_rest) = below.split_at_mut(whole);
+        for (mask, pixels) in coverage.chunks_exact(8).zip(below.chunks_exact_mut(8)) {
+            over_eight(simd, source, alpha, mask, pixels.as_flattened_mut());
+        }
+        for (mask, pixel) in rest.iter().zip(below_rest) {
+            *pixel = color.over(*mask as u8, *pixel);
+        }
+    }
+
+    #[simd]
+    fn colors_over<S: Simd>(simd: S, colors: &[Self], coverage: &[u32], below: &mut [Self]) {
+        let whole = below.len().min(coverage.len()).min(colors.len()) / 8 * 8;
+        for i in (0..whole).step_by(8) {
+            let colors = &colors[i..i + 8];
+            let mut alpha = [0_u8; 32];
+            for (quad, color) in alpha.as_chunks_mut::<4>().0.iter_mut().zip(colors) {
+                *quad = [color[3]; 4];
+            }
+            let source = u8x32::from_slice(simd, colors.as_flattened());
+            let alpha = u8x32::from_slice(simd, &alpha);
+            let pixels = below[i..i + 8].as_flattened_mut();
+            over_eight(simd, source, alpha, &coverage[i..i + 8], pixels);
+        }
+        for ((color, mask), pixel) in
+            colors[whole..].iter().zip(&coverage[whole..]).zip(&mut below[whole..])
+        {
+            *pixel = color.over(*mask as u8, *pixel);
+        }
+    }
+}
+
+/// Eight pixels of source-over: (source · coverage + below · (255 − alpha · coverage / 255)) / 255.
+#[inline(always)]
+fn over_eight<S: Simd>(
+    simd: S,
+    source: u8x32<S>,
+    alpha: u8x32<S>,
+    coverage: &[u32],
+    pixels: &mut [u8],
+) {
+    // One coverage in all four bytes of its pixel.
+    let spread: u8x32<S> = (u32x8::from_slice(simd, coverage) * 0x0101_0101).bitcast();
+    let below = u8x32::from_slice(simd, pixels);
+    let (a0, a1) = alpha.widening_mul(spread);
+    let (s0, s1) = source.widening_mul(spread);
+    let (b0, b1) = below.widen();
+    let full = u16x16::splat(simd, 255);
+    let d0 = div255_lanes(simd, s0 + b0 * (full - div255_lanes(simd, a0)));
+    let d1 = div255_lanes(simd, s1 + b1 * (full - div255_lanes(simd, a1)));
+    d0.saturating_narrow(d1).store_slice(pixels);
+}
+
+#[inline(always)]
+fn div255_lanes<S: Simd>(simd: S, x: u16x16<S>) -> u16x16<S> {
+    let x = x + u16x16::splat(simd, 128);
+    (x + (x >> 8)) >> 8
+}
+
+/// A pixel of linear light in 16 bits, premultiplied; a type of its own, for it is not sRGB.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Linear([u16; 4]);
+
+impl Linear {
+    fn map(self, f: impl Fn(u32) -> u32) -> Self {
+        Self(self.0.map(|c| f(u32::from(c)).min(65_535) as u16))
+    }
+}
+
+/// Linear 0 … 1 of an sRGB value 0 … 1 (IEC 61966-2-1).
+fn linear_from_srgb(v: f32) -> f32 {
+    if v <= 0.040_45 { v / 12.92 } else { powf((v + 0.055) / 1.055, 2.4) }
+}
+
+/// Linear 16-bit values of the 256 sRGB bytes.
+fn linear_table() -> &'static [u16; 256] {
+    static TABLE: OnceLock<[u16; 256]> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        std::array::from_fn(|i| (linear_from_srgb(i as f32 / 255.0) * 65_535.0 + 0.5) as u16)
+    })
+}
+
+/// The sRGB byte nearest to a linear 16-bit value.
+fn srgb_from_linear(v: u16) -> u8 {
+    let table = linear_table();
+    let above = table.partition_point(|t| *t < v).min(255);
+    let below = above.saturating_sub(1);
+    if table[above] - v.min(table[above]) <= v - table[below].min(v) {
+        above as u8
+    } else {
+        below as u8
+    }
+}
+
+impl Space for Linear {
+    const CLEAR: Self = Self([0; 4]);
+
+    fn from_srgb(color: [f32; 4], opacity: f32) -> Self {
+        let alpha = color[3] * opacity;
+        let part = |v: f32| (linear_from_srgb(v) * alpha * 65_535.0 + 0.5) as u16;
+        Self([part(color[0]), part(color[1]), part(color[2]), (alpha * 65_535.0 + 0.5) as u16])
+    }
+
+    fn load(color: [u8; 4]) -> Self {
+        let (table, alpha) = (linear_table(), u32::from(color[3]) * 257);
+        let part = |c: u8| (u32::from(table[usize::from(c)]) * alpha / 65_535) as u16;
+        Self([part(color[0]), part(color[1]), part(color[2]), alpha as u16])
+    }
+
+    fn store(self) -> [u8; 4] {
+        let alpha = u32::from(self.0[3]);
+        if alpha == 0 {
+            return [0; 4];
+        }
+        let whole = |c: u16| {
+            srgb_from_linear(((u32::from(c) * 65_535 + alpha / 2) / alpha).min(65_535) as u16)
+        };
+        let [r, g, b, _] = self.0;
+        [whole(r), whole(g), whole(b), ((alpha + 128) / 257) as u8]
+    }
+
+    fn is_opaque(self) -> bool {
+        self.0[3] == 65_535
+    }
+
+    fn scaled(self, coverage: u8) -> Self {
+        self.map(|c| (c * u32::from(coverage) + 127) / 255)
+    }
+
+    fn over(self, coverage: u8, below: Self) -> Self {
+        let source = self.scaled(coverage);
+        let through = 65_535 - u32::from(source.0[3]);
+        Self(std::array::from_fn(|i| {
+            let behind = (u32::from(below.0[i]) * through + 32_767) / 65_535;
+            (u32::from(source.0[i]) + behind).min(65_535) as u16
+        }))
+    }
+
+    fn color_over<S: Simd>(_: S, color: Self, coverage: &[u32], below: &mut [Self]) {
+        for (mask, pixel) in coverage.iter().zip(below) {
+            *pixel = color.over(*mask as u8, *pixel);
+        }
+    }
+
+    fn colors_over<S: Simd>(_: S, colors: &[Self], coverage: &[u32], below: &mut [Self]) {
+        for ((color, mask), pixel) in colors.iter().zip(coverage).zip(below) {
+            *pixel = color.over(*mask as u8, *pixel);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive_the_way_through_linear_light() {
+        for v in 0..=255 {
+            assert_eq!(Linear::load([v, 255 - v, 7, 255]).store(), [v, 255 - v, 7, 255]);
+        }
+    }
+
+    #[test]
+    fn opaque_bytes_are_untouched_and_thin_ones_nearly() {
+        for alpha in 1..=255_u8 {
+            let color = [200, 100, 0, alpha];
+            let back = Srgb::load(color).store();
+            let slack = 255 / u32::from(alpha) / 2 + 1;
+            assert!(back.iter().zip(color).all(|(a, b)| u32::from(a.abs_diff(b)) <= slack));
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! What is painted: one colour, gradients, images. All of it evaluated at pixel centres.
+
+use std::sync::Arc;
+
+use super::color::{Space, premultiply};
+use crate::math::{DAffine2, DVec2};
+use crate::target::Pixels;
+
+/// 8-bit sRGB with straight alpha.
+pub type Color = [u8; 4];
+
+/// What a gradient shows before its first and after its last stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Spread {
+    /// The colour of the end.
+    #[default]
+    Pad,
+    /// The gradient again.
+    Repeat,
+    /// The gradient turned round, and so on.
+    Reflect,
+}
+
+/// Along which curve a gradient's parameter runs from 0 to 1; points in the paint's own space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// From one point to another, constant across.
+    Linear {
+        /// Where the parameter is 0.
+        start: DVec2,
+        /// Where it is 1.
+        end: DVec2,
+    },
+    /// From a focal circle to an outer circle, as in SVG and PDF.
+    Radial {
+        /// Centre of the outer circle, where the parameter is 1.
+        center: DVec2,
+        /// Radius of the outer circle.
+        radius: f64,
+        /// Centre of the inner circle, where the parameter is 0.
+        focus: DVec2,
+        /// Radius of the inner circle.
+        focus_radius: f64,
+    },
+}
+
+/// A colour ramp along a line or between two circles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gradient {
+    /// Where the parameter runs.
+    pub shape: Shape,
+    /// Parameters 0 … 1 in rising order and their colours.
+    pub stops: Vec<(f64, Color)>,
+    /// What comes outside 0 … 1.
+    pub spread: Spread,
+    /// From the paint's own space to the path's.
+    pub transform: DAffine2,
+}
+
+/// An image, repeated over the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    /// The pixels; straight alpha.
+    pub image: Arc<Pixels<Color>>,
+    /// From the image's pixels to the path's space.
+    pub transform: DAffine2,
+    /// Whether the image is repeated; otherwise outside it nothing is painted.
+    pub repeat: bool,
+    /// Whether four pixels are mixed, instead of taking the nearest.
+    pub smooth: bool,
+}
+
+/// What a path is painted with.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Paint {
+    /// One colour.
+    Color(Color),
+    /// A colour ramp.
+    Gradient(Arc<Gradient>),
+    /// An image.
+    Pattern(Arc<Pattern>),
+}
+
+impl From<Color> for Paint {
+    fn from(color: Color) -> Self {
+        Self::Color(color)
+    }
+}
+
+/// Entries of a gradient's table: twice what 8 bits can tell apart.
+const RAMP: usize = 512;
+
+/// A paint made ready: colours premultiplied in the space of the canvas, maps inverted.
+#[derive(Debug, Clone)]
+pub(crate) enum Source<P> {
+    Solid(P),
+    Ramp(Box<Ramp<P>>),
+    Image(Box<Image>),
+}
+
+/// A gradient made ready.
+#[derive(Debug, Clone)]
+pub(crate) struct Ramp<P> {
+    shape: Shape,
+    paint_from_pixel: DAffine2,
+    spread: Spread,
+    /// Colours at equal steps of the parameter.
+    colors: Vec<P>,
+}
+
+/// A pattern made ready.
+#[derive(Debug, Clone)]
+pub(crate) struct Image {
+    pattern: Arc<Pattern>,
+    image_from_pixel: DAffine2,
+    opacity: f64,
+}
+
+impl<P: Space> Source<P> {
+    /// `pixel_from_path` maps the path's space to pixels. A paint that cannot be evaluated — a map without
+    /// inverse, a gradient without stops — paints nothing or its last stop, as SVG says.
+    pub fn new(paint: &Paint, pixel_from_path: DAffine2, opacity: f64) -> Self {
+        let opacity = if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 };
+        match paint {
+            Paint::Color(color) => Self::Solid(premultiply(*color, opacity)),
+            Paint::Gradient(g) => Self::gradient(g, pixel_from_path * g.transform, opacity),
+            Paint::Pattern(p) => match inverse(pixel_from_path * p.transform) {
+                Some(image_from_pixel) if !p.image.data().is_empty() => {
+                    Self::Image(Box::new(Image { pattern: p.clone(), image_from_pixel, opacity }))
+                }
+                _ => Self::Solid(P::CLEAR),
+            },
+        }
+    }
+
+    fn gradient(g: &Gradient, pixel_from_paint: DAffine2, opacity: f64) -> Self {
+        let Some(last) = g.stops.last() else { return Self::Solid(P::CLEAR) };
+        let flat = match g.shape {
+            Shape::Linear { start, end } => start == end,
+            Shape::Radial { radius, .. } => {
+                radius.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater)
+            }
+        };
+        let inverse = inverse(pixel_from_paint);
+        let (false, Some(paint_from_pixel)) = (flat || g.stops.len() == 1, inverse) else {
+            return Self::Solid(premultiply(last.1, opacity));
+        };
+        let at =
+            |i: usize| premultiply_f(stop_color(&g.stops, i as f64 / (RAMP - 1) as f64), opacity);
+        let colors = (0..RAMP).map(at).collect();
+        Self::Ramp(Box::new(Ramp { shape: g.shape, paint_from_pixel, spread: g.spread, colors }))
+    }
+
+    /// The colours of the pixels of row `y` from column `x` on.
+    pub fn row(&self, x: usize, y: usize, out: &mut [P]) {
+        let center = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        match self {
+            Self::Solid(color) => out.fill(*color),
+            Self::Ramp(ramp) => {
+                let Ramp { shape, paint_from_pixel, spread, colors } = &**ramp;
+                let start = paint_from_pixel.transform_point2(center);
+                let step = paint_from_pixel.matrix2.x_axis;
+                for (i, pixel) in out.iter_mut().enumerate() {
+                    *pixel = match parameter(shape, start + step * i as f64) {
+                        Some(t) => {
+                            let place = spread_over(*spread, t) * (RAMP - 1) as f64 + 0.5;
+                            colors.get(place as usize).copied().unwrap_or(P::CLEAR)
+                        }
+                        None => P::CLEAR,
+                    };
+                }
+            }
+            Self::Image(image) => {
+                let Image { pattern, image_from_pixel, opacity } = &**image;
+                let start = image_from_pixel.transform_point2(center);
+                let step = image_from_pixel.matrix2.x_axis;
+                for (i, pixel) in out.iter_mut().enumerate() {
+                    *pixel = premultiply_f(texel(pattern, start + step * i as f64), *opacity);
+                }
+            }
+        }
+    }
+
+    /// Whether it covers what is behind it completely.
+    pub fn color(&self) -> Option<P> {
+        match self {
+            Self::Solid(color) => Some(*color),
+            _ => None,
+        }
+    }
+}
+
+fn inverse(map: DAffine2) -> Option<DAffine2> {
+    let determinant = map.matrix2.determinant();
+    (determinant.is_finite() && determinant != 0.0 && map.is_finite()).then(|| map.inverse())
+}
+
+/// Straight colour in 0 … 255 at a parameter of the stops.
+fn stop_color(stops: &[(f64, Color)], t: f64) -> [f64; 4] {
+    let after = stops.iter().position(|s| s.0 > t).unwrap_or(stops.len());
+    let (before, after) = (after.saturating_sub(1), after.min(stops.len().saturating_sub(1)));
+    let ((t0, c0), (t1, c1)) = (stops[before], stops[after]);
+    let share = if t1 > t0 { ((t - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 0.0 };
+    std::array::from_fn(|i| f64::from(c0[i]) + (f64::from(c1[i]) - f64::from(c0[i])) * share)
+}
+
+/// The gradient's parameter at a point; `None` where no circle passes through it.
+fn parameter(shape: &Shape, p: DVec2) -> Option<f64> {
+    match *shape {
+        Shape::Linear { start, end } => {
+            let d = end - start;
+            Some((p - start).dot(d) / d.length_squared())
+        }
+        Shape::Radial { center, radius, focus, focus_radius } => {
+            // The largest t for which p lies on the circle around focus + t (center − focus) with
+            // radius r0 + t (r1 − r0) ≥ 0.
+            let (cd, pd, dr) = (center - focus, p - focus, radius - focus_radius);
+            let a = cd.length_squared() - dr * dr;
+            let b = pd.dot(cd) + focus_radius * dr;
+            let c = pd.length_squared() - focus_radius * focus_radius;
+            let valid = |t: f64| (t.is_finite() && focus_radius + t * dr >= 0.0).then_some(t);
+            if a == 0.0 {
+                return valid(c / (2.0 * b));
+            }
+            let root = (b * b - a * c).sqrt();
+            let (t0, t1) = ((b + root) / a, (b - root) / a);
+            valid(t0.max(t1)).or_else(|| valid(t0.min(t1)))
+        }
+    }
+}
+
+fn spread_over(spread: Spread, t: f64) -> f64 {
+    match spread {
+        Spread::Pad => t.clamp(0.0, 1.0),
+        Spread::Repeat => t - t.floor(),
+        Spread::Reflect => {
+            let u = t - 2.0 * (t * 0.5).floor();
+            if u > 1.0 { 2.0 - u } else { u }
+        }
+    }
+}
+
+/// The pattern's straight colour in 0 … 255 at a point in its pixels.
+fn texel(pattern: &Pattern, p: DVec2) -> [f64; 4] {
+    let size = (i64::from(pattern.image.width()), i64::from(pattern.image.height()));
+    let at = |x: f64, y: f64| {
+        let (x, y) = (x as i64, y as i64);
+        let inside = x >= 0 && y >= 0 && x < size.0 && y < size.1;
+        let (x, y) = if pattern.repeat {
+            (x.rem_euclid(size.0), y.rem_euclid(size.1))
+        } else if inside {
+            (x, y)
+        } else {
+            return [0.0; 4];
+        };
+        pattern.image.get(x as u32, y as u32).unwrap_or([0; 4]).map(f64::from)
+    };
+    if !pattern.smooth {
+        return at(p.x.floor(), p.y.floor());
+    }
+    let (q, f) = ((p - 0.5).floor(), (p - 0.5) - (p - 0.5).floor());
+    let corners = [at(q.x, q.y), at(q.x + 1.0, q.y), at(q.x, q.y + 1.0), at(q.x + 1.0, q.y + 1.0)];
+    let weights = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y];
+    // Colours count as much as they are opaque.
+    let alpha: f64 = (0..4).map(|i| corners[i][3] * weights[i]).sum();
+    let channel = |c: usize| {
+        let sum: f64 = (0..4).map(|i| corners[i][c] * corners[i][3] * weights[i]).sum();
+        if alpha > 0.0 { sum / alpha } else { 0.0 }
+    };
+    [channel(0), channel(1), channel(2), alpha]
+}
+
+fn premultiply_f<P: Space>(color: [f64; 4], opacity: f64) -> P {
+    P::from_srgb(color.map(|c| (c / 255.0) as f32), opacity as f32)
+}

@@ -1,0 +1,169 @@
+//! Picking: what lies behind a point or a rectangle of the screen.
+//!
+//! A rectangle and the near and far plane bound a part of the view volume; a triangle is hit if its
+//! part within (Blinn & Newell's homogeneous clipping) is not empty. A point is decided by the edge
+//! functions in homogeneous screen space (M. Olano, T. Greer, *Triangle scan conversion using 2D
+//! homogeneous coordinates*, 1997), so that triangles that reach behind the eye need no cutting; the
+//! function of an edge has the same value, but for its sign, in both of its triangles, so no point
+//! falls between them. Object space. Cost: O(triangles of the instances whose boxes are met).
+
+use crate::clip::volume::{ClipVertex, Options, clip_polygon};
+use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
+use crate::scene::{Aabb, Mesh, Scene, Topology};
+use crate::trace::NoTrace;
+use crate::view::View;
+use crate::view::cull::{Containment, ConvexVolume};
+
+/// A part of the screen, in pixels, x right and y down; pixel (0, 0) is the square from 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Area {
+    /// All that covers a point.
+    Point(DVec2),
+    /// All that reaches into a rectangle. One without width or height contains nothing.
+    Rect(Rect),
+}
+
+/// A triangle that was hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Index into [`Scene::instances`].
+    pub instance: usize,
+    /// Index of the triangle in the instance's mesh.
+    pub triangle: usize,
+    /// Its place in the sequence of all triangles, as in item planes.
+    pub item: u32,
+    /// Window depth, 0 (near plane) … 1 (far plane), of its nearest point in the area.
+    pub depth: f64,
+    /// That point, in the world.
+    pub position: DVec3,
+}
+
+/// An instance of which triangles were hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Object {
+    /// Index into [`Scene::instances`].
+    pub instance: usize,
+    /// Its nearest triangle in the area.
+    pub nearest: Hit,
+    /// How many of its triangles are in the area.
+    pub triangles: usize,
+}
+
+/// The triangles behind an area of the screen, whether others hide them or not, from either side;
+/// nearest first, of equally near ones the lower item. Lines and points are not picked, nor triangles
+/// that are seen edge on under a point.
+pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
+    let Some(around) = window(area) else { return Vec::new() };
+    let pick_from_world = pick_from_screen(&around) * view.screen_from_world();
+    let boxes: Vec<Option<Aabb>> = scene
+        .meshes
+        .iter()
+        .map(|m| Aabb::around(m.positions.iter().map(|p| p.as_dvec3())))
+        .collect();
+    let mut hits = Vec::new();
+    let mut next_item = 0;
+    for (instance, placed) in scene.instances.iter().enumerate() {
+        let mesh = &scene.meshes[placed.mesh];
+        if mesh.topology != Topology::Triangles {
+            continue;
+        }
+        let first_item = next_item;
+        next_item += mesh.material_runs().map(|(range, _)| range.len() as u32).sum::<u32>();
+        let frustum =
+            ConvexVolume::frustum(&(pick_from_world * placed.world_from_mesh), Default::default());
+        let inside = |b: &Aabb| frustum.contains_box(b) != Containment::Outside;
+        if !boxes[placed.mesh].as_ref().is_some_and(inside) {
+            continue;
+        }
+        let screen_from_mesh = view.screen_from_world() * placed.world_from_mesh;
+        let pick_from_mesh = pick_from_world * placed.world_from_mesh;
+        let triangles = mesh.material_runs().flat_map(|(range, _)| range);
+        for (item, triangle) in (first_item..).zip(triangles) {
+            let corners = corners(mesh, triangle as usize);
+            let found = match area {
+                Area::Point(p) => at_point(&corners, &screen_from_mesh, p),
+                Area::Rect(_) => in_window(&corners, &pick_from_mesh),
+            };
+            if let Some((depth, position)) = found {
+                let position = placed.world_from_mesh.transform_point3(position);
+                let triangle = triangle as usize;
+                hits.push(Hit { instance, triangle, item, depth, position });
+            }
+        }
+    }
+    hits.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
+    hits
+}
+
+/// The instances of hits, nearest first.
+pub fn objects(hits: &[Hit]) -> Vec<Object> {
+    let mut by_instance: Vec<(usize, &Hit)> = hits.iter().enumerate().collect();
+    by_instance.sort_by_key(|(place, hit)| (hit.instance, *place));
+    let mut found: Vec<(usize, Object)> = by_instance
+        .chunk_by(|a, b| a.1.instance == b.1.instance)
+        .map(|same| {
+            let (place, nearest) = same[0];
+            let instance = nearest.instance;
+            (place, Object { instance, nearest: *nearest, triangles: same.len() })
+        })
+        .collect();
+    found.sort_by_key(|(place, _)| *place);
+    found.into_iter().map(|(_, object)| object).collect()
+}
+
+/// The rectangle whose frustum holds everything that may be hit.
+fn window(area: Area) -> Option<Rect> {
+    match area {
+        // Wide enough to be free of rounding.
+        Area::Point(p) => Rect::new(p - DVec2::ONE, p + DVec2::ONE).ok(),
+        Area::Rect(rect) => (rect.size().x > 0.0 && rect.size().y > 0.0).then_some(rect),
+    }
+}
+
+/// Takes homogeneous screen space to the clip space of a window's own frustum.
+fn pick_from_screen(window: &Rect) -> DMat4 {
+    let (scale, sum) = (2.0 / window.size(), window.min() + window.max());
+    let shift = -0.5 * scale * sum;
+    DMat4::from_cols(
+        DVec4::new(scale.x, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -scale.y, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, 2.0, 0.0),
+        DVec4::new(shift.x, -shift.y, -1.0, 1.0),
+    )
+}
+
+fn corners(mesh: &Mesh, triangle: usize) -> [DVec3; 3] {
+    mesh.triangle(triangle).map(|v| mesh.positions[v as usize].as_dvec3())
+}
+
+/// The nearest point of a triangle's part in a frustum: its depth, and where it is in the mesh.
+fn in_window(corners: &[DVec3; 3], pick_from_mesh: &DMat4) -> Option<(f64, DVec3)> {
+    let ring =
+        corners.map(|p| ClipVertex { position: *pick_from_mesh * p.extend(1.0), attributes: p });
+    let inside = clip_polygon(&ring, &Options::default(), &mut NoTrace);
+    inside
+        .iter()
+        .map(|v| (0.5 + 0.5 * v.position.z / v.position.w, v.attributes))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The point of a triangle under a point of the screen: its depth, and where it is in the mesh.
+fn at_point(corners: &[DVec3; 3], screen_from_mesh: &DMat4, p: DVec2) -> Option<(f64, DVec3)> {
+    // Counted from the point, x and y of a vertex are exact enough wherever the point is.
+    let h = corners.map(|c| {
+        let v = *screen_from_mesh * c.extend(1.0);
+        DVec4::new(v.x - p.x * v.w, v.y - p.y * v.w, v.z, v.w)
+    });
+    let edge = |a: DVec4, b: DVec4| a.x * b.y - b.x * a.y;
+    let edges = [edge(h[1], h[2]), edge(h[2], h[0]), edge(h[0], h[1])];
+    let determinant = edges[0] * h[0].w + edges[1] * h[1].w + edges[2] * h[2].w;
+    let weights = edges.map(|e| e / determinant);
+    let sum = weights[0] + weights[1] + weights[2];
+    // Weights that are no numbers, of a triangle without area, are not inside.
+    if !(weights.iter().all(|&w| w >= 0.0) && sum > 0.0 && sum.is_finite()) {
+        return None;
+    }
+    let depth = weights[0] * h[0].z + weights[1] * h[1].z + weights[2] * h[2].z;
+    let at = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+    (0.0..=1.0).contains(&depth).then(|| (depth, at / sum))
+}

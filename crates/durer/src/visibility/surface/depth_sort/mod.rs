@@ -1,0 +1,331 @@
+//! Depth sort: polygons are put in order, then painted over each other from back to front.
+//!
+//! M. Newell, R. Newell, T. Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual
+//! Conference 1972. List priority. Cost: O(n log n + n · polygons near by and at like depths), but
+//! O(n²) pieces where all faces penetrate each other; memory O(n + pieces' rows). Coherence used:
+//! faces, depth.
+//!
+//! Deviations: candidates for the tests come from tiles of the screen, in which polygons stand
+//! sorted by depth. The tests keep clear of rounding; what they leave open is decided at the pixel
+//! centres that both polygons cover, with the z-buffer's depths, and pieces of split polygons share
+//! out the centres of the whole. So the painted picture is that of the z-buffer, equal depths
+//! included. Where a plane does not separate cyclically overlapping polygons, an edge does. Blended
+//! surfaces count as opaque.
+
+mod piece;
+mod relation;
+mod tiles;
+
+pub use piece::{Cut, Part};
+
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::raster::fixed::unsnap;
+use crate::raster::span::Span;
+use crate::shade::PreparedLights;
+use crate::target::Framebuffer;
+use crate::trace::Tracer;
+use crate::visibility::surface::cover::{Cover, SampleGrid};
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::picture;
+use crate::visibility::surface::setup::ScreenTriangle;
+use crate::visibility::surface::visible::{Masks, Visible, pixels_of, with_lighting, write};
+use piece::{Key, Pieces};
+use relation::Verdict;
+use std::collections::BinaryHeap;
+use tiles::Tiles;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "depth-sort",
+    title: "Newell–Newell–Sancha depth sort",
+    authors: "M. Newell, R. Newell, T. Sancha",
+    year: 1972,
+    source: "A Solution to the Hidden Surface Problem, ACM Annual Conference",
+    class: Class::ListPriority,
+    cost: "O(n log n + n · polygons near by and at like depths), O(n²) where all faces cross",
+    limits: "blended surfaces count as opaque",
+};
+
+/// What the picture is to have.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Shading and background.
+    pub look: picture::Options,
+}
+
+/// The tests that let a polygon P be painted before another one Q, in order of cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Test {
+    /// 1: P's nearest point is behind Q's farthest.
+    Depths,
+    /// 2a: their boxes on the screen have no pixel in common.
+    Boxes,
+    /// 2b: P lies wholly behind Q's plane.
+    BehindPlane,
+    /// 2c: Q lies wholly in front of P's plane.
+    InFrontOfPlane,
+    /// 2d: their projections do not overlap.
+    Projections,
+    /// P is nearer at no pixel that both cover.
+    Pixels,
+}
+
+/// What there is to see. Polygons have numbers: first the triangles of the input, then pieces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A polygon is the farthest that is left, or was moved before it: is it to be painted next?
+    Look {
+        /// P.
+        polygon: u32,
+    },
+    /// P was tested against Q.
+    Tested {
+        /// P.
+        polygon: u32,
+        /// Q.
+        other: u32,
+        /// The test that lets P be painted before Q, if there is one.
+        passed: Option<Test>,
+    },
+    /// Q must be painted before P: it is marked and takes P's place.
+    Move {
+        /// Q.
+        polygon: u32,
+    },
+    /// A polygon is cut in two.
+    Split {
+        /// Which.
+        polygon: u32,
+        /// By what.
+        cut: Cut,
+        /// The two pieces: the one on the cut's inner side first.
+        pieces: [u32; 2],
+    },
+    /// A polygon is painted next.
+    Place {
+        /// Which.
+        polygon: u32,
+    },
+}
+
+/// A polygon in its place in the order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScreenPolygon {
+    /// Index into [`SurfaceInput::triangles`].
+    pub triangle: u32,
+    /// Its item.
+    pub item: u32,
+    /// Which part of the triangle it is, where that was split.
+    pub part: Option<Part>,
+}
+
+impl ScreenPolygon {
+    /// The corners, in pixels, x right and y down; convex, in one sense or the other.
+    pub fn outline(&self, input: &SurfaceInput<'_>) -> Vec<DVec2> {
+        match &self.part {
+            Some(part) => part.outline.clone(),
+            None => corners(&input.triangles[self.triangle as usize]).to_vec(),
+        }
+    }
+
+    /// The pixels that it covers: its share of the triangle's.
+    pub fn spans(&self, input: &SurfaceInput<'_>, mut emit: impl FnMut(Span)) {
+        match &self.part {
+            Some(part) => part.spans.iter().for_each(|&span| emit(span)),
+            None => {
+                let triangle = &input.triangles[self.triangle as usize];
+                let cover = Cover::new(triangle, SampleGrid::PIXELS);
+                cover.spans(&pixels_of(input.view), emit);
+            }
+        }
+    }
+}
+
+/// The vertices of a triangle in pixels.
+fn corners(t: &ScreenTriangle) -> [DVec2; 3] {
+    [0, 1, 2].map(|i| DVec2::new(unsnap(t.x[i]), unsnap(t.y[i])))
+}
+
+/// Puts the triangles of an input into an order in which each may be painted over those before it;
+/// those that penetrate each other or overlap cyclically are split.
+pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Vec<ScreenPolygon> {
+    let pieces = Pieces::new(&input.triangles, pixels_of(input.view));
+    let tiles = Tiles::new(&pieces, input.view);
+    let queue = (0..pieces.len()).map(|i| pieces.key(i)).collect();
+    let done = vec![false; pieces.len() as usize];
+    let mut sorter = Sorter {
+        pieces,
+        tiles,
+        queue,
+        marked: done.clone(),
+        seen: vec![0; done.len()],
+        round: 0,
+        done,
+        stack: Vec::new(),
+    };
+    let mut polygons = Vec::with_capacity(input.triangles.len());
+    while let Some(p) = sorter.next() {
+        if sorter.advance(p, t) {
+            polygons.push(sorter.pieces.polygon(p));
+        }
+    }
+    polygons
+}
+
+/// Renders the input into the planes that the framebuffer has.
+pub fn render(
+    input: &SurfaceInput<'_>,
+    lights: &PreparedLights,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) {
+    let polygons = order(input, t);
+    with_lighting(input, lights, &options.look, |lighting| {
+        let visible = paint(input, &polygons, &mut Masks::new(input, lighting));
+        write(&visible, lighting, &options.look, framebuffer);
+    });
+}
+
+/// Paints polygons over each other.
+fn paint(input: &SurfaceInput<'_>, polygons: &[ScreenPolygon], masks: &mut Masks<'_>) -> Visible {
+    let mut visible = Visible::new(pixels_of(input.view));
+    for polygon in polygons {
+        let index = polygon.triangle as usize;
+        let triangle = &input.triangles[index];
+        polygon.spans(input, |Span { y, x0, x1 }| {
+            for x in x0..x1 {
+                if masks.passes(index, triangle.item, x, y) {
+                    let depth = SampleGrid::PIXELS.depth(triangle, x, y);
+                    visible.put(x, y, depth, triangle.item);
+                }
+            }
+        });
+    }
+    visible
+}
+
+/// The list of polygons on its way to order.
+struct Sorter<'a> {
+    pieces: Pieces<'a>,
+    tiles: Tiles,
+    /// Farthest first.
+    queue: BinaryHeap<Key>,
+    /// Placed, or replaced by its pieces.
+    done: Vec<bool>,
+    /// Stands in the stack.
+    marked: Vec<bool>,
+    /// The round in which a polygon was last tested.
+    seen: Vec<u32>,
+    round: u32,
+    /// The polygon in question, below it those that wait for it.
+    stack: Vec<u32>,
+}
+
+impl Sorter<'_> {
+    /// The polygon in question.
+    fn next(&mut self) -> Option<u32> {
+        while self.stack.is_empty() {
+            let farthest = self.queue.pop()?.polygon;
+            if !self.done[farthest as usize] {
+                self.push(farthest);
+            }
+        }
+        self.stack.last().copied()
+    }
+
+    fn push(&mut self, polygon: u32) {
+        self.marked[polygon as usize] = true;
+        self.stack.push(polygon);
+    }
+
+    /// Takes the polygon at this place of the stack off it, and all above.
+    fn pop_from(&mut self, place: usize) {
+        for polygon in self.stack.drain(place..) {
+            self.marked[polygon as usize] = false;
+        }
+    }
+
+    /// One step with the polygon in question; gives whether it can be painted next.
+    fn advance(&mut self, p: u32, t: &mut impl Tracer<Step>) -> bool {
+        t.step(|| Step::Look { polygon: p });
+        match self.obstacle(p, t) {
+            Some((q, Verdict::Later)) if !self.marked[q as usize] => {
+                t.step(|| Step::Move { polygon: q });
+                self.push(q);
+                return false;
+            }
+            Some((q, verdict)) if self.resolve(p, q, verdict, t) => return false,
+            // Nothing is in the way, or nothing that any cut could resolve.
+            _ => {}
+        }
+        t.step(|| Step::Place { polygon: p });
+        self.done[p as usize] = true;
+        self.pop_from(self.stack.len() - 1);
+        true
+    }
+
+    /// A polygon that P must not be painted before.
+    fn obstacle(&mut self, p: u32, t: &mut impl Tracer<Step>) -> Option<(u32, Verdict)> {
+        self.round += 1;
+        self.seen[p as usize] = self.round;
+        for tile in self.tiles.of(self.pieces.window(p)) {
+            self.tiles.skip_done(tile, &self.done);
+            let mut place = 0;
+            while let Some(q) = self.tiles.get(tile, place) {
+                place += 1;
+                if self.pieces.farthest(q) < self.pieces.nearest(p) {
+                    break;
+                }
+                let i = q as usize;
+                if self.done[i] || self.seen[i] == self.round {
+                    continue;
+                }
+                self.seen[i] = self.round;
+                let verdict = self.pieces.judge(p, q, self.marked[i]);
+                t.step(|| {
+                    let passed =
+                        if let Verdict::Passed(test) = verdict { Some(test) } else { None };
+                    Step::Tested { polygon: p, other: q, passed }
+                });
+                if !matches!(verdict, Verdict::Passed(_)) {
+                    return Some((q, verdict));
+                }
+            }
+        }
+        None
+    }
+
+    /// P and Q penetrate each other, or Q waits for P: one that takes part is split. Gives false
+    /// where none can be.
+    fn resolve(&mut self, p: u32, q: u32, verdict: Verdict, t: &mut impl Tracer<Step>) -> bool {
+        if self.split(p, &Cut::along(q), t) {
+            return true;
+        }
+        if verdict == Verdict::Penetrates || !self.marked[q as usize] {
+            return self.split(q, &Cut::along(p), t);
+        }
+        let first = self.stack.iter().position(|&s| s == q).unwrap_or(0);
+        let cycle = self.stack[first..].to_vec();
+        self.split(q, &Cut::along(p), t) || cycle.into_iter().any(|r| self.split(r, &[], t))
+    }
+
+    /// Splits a polygon by the first cut that leaves pixels on both sides, or else in the middle.
+    fn split(&mut self, p: u32, cuts: &[Cut], t: &mut impl Tracer<Step>) -> bool {
+        let Some((cut, pieces)) = self.pieces.split(p, cuts) else { return false };
+        t.step(|| Step::Split { polygon: p, cut, pieces });
+        self.done[p as usize] = true;
+        if let Some(place) = self.stack.iter().position(|&s| s == p) {
+            self.pop_from(place);
+        }
+        for piece in pieces {
+            self.done.push(false);
+            self.marked.push(false);
+            self.seen.push(0);
+            self.queue.push(self.pieces.key(piece));
+            self.tiles.insert(piece, &self.pieces);
+        }
+        true
+    }
+}

@@ -1,0 +1,291 @@
+//! Light on what a ray hits: shadows, mirror images, refraction.
+//!
+//! T. Whitted, *An Improved Illumination Model for Shaded Display*, CACM 1980. How much is reflected:
+//! C. Schlick, *An Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.
+
+use super::world::{Ray, WorldHit, WorldTriangles};
+use super::{Options, RayKind};
+use crate::math::{Vec3, Vec4};
+use crate::scene::{Material, Projection, ShadingModel};
+use crate::shade::color::premultiply;
+use crate::shade::{PreparedLights, Shading};
+use crate::visibility::surface::Background;
+use crate::visibility::surface::attributes::{blend, run_of};
+use crate::visibility::surface::lit::{Lighting, Lit, Seen};
+use crate::visibility::surface::setup::Coverage;
+
+/// Contributions below this change no 8-bit colour and are not followed.
+const LEAST: f32 = 1.0 / 512.0;
+
+/// Rays are not followed further than this, whatever the options say.
+const DEEPEST: u32 = 32;
+
+/// A ray must be this far away, times the largest coordinate, before it hits anything: more than the
+/// rounding of its origin.
+const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
+
+/// Hears of each ray that is cast.
+type Hear<'h> = &'h mut dyn FnMut(RayKind, u32, Option<u32>);
+
+/// One thread's light.
+pub struct Whitted<'a> {
+    world: Option<&'a WorldTriangles>,
+    shared: Lighting<'a>,
+    options: &'a Options,
+    lit: Lit<'a>,
+    /// The lights, less those that do not reach the point.
+    reaching: PreparedLights,
+    default_material: Material,
+    stack: Vec<(u32, f32)>,
+}
+
+/// A point that is to be lit.
+#[derive(Clone, Copy)]
+struct Point {
+    item: u32,
+    seen: Seen,
+    position: Vec3,
+    /// Unit vector towards where it is seen from.
+    view: Vec3,
+    /// Unit normals, turned to the viewer.
+    normal: Vec3,
+    face_normal: Vec3,
+    /// Whether the face's front is seen.
+    front: bool,
+}
+
+/// How a ray came to its point.
+#[derive(Clone, Copy)]
+struct Path {
+    generation: u32,
+    /// How much of the pixel it makes up.
+    weight: f32,
+    /// What is seen where nothing is hit; linear, premultiplied.
+    behind: Vec4,
+}
+
+impl<'a> Whitted<'a> {
+    pub fn new(
+        world: Option<&'a WorldTriangles>,
+        shared: Lighting<'a>,
+        options: &'a Options,
+    ) -> Self {
+        Self {
+            world,
+            shared,
+            options,
+            lit: Lit::new(shared),
+            reaching: shared.lights.clone(),
+            default_material: Material::default(),
+            stack: Vec::new(),
+        }
+    }
+
+    /// Linear premultiplied colour of an item at a pixel's centre.
+    pub fn at_pixel(
+        &mut self,
+        item: u32,
+        [x, y]: [i32; 2],
+        behind: Vec4,
+        hear: &mut impl FnMut(RayKind, u32, Option<u32>),
+    ) -> Vec4 {
+        let Some(world) = self.world.filter(|_| u64::from(item) < self.triangle_count()) else {
+            return self.lit.color(item, x, y).truncate().extend(1.0);
+        };
+        let camera = self.shared.view.camera();
+        let weights = self.lit.triangle(item).weights(x, y, [0.0; 2]);
+        let towards_eye = match camera.projection {
+            Projection::Perspective { .. } => -blend(&self.lit.triangle(item).positions, weights),
+            Projection::Orthographic { .. } => camera.axes()[2].as_vec3(),
+        };
+        let point = self.point(item, Seen::Pixel(x, y), weights, towards_eye);
+        let path = Path { generation: 0, weight: 1.0, behind };
+        self.light(world, &point, path, hear)
+    }
+
+    fn triangle_count(&self) -> u64 {
+        self.shared.scene.triangle_count()
+    }
+
+    fn point(&mut self, item: u32, seen: Seen, weights: [f32; 3], view: Vec3) -> Point {
+        let t = self.lit.triangle(item);
+        let view = view.normalize_or_zero();
+        let front = t.face_normal.dot(view) >= 0.0;
+        let face_normal = if front { t.face_normal } else { -t.face_normal };
+        let normal = blend(&t.normals, weights).normalize_or(face_normal);
+        let normal = if normal.dot(view) < 0.0 { -normal } else { normal };
+        let position = blend(&t.positions, weights);
+        Point { item, seen, position, view, normal, face_normal, front }
+    }
+
+    /// Linear premultiplied colour of a point, with what is seen in and through it.
+    fn light(&mut self, world: &WorldTriangles, p: &Point, path: Path, hear: Hear<'_>) -> Vec4 {
+        if self.options.shadows {
+            self.find_reaching(world, p, path.generation, hear);
+        }
+        let local = self.lit.color_under(p.item, p.seen, &self.reaching);
+        let mut color = premultiply(local);
+        if local.w < 1.0 {
+            let weight = path.weight * (1.0 - local.w);
+            let through = Path { generation: path.generation + 1, weight, ..path };
+            let direction = self.refracted(p);
+            let seen = self.follow(world, p, direction, RayKind::Refraction, through, hear);
+            color += seen * (1.0 - local.w);
+        }
+        if self.options.reflections {
+            let share = self.mirrored_share(p);
+            let weight = path.weight * share.max_element();
+            let direction = reflected(p.view, p.normal);
+            let behind = self.sky(direction);
+            let mirrored = Path { generation: path.generation + 1, weight, behind };
+            if weight >= LEAST && direction.dot(p.face_normal) > 0.0 {
+                let seen = self.follow(world, p, direction, RayKind::Mirror, mirrored, hear);
+                let mixed = color.truncate() * (Vec3::ONE - share) + seen.truncate() * share;
+                let alpha = color.w + (seen.w - color.w).max(0.0) * share.max_element();
+                color = mixed.extend(alpha);
+            }
+        }
+        color
+    }
+
+    /// What a secondary ray sees.
+    fn follow(
+        &mut self,
+        world: &WorldTriangles,
+        from: &Point,
+        direction: Vec3,
+        kind: RayKind,
+        path: Path,
+        hear: Hear<'_>,
+    ) -> Vec4 {
+        if path.generation > self.options.depth.min(DEEPEST) || path.weight < LEAST {
+            return path.behind;
+        }
+        let ray = leaving(from, direction, f32::MAX);
+        let hit = self.cast(world, &ray, false);
+        hear(kind, path.generation, hit.map(|h| h.item));
+        let Some(WorldHit { item, weights, .. }) = hit else { return path.behind };
+        let seen = Seen::Point { weights, view: -direction };
+        let point = self.point(item, seen, weights, -direction);
+        self.light(world, &point, path, hear)
+    }
+
+    /// The nearest thing that a ray hits; for shadows, of what is not blended.
+    fn cast(&mut self, world: &WorldTriangles, ray: &Ray, shadow: bool) -> Option<WorldHit> {
+        let Self { lit, stack, shared, .. } = self;
+        world.nearest(ray, stack, |hit| {
+            let coverage = shared.runs[run_of(shared.runs, hit.item)].coverage;
+            match coverage {
+                Coverage::Opaque => true,
+                Coverage::Blended => !shadow,
+                Coverage::Masked => {
+                    let seen = Seen::Point { weights: hit.weights, view: -ray.direction };
+                    lit.alpha(hit.item, seen) > 0.0
+                }
+            }
+        })
+    }
+
+    /// Puts out the lights in [`Self::reaching`] that something keeps from a point. Blended surfaces
+    /// throw no shadow.
+    fn find_reaching(
+        &mut self,
+        world: &WorldTriangles,
+        p: &Point,
+        generation: u32,
+        hear: Hear<'_>,
+    ) {
+        let lights = self.shared.lights;
+        for (i, light) in lights.directional.iter().enumerate() {
+            let dark = self.in_shadow(world, p, light.to_light, f32::MAX, generation, hear);
+            self.reaching.directional[i].color = if dark { Vec3::ZERO } else { light.color };
+        }
+        for (i, light) in lights.points.iter().enumerate() {
+            let way = light.position - p.position;
+            let (distance, direction) = (way.length(), way.normalize_or_zero());
+            // Not as far as a lamp's own surface around the light.
+            let reach = distance * (1.0 - 16.0 * CLEARANCE);
+            let dark = self.in_shadow(world, p, direction, reach, generation, hear);
+            self.reaching.points[i].color = if dark { Vec3::ZERO } else { light.color };
+        }
+    }
+
+    fn in_shadow(
+        &mut self,
+        world: &WorldTriangles,
+        p: &Point,
+        direction: Vec3,
+        reach: f32,
+        generation: u32,
+        hear: Hear<'_>,
+    ) -> bool {
+        // What faces away from the light is dark without a ray.
+        if direction.dot(p.face_normal) <= 0.0 {
+            return false;
+        }
+        let hit = self.cast(world, &leaving(p, direction, reach), true);
+        hear(RayKind::Shadow, generation, hit.map(|h| h.item));
+        hit.is_some()
+    }
+
+    fn material(&self, item: u32) -> &Material {
+        let run = &self.shared.runs[run_of(self.shared.runs, item)];
+        run.material.map_or(&self.default_material, |m| &self.shared.scene.materials[m])
+    }
+
+    /// How much of the mirror image a point shows; textures have no say.
+    fn mirrored_share(&self, p: &Point) -> Vec3 {
+        let m = self.material(p.item);
+        let (straight, roughness) = match m.model {
+            ShadingModel::Unlit => return Vec3::ZERO,
+            _ if self.shared.shading == Some(Shading::Unlit) => return Vec3::ZERO,
+            ShadingModel::MetallicRoughness => {
+                let base = m.base_color.truncate();
+                (Vec3::splat(0.04).lerp(base, m.metallic.clamp(0.0, 1.0)), m.roughness)
+            }
+            ShadingModel::Phong => (m.specular, (2.0 / (m.shininess.max(0.0) + 2.0)).sqrt().sqrt()),
+        };
+        let straight = straight.clamp(Vec3::ZERO, Vec3::ONE);
+        let smooth = 1.0 - roughness.clamp(0.0, 1.0);
+        let x = 1.0 - p.normal.dot(p.view).clamp(0.0, 1.0);
+        let grazing = (x * x) * (x * x) * x;
+        (straight + (Vec3::ONE - straight) * grazing) * (smooth * smooth)
+    }
+
+    /// Where a ray goes on through a surface; mirrored where it cannot leave.
+    fn refracted(&self, p: &Point) -> Vec3 {
+        let index = self.options.refractive_index;
+        let index = if index.is_finite() && index > 0.0 { index } else { 1.0 };
+        let eta = if p.front { 1.0 / index } else { index };
+        let cos = p.normal.dot(p.view);
+        let k = 1.0 - eta * eta * (1.0 - cos * cos);
+        if index == 1.0 {
+            return -p.view;
+        }
+        if k < 0.0 {
+            return reflected(p.view, p.normal);
+        }
+        (p.normal * (eta * cos - k.sqrt()) - p.view * eta).normalize_or(-p.view)
+    }
+
+    /// The background in a direction; linear, premultiplied.
+    fn sky(&self, direction: Vec3) -> Vec4 {
+        premultiply(match self.options.look.background {
+            Background::Color(color) => color,
+            Background::Gradient(top, bottom) => {
+                let up = self.shared.view.camera().axes()[1].as_vec3();
+                top.lerp(bottom, (0.5 - 0.5 * direction.dot(up)).clamp(0.0, 1.0))
+            }
+        })
+    }
+}
+
+fn reflected(view: Vec3, normal: Vec3) -> Vec3 {
+    (normal * (2.0 * normal.dot(view)) - view).normalize_or(normal)
+}
+
+/// A ray that leaves a surface.
+fn leaving(p: &Point, direction: Vec3, to: f32) -> Ray {
+    let from = p.position.abs().max_element() * CLEARANCE;
+    Ray { origin: p.position, direction, from, to, leaves: p.item }
+}

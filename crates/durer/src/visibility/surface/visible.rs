@@ -1,0 +1,142 @@
+//! The result of an image-space algorithm, one item and depth per pixel, and its way to a picture.
+
+use crate::math::Vec4;
+use crate::shade::color::premultiply;
+use crate::shade::{PreparedLights, PreparedMaterials};
+use crate::target::{Framebuffer, NO_ITEM};
+use crate::visibility::surface::background::background_rows;
+use crate::visibility::surface::cover::Window;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::picture::{self, Picture};
+use crate::visibility::surface::setup::Coverage;
+
+/// What is nearest at each sample of a window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visible {
+    window: Window,
+    /// Row by row; [`NO_ITEM`] where nothing is.
+    pub item: Vec<u32>,
+    /// Row by row; 1 where nothing is.
+    pub depth: Vec<f32>,
+}
+
+impl Visible {
+    /// Nothing, as far as the far plane.
+    pub fn new(window: Window) -> Self {
+        let size = |a: i32, b: i32| (b - a).max(0) as usize;
+        let count = size(window.x0, window.x1) * size(window.y0, window.y1);
+        Self { window, item: vec![NO_ITEM; count], depth: vec![1.0; count] }
+    }
+
+    /// The place of a sample of the window.
+    #[inline]
+    pub fn index(&self, x: i32, y: i32) -> usize {
+        let w = &self.window;
+        (y - w.y0) as usize * (w.x1 - w.x0) as usize + (x - w.x0) as usize
+    }
+
+    /// Row number, items and depths of each row.
+    fn rows(&self) -> impl Iterator<Item = (u32, &[u32], &[f32])> {
+        let width = ((self.window.x1 - self.window.x0).max(1)) as usize;
+        let rows = self.item.chunks(width).zip(self.depth.chunks(width));
+        (0..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
+    }
+
+    /// Writes a sample, whatever was there; what lies beyond the far plane is not seen.
+    #[inline]
+    pub fn put(&mut self, x: i32, y: i32, depth: f32, item: u32) {
+        if depth < 1.0 {
+            let index = self.index(x, y);
+            (self.depth[index], self.item[index]) = (depth, item);
+        }
+    }
+}
+
+/// All pixels of a view.
+pub fn pixels_of(view: &crate::view::View) -> Window {
+    Window { x0: 0, y0: 0, x1: view.width() as i32, y1: view.height() as i32 }
+}
+
+/// What lies in front: the smaller depth, of equal ones the lower item.
+#[inline]
+pub fn nearer(a: (f32, u32), b: (f32, u32)) -> bool {
+    a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
+}
+
+/// Says of masked materials where they are; knows which triangles have one.
+pub struct Masks<'a> {
+    lit: Lit<'a>,
+    /// Of each triangle of the input; empty where nothing is masked.
+    masked: Vec<bool>,
+}
+
+impl<'a> Masks<'a> {
+    /// For the triangles of an input.
+    pub fn new(input: &SurfaceInput<'_>, lighting: Lighting<'a>) -> Self {
+        let any = input.runs.iter().any(|r| r.coverage == Coverage::Masked);
+        let masked = |item: u32| input.run_of(item).coverage == Coverage::Masked;
+        let masked = match any {
+            true => input.triangles.iter().map(|t| masked(t.item)).collect(),
+            false => Vec::new(),
+        };
+        Self { lit: Lit::new(lighting), masked }
+    }
+
+    /// Whether a triangle may have holes.
+    #[inline]
+    pub fn is_masked(&self, triangle: usize) -> bool {
+        self.masked.get(triangle).copied().unwrap_or(false)
+    }
+
+    /// Whether a triangle is there at a pixel.
+    #[inline]
+    pub fn passes(&mut self, triangle: usize, item: u32, x: i32, y: i32) -> bool {
+        !self.is_masked(triangle) || self.lit.passes_mask(item, x, y)
+    }
+}
+
+/// Calls `f` with what is needed to light an input's items.
+pub fn with_lighting<R>(
+    input: &SurfaceInput<'_>,
+    lights: &PreparedLights,
+    look: &picture::Options,
+    f: impl FnOnce(Lighting<'_>) -> R,
+) -> R {
+    let materials = PreparedMaterials::new(input.scene);
+    f(Lighting {
+        scene: input.scene,
+        view: input.view,
+        runs: &input.runs,
+        materials: &materials,
+        lights,
+        shading: look.shading,
+    })
+}
+
+/// Lights what is visible at the pixels' centres into all planes that the framebuffer has.
+pub fn write(
+    visible: &Visible,
+    lighting: Lighting<'_>,
+    look: &picture::Options,
+    framebuffer: &mut Framebuffer,
+) {
+    let mut picture = Picture::with_lighting(lighting, look, framebuffer);
+    visible.rows().for_each(|(y, items, depths)| picture.write(0, y, items, depths));
+}
+
+/// Writes depth, item and normal, but no colour.
+pub fn write_planes(
+    visible: &Visible,
+    lighting: Lighting<'_>,
+    look: &picture::Options,
+    framebuffer: &mut Framebuffer,
+) {
+    let mut picture = Picture::with_lighting(lighting, look, framebuffer);
+    visible.rows().for_each(|(y, items, depths)| picture.write_planes(0, y, items, depths));
+}
+
+/// The background of a row, linear and premultiplied.
+pub fn background_at(look: &picture::Options, height: u32, y: i32) -> Vec4 {
+    premultiply(background_rows(look.background, height)(y))
+}

@@ -1,0 +1,48 @@
+//! Which of two triangles is in front all over a window: certain for every sample, as computed.
+
+use crate::visibility::surface::cover::{SampleGrid, Window};
+use crate::visibility::surface::setup::ScreenTriangle;
+
+/// The largest depth over a window's samples; exact, for rounding is monotonic, so that depths
+/// increase or decrease along rows and columns and are extreme at corners.
+pub fn farthest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
+    window.corners().into_iter().fold(0.0, |far: f32, [x, y]| far.max(grid.depth(t, x, y)))
+}
+
+fn nearest(t: &ScreenTriangle, grid: SampleGrid, window: &Window) -> f32 {
+    let corners = window.corners().into_iter();
+    corners.fold(f32::INFINITY, |near, [x, y]| near.min(grid.depth(t, x, y)))
+}
+
+/// The depth of the triangle's plane and how much rounding may move it.
+fn on_plane(t: &ScreenTriangle, grid: SampleGrid, [x, y]: [i32; 2]) -> (f64, f64) {
+    let [dx, dy] = grid.from_origin(t, x, y).map(f64::from);
+    let (ax, ay) = (f64::from(t.depth_dx) * dx, f64::from(t.depth_dy) * dy);
+    let depth = f64::from(t.depth);
+    // Two products and two sums, each off by half an ulp of f32, in two numbers.
+    let slack = 4.0 * f64::from(f32::EPSILON) * (depth.abs() + ax.abs() + ay.abs());
+    (depth + (ax + ay), slack)
+}
+
+/// Whether `front` wins against `behind` at every sample of a window that it surrounds.
+pub fn hides(
+    front: &ScreenTriangle,
+    behind: &ScreenTriangle,
+    grid: SampleGrid,
+    window: &Window,
+) -> bool {
+    let (far, near) = (farthest(front, grid, window), nearest(behind, grid, window));
+    if far < near || (far == near && front.item < behind.item) {
+        return true;
+    }
+    // Depths are kept to the range of the vertices: that must not raise `front` above its plane, nor
+    // lower `behind` to it.
+    if front.depth_min >= near || far >= behind.depth_max {
+        return false;
+    }
+    window.corners().into_iter().all(|corner| {
+        let (f, f_slack) = on_plane(front, grid, corner);
+        let (b, b_slack) = on_plane(behind, grid, corner);
+        f + f_slack + b_slack < b
+    })
+}

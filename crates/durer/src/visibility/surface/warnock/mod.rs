@@ -1,0 +1,372 @@
+//! Area subdivision.
+//!
+//! J. Warnock, *A Hidden Surface Algorithm for Computer Generated Halftone Pictures*, University of
+//! Utah TR 4-15, 1969. Image space. A window is looked at with the triangles that concern it; if it
+//! is simple it is drawn, else it is divided. Cost: O(triangles · log pixels) for small triangles, at
+//! most one look per sample and triangle that concerns it; memory O(triangles · log pixels).
+//! Coherence used: areas.
+//!
+//! Deviations: windows consist of whole samples, so their corners are samples and all relations are
+//! decided exactly, with the z-buffer's own coverage and depth. What a surrounding triangle hides is
+//! dropped before a window is divided. Blended surfaces count as opaque.
+
+mod depth;
+
+use crate::info::{Class, Info};
+use crate::math::Vec4;
+use crate::shade::PreparedLights;
+use crate::target::{Framebuffer, NO_ITEM};
+use crate::trace::Tracer;
+use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::mixed::encode;
+use crate::visibility::surface::picture;
+use crate::visibility::surface::setup::ScreenTriangle;
+use crate::visibility::surface::visible::{
+    Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
+};
+use depth::{farthest, hides};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "warnock",
+    title: "Warnock's area subdivision",
+    authors: "J. Warnock",
+    year: 1969,
+    source: "A Hidden Surface Algorithm for Computer Generated Halftone Pictures, University of Utah",
+    class: Class::ImageSpace,
+    cost: "O(triangles · log pixels) for small triangles; memory likewise",
+    limits: "blended surfaces count as opaque",
+};
+
+/// Where a window is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Division {
+    /// In the middle of both sides.
+    #[default]
+    Regular,
+    /// At a vertex in the window, as near to its middle as can be found quickly.
+    Vertices,
+}
+
+/// What the picture is to have.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options {
+    /// Shading and background.
+    pub look: picture::Options,
+    /// Where windows are divided.
+    pub division: Division,
+    /// How often a pixel is divided, 0 … 4; colour is the mean of its 4^`sub_levels` samples. Time
+    /// grows about twofold with each level, for only windows along edges are divided so far.
+    pub sub_levels: u32,
+}
+
+/// What there is to see. Windows count in samples of the pass's grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Step {
+    /// A pass over a part of the screen begins: pixels, or samples below them.
+    Begin {
+        /// The part.
+        window: Window,
+        /// Samples along the side of a pixel.
+        per_pixel: i32,
+    },
+    /// A window is looked at.
+    Look {
+        /// The window.
+        window: Window,
+        /// How many triangles concern it.
+        triangles: usize,
+    },
+    /// Rule 1: all triangles are outside.
+    Empty {
+        /// The window.
+        window: Window,
+    },
+    /// Rule 2: only one triangle concerns the window.
+    Single {
+        /// The window.
+        window: Window,
+        /// Index into [`SurfaceInput::triangles`].
+        triangle: u32,
+    },
+    /// Rules 3 and 4: a triangle surrounds the window and hides all others that concern it.
+    Surrounded {
+        /// The window.
+        window: Window,
+        /// Index into [`SurfaceInput::triangles`].
+        triangle: u32,
+    },
+    /// A window of one sample: decided by depth.
+    Sample {
+        /// Column.
+        x: i32,
+        /// Row.
+        y: i32,
+        /// The nearest triangle that covers it, an index into [`SurfaceInput::triangles`].
+        triangle: Option<u32>,
+    },
+    /// The window is divided before a column and a row.
+    Divide {
+        /// The window.
+        window: Window,
+        /// First column of the right half.
+        x: i32,
+        /// First row of the lower half.
+        y: i32,
+    },
+}
+
+/// Renders the input into the planes that the framebuffer has.
+pub fn render(
+    input: &SurfaceInput<'_>,
+    lights: &PreparedLights,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) {
+    with_lighting(input, lights, &options.look, |lighting| {
+        let whole = pixels_of(input.view);
+        let visible = solve(input, lighting, options.division, SampleGrid::PIXELS, whole, t);
+        if options.sub_levels == 0 {
+            write(&visible, lighting, &options.look, framebuffer);
+        } else {
+            write_planes(&visible, lighting, &options.look, framebuffer);
+            anti_aliased(input, lighting, options, framebuffer, t);
+        }
+    });
+}
+
+/// Pixel rows of which all samples are held at a time.
+const BAND: i32 = 16;
+
+fn anti_aliased(
+    input: &SurfaceInput<'_>,
+    lighting: Lighting<'_>,
+    options: &Options,
+    framebuffer: &mut Framebuffer,
+    t: &mut impl Tracer<Step>,
+) {
+    let grid = SampleGrid::below_pixel(options.sub_levels);
+    let (n, Window { x1, y1, .. }) = (grid.per_pixel(), pixels_of(input.view));
+    let mut lit = Lit::new(lighting);
+    for top in (0..y1).step_by(BAND as usize) {
+        let bottom = y1.min(top + BAND);
+        let window = Window { x0: 0, y0: top * n, x1: x1 * n, y1: bottom * n };
+        let visible = solve(input, lighting, options.division, grid, window, t);
+        for (x, y) in (top..bottom).flat_map(|y| (0..x1).map(move |x| (x, y))) {
+            let behind = background_at(&options.look, input.view.height(), y);
+            let color = encode(mean(&visible, &mut lit, n, [x, y], behind));
+            framebuffer.color.set(x as u32, y as u32, color);
+        }
+    }
+}
+
+/// The mean of a pixel's samples; each item is lit once.
+fn mean(visible: &Visible, lit: &mut Lit<'_>, n: i32, [x, y]: [i32; 2], behind: Vec4) -> Vec4 {
+    let mut items: Vec<u32> = Vec::with_capacity((n * n) as usize);
+    for row in y * n..(y + 1) * n {
+        let start = visible.index(x * n, row);
+        items.extend(&visible.item[start..start + n as usize]);
+    }
+    items.sort_unstable();
+    let share = 1.0 / items.len() as f32;
+    let color = |lit: &mut Lit<'_>, item: u32| match item {
+        NO_ITEM => behind,
+        item => lit.color(item, x, y).truncate().extend(1.0),
+    };
+    let parts = items.chunk_by(|a, b| a == b);
+    parts.fold(Vec4::ZERO, |sum, same| sum + color(lit, same[0]) * (same.len() as f32 * share))
+}
+
+/// What is visible at the samples of a window.
+pub(crate) fn solve(
+    input: &SurfaceInput<'_>,
+    lighting: Lighting<'_>,
+    division: Division,
+    grid: SampleGrid,
+    window: Window,
+    t: &mut impl Tracer<Step>,
+) -> Visible {
+    let covers = input.triangles.iter().map(|t| Cover::new(t, grid)).collect();
+    let masks = Masks::new(input, lighting);
+    let visible = Visible::new(window);
+    let mut solver = Solver { triangles: &input.triangles, covers, grid, masks, visible };
+    t.step(|| Step::Begin { window, per_pixel: grid.per_pixel() });
+    solver.run(window, division, t);
+    solver.visible
+}
+
+/// A triangle that concerns a window.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    triangle: u32,
+    surrounds: bool,
+}
+
+/// A window that waits, and its part of the list of entries.
+struct Waiting {
+    window: Window,
+    first: usize,
+    end: usize,
+}
+
+struct Solver<'a> {
+    triangles: &'a [ScreenTriangle],
+    covers: Vec<Cover>,
+    grid: SampleGrid,
+    masks: Masks<'a>,
+    visible: Visible,
+}
+
+impl Solver<'_> {
+    /// Looks at windows from a stack; the windows of a stack share one list of entries.
+    fn run(&mut self, whole: Window, division: Division, t: &mut impl Tracer<Step>) {
+        let mut list = Vec::new();
+        if !whole.is_empty() {
+            let all = 0..self.triangles.len() as u32;
+            let all: Vec<Entry> =
+                all.map(|triangle| Entry { triangle, surrounds: false }).collect();
+            self.concern(&all, &whole, &mut list);
+        }
+        let mut stack = vec![Waiting { window: whole, first: 0, end: list.len() }];
+        let mut entries = Vec::new();
+        while let Some(Waiting { window, first, end }) = stack.pop() {
+            entries.clear();
+            entries.extend_from_slice(&list[first..end]);
+            list.truncate(first);
+            t.step(|| Step::Look { window, triangles: entries.len() });
+            self.drop_hidden(&window, &mut entries);
+            if self.draw_simple(&window, &entries, t) {
+                continue;
+            }
+            let (x, y) = self.division(&window, &entries, division);
+            t.step(|| Step::Divide { window, x, y });
+            for part in parts(&window, x, y) {
+                let first = list.len();
+                self.concern(&entries, &part, &mut list);
+                stack.push(Waiting { window: part, first, end: list.len() });
+            }
+        }
+    }
+
+    /// Adds those entries to a list that concern a window.
+    fn concern(&self, entries: &[Entry], window: &Window, list: &mut Vec<Entry>) {
+        for &Entry { triangle, surrounds } in entries {
+            let relation = match surrounds {
+                true => Relation::Surrounding,
+                false => self.covers[triangle as usize].relation(window),
+            };
+            if relation != Relation::Outside {
+                let surrounds = relation == Relation::Surrounding;
+                list.push(Entry { triangle, surrounds });
+            }
+        }
+    }
+
+    /// Drops what lies behind a surrounding triangle: the one whose farthest corner is nearest.
+    fn drop_hidden(&self, window: &Window, entries: &mut Vec<Entry>) {
+        let surrounding = entries.iter().filter(|e| e.surrounds);
+        let mut best: Option<(f32, u32, u32)> = None;
+        for e in surrounding.filter(|e| !self.masks.is_masked(e.triangle as usize)) {
+            let triangle = &self.triangles[e.triangle as usize];
+            let far = farthest(triangle, self.grid, window);
+            if best.is_none_or(|(depth, item, _)| nearer((far, triangle.item), (depth, item))) {
+                best = Some((far, triangle.item, e.triangle));
+            }
+        }
+        let Some((_, _, hider)) = best else { return };
+        let front = &self.triangles[hider as usize];
+        entries.retain(|e| {
+            let behind = &self.triangles[e.triangle as usize];
+            e.triangle == hider || !hides(front, behind, self.grid, window)
+        });
+    }
+
+    /// Draws a window that is empty, has one triangle, or one sample; gives whether it was so.
+    fn draw_simple(
+        &mut self,
+        window: &Window,
+        entries: &[Entry],
+        t: &mut impl Tracer<Step>,
+    ) -> bool {
+        let window = *window;
+        match *entries {
+            [] => t.step(|| Step::Empty { window }),
+            [Entry { triangle, surrounds }] => {
+                t.step(|| match surrounds {
+                    true => Step::Surrounded { window, triangle },
+                    false => Step::Single { window, triangle },
+                });
+                self.draw(&window, triangle as usize);
+            }
+            _ if window.x1 - window.x0 == 1 && window.y1 - window.y0 == 1 => {
+                self.decide(entries, [window.x0, window.y0], t);
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Scan converts one triangle in a window.
+    fn draw(&mut self, window: &Window, triangle: usize) {
+        let Self { triangles, covers, grid, masks, visible } = self;
+        let (t, n) = (&triangles[triangle], grid.per_pixel());
+        covers[triangle].spans(window, |span| {
+            for x in span.x0..span.x1 {
+                if masks.passes(triangle, t.item, x / n, span.y / n) {
+                    visible.put(x, span.y, grid.depth(t, x, span.y), t.item);
+                }
+            }
+        });
+    }
+
+    /// Decides one sample by depth.
+    fn decide(&mut self, entries: &[Entry], [x, y]: [i32; 2], t: &mut impl Tracer<Step>) {
+        let n = self.grid.per_pixel();
+        let mut best: Option<(f32, u32, u32)> = None;
+        for &Entry { triangle, .. } in entries {
+            let i = triangle as usize;
+            let (depth, item) = (self.grid.depth(&self.triangles[i], x, y), self.triangles[i].item);
+            let wins = best.is_none_or(|(d, other, _)| nearer((depth, item), (d, other)));
+            if wins && self.covers[i].covers(x, y) && self.masks.passes(i, item, x / n, y / n) {
+                best = Some((depth, item, triangle));
+            }
+        }
+        t.step(|| Step::Sample { x, y, triangle: best.map(|b| b.2) });
+        if let Some((depth, item, _)) = best {
+            self.visible.put(x, y, depth, item);
+        }
+    }
+
+    /// Before which column and row a window is divided.
+    fn division(&self, w: &Window, entries: &[Entry], division: Division) -> (i32, i32) {
+        let middle = ((w.x0 + w.x1) / 2, (w.y0 + w.y1) / 2);
+        if division == Division::Regular {
+            return middle;
+        }
+        let inside = |v: i32, first: i32, end: i32| v > first && v < end;
+        let crossing = entries.iter().filter(|e| !e.surrounds).take(VERTEX_CANDIDATES);
+        let places = crossing.flat_map(|e| {
+            let t = &self.triangles[e.triangle as usize];
+            [0, 1, 2].map(|i| (self.grid.first_at(t.x[i]), self.grid.first_at(t.y[i])))
+        });
+        places
+            .filter(|&(x, y)| inside(x, w.x0, w.x1) && inside(y, w.y0, w.y1))
+            .min_by_key(|&(x, y)| x.abs_diff(middle.0).max(y.abs_diff(middle.1)))
+            .unwrap_or(middle)
+    }
+}
+
+/// Triangles whose vertices are looked at to divide a window; more would take longer than it saves.
+const VERTEX_CANDIDATES: usize = 16;
+
+/// The parts of a window that are not empty.
+fn parts(w: &Window, x: i32, y: i32) -> impl Iterator<Item = Window> {
+    let Window { x0, y0, x1, y1 } = *w;
+    let columns = [(x, x1), (x0, x)];
+    let rows = [(y, y1), (y0, y)];
+    let parts = rows.map(|(y0, y1)| columns.map(|(x0, x1)| Window { x0, y0, x1, y1 }));
+    parts.into_iter().flatten().filter(|part| !part.is_empty())
+}

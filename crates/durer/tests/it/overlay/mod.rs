@@ -1,0 +1,6 @@
+//! `overlay()`: laws, hard cases, and validity by an independent judge.
+
+mod agreement;
+pub mod cases;
+mod laws;
+pub mod validity;

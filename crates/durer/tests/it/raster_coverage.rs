@@ -1,0 +1,323 @@
+//! Exact area coverage against an independent computation of the areas, and its invariants.
+
+use durer::curve::Contours;
+use durer::math::DVec2;
+use durer::raster::coverage::{Face, FillRule, Options, Overlap, Step, fill, fill_partition};
+use durer::target::Pixels;
+use durer::trace::{NoTrace, Recorder};
+
+/// A small generator: the same numbers on every run.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / f64::from(1_u32 << 31)
+    }
+
+    pub fn point(&mut self, low: f64, high: f64) -> DVec2 {
+        DVec2::new(low + self.next() * (high - low), low + self.next() * (high - low))
+    }
+}
+
+const RULES: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];
+
+fn mask(contours: &Contours, width: u32, height: u32, rule: FillRule) -> Pixels<u8> {
+    let options = Options { rule, ..Options::default() };
+    fill(contours, width, height, &options, &mut NoTrace).expect("size")
+}
+
+fn edges(contours: &Contours) -> Vec<(DVec2, DVec2)> {
+    let mut edges = Vec::new();
+    for (points, _) in contours.iter() {
+        for (i, p) in points.iter().enumerate() {
+            edges.push((*p, points[(i + 1) % points.len()]));
+        }
+    }
+    edges
+}
+
+/// The area of each pixel of one row inside the outline: the row is cut at every vertex, at every
+/// crossing of two edges and at every crossing of an edge with a border of pixels.
+fn row_areas(edges: &[(DVec2, DVec2)], y: u32, width: u32, rule: FillRule) -> Vec<f64> {
+    let (top, bottom) = (f64::from(y), f64::from(y) + 1.0);
+    let x_at = |e: &(DVec2, DVec2), y: f64| e.0.x + (e.1.x - e.0.x) * (y - e.0.y) / (e.1.y - e.0.y);
+    let steep: Vec<_> = edges.iter().filter(|e| e.0.y != e.1.y).collect();
+    let mut cuts = vec![top, bottom];
+    for (i, e) in steep.iter().enumerate() {
+        cuts.extend([e.0.y, e.1.y]);
+        for x in 0..=width {
+            if e.0.x != e.1.x {
+                cuts.push(e.0.y + (e.1.y - e.0.y) * (f64::from(x) - e.0.x) / (e.1.x - e.0.x));
+            }
+        }
+        for f in &steep[..i] {
+            let (d, g) = (e.1 - e.0, f.1 - f.0);
+            let cross = d.perp_dot(g);
+            if cross != 0.0 {
+                cuts.push(e.0.y + d.y * ((f.0 - e.0).perp_dot(g) / cross));
+            }
+        }
+    }
+    cuts.retain(|c| *c >= top && *c <= bottom);
+    cuts.sort_by(f64::total_cmp);
+    let mut areas = vec![0.0; width as usize];
+    for pair in cuts.windows(2).filter(|p| p[1] > p[0]) {
+        let middle = (pair[0] + pair[1]) / 2.0;
+        let mut hits: Vec<(f64, i32)> = steep
+            .iter()
+            .filter(|e| (e.0.y < middle) != (e.1.y < middle))
+            .map(|e| (x_at(e, middle), if e.0.y < e.1.y { 1 } else { -1 }))
+            .collect();
+        hits.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut winding = 0;
+        for w in hits.windows(2) {
+            winding += w[0].1;
+            let inside = if rule == FillRule::NonZero { winding != 0 } else { winding % 2 != 0 };
+            if inside {
+                for (x, area) in areas.iter_mut().enumerate() {
+                    let (left, right) = (w[0].0.max(x as f64), w[1].0.min(x as f64 + 1.0));
+                    *area += (right - left).max(0.0) * (pair[1] - pair[0]);
+                }
+            }
+        }
+    }
+    areas
+}
+
+/// The largest difference from the exact coverage, in 1/255.
+fn worst_error(contours: &Contours, width: u32, height: u32, rule: FillRule) -> f64 {
+    let found = mask(contours, width, height, rule);
+    let edges = edges(contours);
+    let mut worst = 0.0_f64;
+    for y in 0..height {
+        for (x, area) in row_areas(&edges, y, width, rule).iter().enumerate() {
+            let error = (f64::from(found.row(y)[x]) - area * 255.0).abs();
+            if error > worst && error > 0.53 {
+                eprintln!("pixel {x},{y}: {} for {}", found.row(y)[x], area * 255.0);
+            }
+            worst = worst.max(error);
+        }
+    }
+    worst
+}
+
+#[test]
+fn coverage_is_the_exact_area_of_simple_and_crossing_polygons() {
+    let mut random = Random(1);
+    for round in 0..400 {
+        let count = 3 + round % 6;
+        let contours = Contours::polygon((0..count).map(|_| random.point(-3.0, 15.0)));
+        for rule in RULES {
+            let worst = worst_error(&contours, 12, 12, rule);
+            assert!(worst <= 0.52, "round {round}, {rule:?}: {worst} {contours:?}");
+        }
+    }
+}
+
+#[test]
+fn coverage_is_exact_on_a_coarse_grid_where_everything_meets() {
+    let mut random = Random(2);
+    for round in 0..400 {
+        let mut contours = Contours::new();
+        for _ in 0..1 + round % 3 {
+            let points = (0..3 + round % 4).map(|_| (random.point(-2.0, 8.0) * 2.0).round() / 2.0);
+            contours.push(points, true);
+        }
+        for rule in RULES {
+            let worst = worst_error(&contours, 6, 6, rule);
+            assert!(worst <= 0.52, "round {round}, {rule:?}: {worst} {contours:?}");
+        }
+    }
+}
+
+#[test]
+fn coverage_is_exact_in_crowded_pixels() {
+    let mut random = Random(4);
+    for round in 0..100 {
+        let contours = Contours::polygon((0..12).map(|_| random.point(0.0, 4.0)));
+        for rule in RULES {
+            let worst = worst_error(&contours, 4, 4, rule);
+            assert!(worst <= 0.52, "round {round}, {rule:?}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn opposite_windings_do_not_cancel() {
+    // The two halves of a bow-tie meet in the diagonal of every pixel.
+    let points = [(0.0, 0.0), (8.0, 8.0), (8.0, 0.0), (0.0, 8.0)].map(|(x, y)| DVec2::new(x, y));
+    let bow = Contours::polygon(points);
+    for rule in RULES {
+        assert!(worst_error(&bow, 8, 8, rule) <= 0.52);
+    }
+    // A pixel covered by a square one way and by another the other way round.
+    let mut both = Contours::new();
+    let square = |x: f64| {
+        [(x, 0.0), (x + 0.5, 0.0), (x + 0.5, 1.0), (x, 1.0)].map(|(x, y)| DVec2::new(x, y))
+    };
+    both.push(square(0.0), true);
+    both.push(square(0.5).into_iter().rev(), true);
+    assert_eq!(mask(&both, 1, 1, FillRule::NonZero).data(), [255]);
+    let accumulated = Options { overlap: Overlap::Accumulated, ..Options::default() };
+    assert_eq!(fill(&both, 1, 1, &accumulated, &mut NoTrace).unwrap().data(), [0]);
+    // Horizontal slivers of opposite winding, far from their ends.
+    let mut slivers = Contours::new();
+    let sliver = |y: f64| {
+        [(0.0, y), (90.0, y), (90.0, y + 0.5), (0.0, y + 0.5)].map(|(x, y)| DVec2::new(x, y))
+    };
+    slivers.push(sliver(0.0), true);
+    slivers.push(sliver(0.5).into_iter().rev(), true);
+    assert_eq!(mask(&slivers, 90, 1, FillRule::NonZero).data(), [255; 90]);
+}
+
+#[test]
+fn shallow_and_steep_edges_are_exact_across_many_pixels() {
+    let mut random = Random(5);
+    for _ in 0..40 {
+        let points = [
+            DVec2::new(-20.0 * random.next(), random.next()),
+            DVec2::new(220.0, 3.0 * random.next()),
+            DVec2::new(150.0 * random.next(), 4.0),
+        ];
+        let contours = Contours::polygon(points);
+        let worst = worst_error(&contours, 200, 4, FillRule::NonZero);
+        assert!(worst <= 0.52, "{worst} {points:?}");
+        let turned = Contours::polygon(points.map(|p| DVec2::new(p.y, p.x)));
+        let worst = worst_error(&turned, 4, 200, FillRule::NonZero);
+        assert!(worst <= 0.52, "{worst} {points:?}");
+    }
+}
+
+#[test]
+fn reversal_and_the_starting_vertex_change_nothing() {
+    let mut random = Random(6);
+    for _ in 0..100 {
+        let mut points: Vec<DVec2> = (0..7).map(|_| random.point(-5.0, 45.0)).collect();
+        for rule in RULES {
+            let reference = mask(&Contours::polygon(points.clone()), 40, 40, rule);
+            points.reverse();
+            assert_eq!(mask(&Contours::polygon(points.clone()), 40, 40, rule), reference);
+            points.rotate_left(3);
+            assert_eq!(mask(&Contours::polygon(points.clone()), 40, 40, rule), reference);
+        }
+    }
+}
+
+#[test]
+fn a_window_shows_what_the_whole_shows_there() {
+    let mut random = Random(7);
+    for _ in 0..100 {
+        let points: Vec<DVec2> = (0..6).map(|_| random.point(-30.0, 130.0)).collect();
+        let whole = mask(&Contours::polygon(points.clone()), 100, 100, FillRule::NonZero);
+        let offset = DVec2::new(37.0, 41.0);
+        let moved = Contours::polygon(points.iter().map(|p| *p - offset));
+        let window = mask(&moved, 20, 30, FillRule::NonZero);
+        for y in 0..30 {
+            for x in 0..20 {
+                let (a, b) = (whole.get(x + 37, y + 41).unwrap(), window.get(x, y).unwrap());
+                assert!(a.abs_diff(b) <= 1, "{x},{y}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_steps_rebuild_the_mask() {
+    let mut random = Random(8);
+    let contours = Contours::polygon((0..9).map(|_| random.point(-10.0, 110.0)));
+    let mut recorder: Recorder<Step> = Recorder::default();
+    let traced = fill(&contours, 100, 100, &Options::default(), &mut recorder).unwrap();
+    assert_eq!(traced, mask(&contours, 100, 100, FillRule::NonZero));
+    let mut rebuilt = Pixels::new(100, 100, 0_u8);
+    for step in recorder.steps() {
+        (step.x0..step.x1).for_each(|x| rebuilt.set(x, step.y, step.coverage));
+    }
+    assert_eq!(rebuilt, traced);
+}
+
+#[test]
+fn strange_coordinates_give_defined_pictures() {
+    let values = [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        1e30,
+        -1e30,
+        f64::MAX,
+        1e-300,
+        -0.0,
+        5.5,
+        32768.0,
+    ];
+    for a in values {
+        for b in values {
+            let points =
+                [DVec2::new(a, b), DVec2::new(b, 3.0), DVec2::new(7.5, a), DVec2::new(1.0, 2.0)];
+            for (width, height) in [(0, 0), (0, 9), (9, 0), (1, 1), (65, 40)] {
+                let contours = Contours::polygon(points);
+                assert_eq!(
+                    mask(&contours, width, height, FillRule::NonZero).data().len() as u32,
+                    width * height
+                );
+            }
+        }
+    }
+    let huge = |s: f64| [(-s, -s), (s, -s), (s, s), (-s, s)].map(|(x, y)| DVec2::new(x, y));
+    for size in [1e3, 1e9, 1e30, f64::MAX] {
+        let all = mask(&Contours::polygon(huge(size)), 70, 40, FillRule::NonZero);
+        assert!(all.data().iter().all(|c| *c == 255), "{size}");
+    }
+    assert!(fill(&Contours::new(), 40_000, 1, &Options::default(), &mut NoTrace).is_err());
+}
+
+#[test]
+fn a_million_vertices_that_cross_themselves_are_filled() {
+    let mut random = Random(9);
+    let contours = Contours::polygon((0..1_000_000).map(|_| random.point(0.0, 64.0)));
+    let mask = mask(&contours, 64, 64, FillRule::NonZero);
+    assert!(mask.data().iter().filter(|c| **c > 0).count() > 4000);
+}
+
+/// Triangles of a jittered grid over the whole target, each with random colour.
+fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<Face> {
+    let step = side / cells as f64;
+    let points: Vec<DVec2> = (0..(cells + 1) * (cells + 1))
+        .map(|i| {
+            let (x, y) = (i % (cells + 1), i / (cells + 1));
+            let jitter =
+                |i: usize, r: f64| if i == 0 || i == cells { 0.0 } else { (r - 0.5) * 0.9 };
+            let offset = DVec2::new(jitter(x, random.next()), jitter(y, random.next()));
+            (DVec2::new(x as f64, y as f64) + offset) * step
+        })
+        .collect();
+    let mut faces = Vec::new();
+    for i in 0..cells * cells {
+        let a = i / cells * (cells + 1) + i % cells;
+        for t in [[a, a + 1, a + cells + 2], [a, a + cells + 1, a + cells + 2]] {
+            let color = [(random.next() * 255.0) as u8, 90, 160, 255];
+            faces.push(Face { contours: Contours::polygon(t.map(|i| points[i])), color });
+        }
+    }
+    faces
+}
+
+#[test]
+fn a_partition_is_exactly_full_in_any_order() {
+    let mut random = Random(10);
+    for side in [40_u32, 97] {
+        let mut faces = mesh(&mut random, 13, f64::from(side));
+        let mut reference = Pixels::new(side, side, [0, 255, 0, 255]);
+        assert_eq!(fill_partition(&faces, &mut reference).unwrap(), u64::from(side * side));
+        faces.reverse();
+        let mut again = Pixels::new(side, side, [0, 255, 0, 255]);
+        fill_partition(&faces, &mut again).unwrap();
+        assert_eq!(again, reference);
+        // White faces over black: no pixel may be less than white.
+        faces.iter_mut().for_each(|f| f.color = [255; 4]);
+        let mut white = Pixels::new(side, side, [0, 0, 0, 255]);
+        fill_partition(&faces, &mut white).unwrap();
+        assert!(white.data().iter().all(|p| *p == [255; 4]));
+    }
+}

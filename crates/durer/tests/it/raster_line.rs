@@ -1,0 +1,121 @@
+//! Lines: all three ways light the same pixels, from both ends, within half a pixel, clipped or not.
+
+use crate::raster_coverage::Random;
+use durer::math::IVec2;
+use durer::raster::line::anti_aliased::{self, SmoothLine};
+use durer::raster::line::{LineRasterizer, Options, Step};
+use durer::trace::{NoTrace, Recorder};
+
+fn pixels(method: LineRasterizer, a: IVec2, b: IVec2, options: &Options) -> Vec<IVec2> {
+    let mut found = Vec::new();
+    method.draw(a, b, options, |p| found.push(p), &mut NoTrace);
+    found
+}
+
+fn point(random: &mut Random, reach: f64) -> IVec2 {
+    let p = random.point(-reach, reach);
+    IVec2::new(p.x as i32, p.y as i32)
+}
+
+/// Whether a pixel is within half a pixel of the line along its shorter axis; exact.
+fn is_near(p: IVec2, a: IVec2, b: IVec2) -> bool {
+    let wide = |v: IVec2| (i128::from(v.x), i128::from(v.y));
+    let ((px, py), (ax, ay), (bx, by)) = (wide(p), wide(a), wide(b));
+    let (dx, dy) = (bx - ax, by - ay);
+    let cross = (px - ax) * dy - (py - ay) * dx;
+    2 * cross.abs() <= dx.abs().max(dy.abs())
+}
+
+#[test]
+fn lines_are_nearest_connected_and_the_same_reversed() {
+    let mut random = Random(1);
+    for round in 0..3000 {
+        let reach = if round % 2 == 0 { 8.0 } else { 300.0 };
+        let (a, b) = (point(&mut random, reach), point(&mut random, reach));
+        let reference = pixels(LineRasterizer::Equation, a, b, &Options::default());
+        let d = (b - a).abs();
+        assert_eq!(reference.len() as i32, d.x.max(d.y) + 1);
+        assert!(reference.iter().all(|p| is_near(*p, a, b)), "{a} {b}");
+        assert!(reference.contains(&a) && reference.contains(&b));
+        assert!(reference.windows(2).all(|w| (w[1] - w[0]).abs().max_element() == 1));
+        for method in LineRasterizer::ALL {
+            assert_eq!(pixels(*method, a, b, &Options::default()), reference, "{method} {a} {b}");
+            assert_eq!(pixels(*method, b, a, &Options::default()), reference, "{method} {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn clipped_lines_are_the_unclipped_ones_within_the_window() {
+    let mut random = Random(2);
+    for _ in 0..4000 {
+        let (a, b) = (point(&mut random, 40.0), point(&mut random, 40.0));
+        let (c, d) = (point(&mut random, 30.0), point(&mut random, 30.0));
+        let (low, high) = (c.min(d), c.max(d));
+        let options = Options { window: Some((low, high)) };
+        for method in LineRasterizer::ALL {
+            let mut expected = pixels(*method, a, b, &Options::default());
+            expected.retain(|p| p.cmpge(low).all() && p.cmple(high).all());
+            assert_eq!(
+                pixels(*method, a, b, &options),
+                expected,
+                "{method} {a} {b} in {low} {high}"
+            );
+        }
+    }
+}
+
+#[test]
+fn lines_from_end_to_end_of_the_integers_do_not_overflow() {
+    let ends = [i32::MIN, i32::MIN + 1, -1, 0, 7, i32::MAX - 1, i32::MAX];
+    let window = (IVec2::splat(-20), IVec2::splat(20));
+    let corner = (IVec2::splat(i32::MAX - 20), IVec2::splat(i32::MAX));
+    for window in [window, corner] {
+        let options = Options { window: Some(window) };
+        for (ax, ay) in ends.into_iter().flat_map(|x| ends.map(|y| (x, y))) {
+            for (bx, by) in ends.into_iter().flat_map(|x| ends.map(|y| (x, y))) {
+                let (a, b) = (IVec2::new(ax, ay), IVec2::new(bx, by));
+                let reference = pixels(LineRasterizer::Equation, a, b, &options);
+                assert!(reference.iter().all(|p| is_near(*p, a, b)), "{a} {b}");
+                for method in LineRasterizer::ALL {
+                    assert_eq!(pixels(*method, a, b, &options), reference, "{method} {a} {b}");
+                    assert_eq!(pixels(*method, b, a, &options), reference, "{method} {b} {a}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_steps_of_a_line_rebuild_it() {
+    let (a, b) = (IVec2::new(-3, 9), IVec2::new(40, -6));
+    for method in LineRasterizer::ALL {
+        let mut recorder: Recorder<Step> = Recorder::default();
+        let mut found = Vec::new();
+        method.draw(a, b, &Options::default(), |p| found.push(p), &mut recorder);
+        assert_eq!(recorder.steps().iter().map(|s| s.pixel).collect::<Vec<_>>(), found);
+        assert_eq!(found, pixels(*method, a, b, &Options::default()));
+    }
+}
+
+#[test]
+fn smooth_lines_carry_the_lines_weight() {
+    let mut random = Random(3);
+    for _ in 0..300 {
+        let (a, b) = (point(&mut random, 60.0), point(&mut random, 60.0));
+        let d = (b - a).abs();
+        let columns = f64::from(d.x.max(d.y) + 1);
+        for method in SmoothLine::ALL {
+            let mut sum = 0.0;
+            let plot = |_: IVec2, i: u8| sum += f64::from(i) / 255.0;
+            anti_aliased::draw(*method, a, b, &Options::default(), plot, &mut NoTrace);
+            let expected = match method {
+                SmoothLine::Wu => columns,
+                SmoothLine::GuptaSproull => {
+                    columns * d.as_dvec2().length().max(1.0) / (columns - 1.0).max(1.0)
+                }
+            };
+            assert!((sum - expected).abs() <= 0.04 * expected + 0.01, "{method}: {sum} {expected}");
+        }
+    }
+}

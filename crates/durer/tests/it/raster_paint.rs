@@ -1,0 +1,287 @@
+//! Painting: order, clips, groups, gradients, strokes and text; the same bytes on any number of threads.
+
+use durer::curve::text::Font;
+use durer::curve::{Contours, Path};
+use durer::math::{DAffine2, DVec2};
+use durer::raster::coverage::FillRule;
+use durer::raster::line::wide::{Cap, Join, Stroke, outline};
+use durer::raster::paint::{Blending, Canvas, Gradient, Options, Paint, Pattern, Shape, Spread};
+use durer::target::Pixels;
+use std::sync::Arc;
+
+const WHITE: [u8; 4] = [255; 4];
+
+fn color(r: u8, g: u8, b: u8, a: u8) -> Paint {
+    Paint::Color([r, g, b, a])
+}
+
+fn canvas(side: u32) -> Canvas {
+    Canvas::new(side, side, Options::default()).unwrap()
+}
+
+fn rendered(canvas: &Canvas, side: u32, below: [u8; 4]) -> Pixels<[u8; 4]> {
+    let mut target = Pixels::new(side, side, below);
+    canvas.render(&mut target).unwrap();
+    target
+}
+
+fn gradient(shape: Shape, spread: Spread) -> Paint {
+    let stops = vec![(0.0, [255, 0, 0, 255]), (1.0, [0, 0, 255, 255])];
+    Paint::Gradient(Arc::new(Gradient { shape, stops, spread, transform: DAffine2::IDENTITY }))
+}
+
+/// A bit of everything.
+fn card(options: Options) -> Canvas {
+    let mut c = Canvas::new(300, 200, options).unwrap();
+    let shape = Shape::Linear { start: DVec2::ZERO, end: DVec2::new(100.0, 50.0) };
+    let background = gradient(shape, Spread::Reflect);
+    c.fill(&Path::rectangle(5.0, 5.0, 290.0, 190.0), FillRule::NonZero, &background, 0.5);
+    c.push_clip(&Path::circle(DVec2::new(100.0, 100.0), 80.0), FillRule::NonZero);
+    c.push_group();
+    for i in 0..40 {
+        let at = DVec2::new(f64::from(i * 37 % 300), f64::from(i * 71 % 200));
+        c.fill(&Path::circle(at, 25.0), FillRule::EvenOdd, &color(i as u8 * 6, 99, 10, 200), 1.0);
+    }
+    c.pop(0.7);
+    c.pop(1.0);
+    let stroke =
+        Stroke { width: 7.5, dashes: vec![20.0, 9.0], cap: Cap::Round, ..Stroke::default() };
+    c.stroke(&Path::circle(DVec2::new(200.0, 100.0), 60.0), &stroke, &color(0, 0, 0, 160), 1.0)
+        .unwrap();
+    c
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    for blending in [Blending::Srgb, Blending::Linear] {
+        let card = card(Options { blending, ..Options::default() });
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut target = Pixels::new(300, 200, [9, 200, 77, 130]);
+            pool.install(|| card.render(&mut target)).unwrap();
+            target
+        };
+        let one = on(1);
+        assert_eq!(on(2), one);
+        assert_eq!(on(7), one);
+    }
+}
+
+#[test]
+fn order_is_kept_and_opacity_mixes() {
+    let mut c = canvas(40);
+    c.fill(&Path::rectangle(0.0, 0.0, 40.0, 40.0), FillRule::NonZero, &color(0, 0, 0, 255), 1.0);
+    c.fill(
+        &Path::rectangle(0.0, 0.0, 40.0, 40.0),
+        FillRule::NonZero,
+        &color(200, 100, 50, 255),
+        0.5,
+    );
+    let target = rendered(&c, 40, WHITE);
+    let p = target.get(20, 20).unwrap();
+    assert!([100, 50, 25].iter().zip(p).all(|(a, b)| b.abs_diff(*a) <= 1), "{p:?}");
+    // Onto nothing, the colour stays and only alpha is half.
+    let mut c = canvas(40);
+    c.fill(
+        &Path::rectangle(0.0, 0.0, 40.0, 40.0),
+        FillRule::NonZero,
+        &color(200, 100, 50, 255),
+        0.5,
+    );
+    let p = rendered(&c, 40, [0; 4]).get(3, 3).unwrap();
+    assert!([200, 100, 50, 128].iter().zip(p).all(|(a, b)| b.abs_diff(*a) <= 1), "{p:?}");
+}
+
+#[test]
+fn linear_light_mixes_lighter() {
+    let half = |blending| {
+        let mut c = Canvas::new(2, 2, Options { blending, ..Options::default() }).unwrap();
+        c.fill(
+            &Path::rectangle(0.0, 0.0, 2.0, 2.0),
+            FillRule::NonZero,
+            &color(255, 255, 255, 255),
+            0.5,
+        );
+        rendered(&c, 2, [0, 0, 0, 255]).get(0, 0).unwrap()[0]
+    };
+    assert_eq!(half(Blending::Srgb), 128);
+    assert_eq!(half(Blending::Linear), 188);
+}
+
+#[test]
+fn clips_nest_and_end() {
+    let mut c = canvas(20);
+    c.push_clip(&Path::rectangle(0.0, 0.0, 10.0, 20.0), FillRule::NonZero);
+    c.push_clip(&Path::rectangle(0.0, 5.5, 20.0, 20.0), FillRule::NonZero);
+    c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &color(0, 0, 0, 255), 1.0);
+    c.pop(1.0);
+    c.pop(1.0);
+    c.fill(&Path::rectangle(15.0, 0.0, 1.0, 1.0), FillRule::NonZero, &color(0, 0, 0, 255), 1.0);
+    let target = rendered(&c, 20, WHITE);
+    let at = |x, y| target.get(x, y).unwrap()[0];
+    assert_eq!([at(5, 4), at(5, 6), at(12, 10), at(15, 0)], [255, 0, 255, 0]);
+    assert_eq!(at(5, 5), 127);
+}
+
+#[test]
+fn a_group_is_one_layer() {
+    let mut c = canvas(20);
+    c.push_group();
+    c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &color(255, 0, 0, 255), 1.0);
+    c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &color(0, 0, 0, 255), 1.0);
+    c.pop(0.5);
+    let p = rendered(&c, 20, WHITE).get(9, 9).unwrap();
+    assert!(p[0].abs_diff(127) <= 1 && p[0] == p[1], "{p:?}");
+    // Popping what is not there does nothing, and what is left open is closed.
+    let mut c = canvas(20);
+    c.pop(1.0);
+    c.push_group();
+    c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &color(1, 2, 3, 255), 1.0);
+    assert_eq!(rendered(&c, 20, WHITE).get(1, 1), Some([1, 2, 3, 255]));
+}
+
+#[test]
+fn gradients_pad_repeat_and_reflect() {
+    let shape = Shape::Linear { start: DVec2::new(10.0, 0.0), end: DVec2::new(20.0, 0.0) };
+    let red = |spread, x| {
+        let mut c = canvas(40);
+        c.fill(
+            &Path::rectangle(0.0, 0.0, 40.0, 40.0),
+            FillRule::NonZero,
+            &gradient(shape, spread),
+            1.0,
+        );
+        rendered(&c, 40, WHITE).get(x, 7).unwrap()[0]
+    };
+    assert_eq!([red(Spread::Pad, 2), red(Spread::Pad, 35)], [255, 0]);
+    assert!(red(Spread::Repeat, 20) > 235 && red(Spread::Repeat, 19) < 20);
+    assert!(red(Spread::Reflect, 20) < 20 && red(Spread::Reflect, 29) > 235);
+    let (center, focus) = (DVec2::splat(20.0), DVec2::splat(20.0));
+    let radial = Shape::Radial { center, radius: 20.0, focus, focus_radius: 0.0 };
+    let mut c = canvas(40);
+    c.fill(
+        &Path::rectangle(0.0, 0.0, 40.0, 40.0),
+        FillRule::NonZero,
+        &gradient(radial, Spread::Pad),
+        1.0,
+    );
+    let target = rendered(&c, 40, WHITE);
+    assert!(target.get(20, 20).unwrap()[0] > 240 && target.get(0, 0).unwrap()[0] == 0);
+    assert!(target.get(29, 20).unwrap()[0].abs_diff(134) < 6);
+}
+
+#[test]
+fn clearing_is_filling_before() {
+    for background in [[1, 2, 3, 255], [90, 80, 70, 60]] {
+        let draw = |c: &mut Canvas| {
+            c.fill(
+                &Path::circle(DVec2::splat(20.0), 15.0),
+                FillRule::NonZero,
+                &color(9, 99, 200, 180),
+                1.0,
+            );
+        };
+        let (mut cleared, mut plain) = (canvas(40), canvas(40));
+        draw(&mut cleared);
+        cleared.clear(background);
+        draw(&mut cleared);
+        draw(&mut plain);
+        assert_eq!(rendered(&cleared, 40, WHITE), rendered(&plain, 40, background));
+    }
+}
+
+#[test]
+fn patterns_repeat() {
+    let image = Pixels::from_data(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 255]]).unwrap();
+    let transform = DAffine2::from_scale(DVec2::splat(4.0));
+    let pattern = Pattern { image: Arc::new(image), transform, repeat: true, smooth: false };
+    let mut c = canvas(20);
+    let paint = Paint::Pattern(Arc::new(pattern));
+    c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &paint, 1.0);
+    let target = rendered(&c, 20, WHITE);
+    let row: Vec<u8> = (0..20).step_by(4).map(|x| target.get(x, 3).unwrap()[0]).collect();
+    assert_eq!(row, [255, 0, 255, 0, 255]);
+}
+
+#[test]
+fn strokes_have_their_width_caps_and_dashes() {
+    let line = Path::polyline([DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)]);
+    let area = |stroke: &Stroke| {
+        let options = Options { tolerance: 0.01, ..Options::default() };
+        let mut c = Canvas::new(40, 40, options).unwrap();
+        c.stroke(&line, stroke, &color(0, 0, 0, 255), 1.0).unwrap();
+        rendered(&c, 40, WHITE).data().iter().map(|p| f64::from(255 - p[0]) / 255.0).sum::<f64>()
+    };
+    let plain = Stroke { width: 4.0, ..Stroke::default() };
+    assert!((area(&plain) - 80.0).abs() < 0.1);
+    assert!((area(&Stroke { cap: Cap::Square, ..plain.clone() }) - 96.0).abs() < 0.1);
+    let round = area(&Stroke { cap: Cap::Round, ..plain.clone() });
+    assert!((round - 80.0 - std::f64::consts::PI * 4.0).abs() < 0.1, "{round}");
+    let dashed = Stroke { dashes: vec![2.0, 3.0], ..plain.clone() };
+    assert!((area(&dashed) - 32.0).abs() < 0.1, "{}", area(&dashed));
+    assert_eq!(area(&Stroke { width: 0.0, ..plain.clone() }), 0.0);
+    for bad in [
+        Stroke { width: -1.0, ..plain.clone() },
+        Stroke { width: f64::NAN, ..plain.clone() },
+        Stroke { miter_limit: 0.5, ..plain.clone() },
+        Stroke { dashes: vec![-1.0], ..plain.clone() },
+        Stroke { dash_offset: f64::INFINITY, ..plain.clone() },
+    ] {
+        assert!(outline(&line, &bad, 0.1).is_err());
+    }
+    let mut strange = Path::new();
+    strange.close().line_to(f64::NAN, 1.0).line_to(5.0, 5.0).quad_to(1e30, 3.0, 9.0, 9.0).close();
+    for join in [Join::Miter, Join::Round, Join::Bevel] {
+        assert!(outline(&strange, &Stroke { join, ..dashed.clone() }, 0.1).is_ok());
+    }
+}
+
+#[test]
+fn empty_targets_and_strange_paints_are_defined() {
+    let c = Canvas::new(0, 7, Options::default()).unwrap();
+    c.render(&mut Pixels::new(0, 7, WHITE)).unwrap();
+    assert!(c.render(&mut Pixels::new(1, 7, WHITE)).is_err());
+    assert!(Canvas::new(40_000, 1, Options::default()).is_err());
+    let mut c = canvas(10);
+    c.set_transform(DAffine2::from_scale(DVec2::new(f64::NAN, 0.0)));
+    let shape = Shape::Linear { start: DVec2::NAN, end: DVec2::ONE };
+    c.fill(
+        &Path::rectangle(0.0, 0.0, 5.0, 5.0),
+        FillRule::NonZero,
+        &gradient(shape, Spread::Repeat),
+        f64::NAN,
+    );
+    c.fill_contours(
+        &Contours::polygon([DVec2::ZERO, DVec2::X * 9.0, DVec2::Y * 9.0]),
+        FillRule::NonZero,
+        &gradient(shape, Spread::Pad),
+        1.0,
+    );
+    rendered(&c, 10, WHITE);
+}
+
+mod conformance_text {
+    use super::*;
+
+    #[test]
+    fn text_advances_and_is_kerned() {
+        let data = std::env::var("DURER_DATA")
+            .unwrap_or_else(|_| format!("{}/../../../shared/data", env!("CARGO_MANIFEST_DIR")));
+        let Ok(bytes) = std::fs::read(format!("{data}/fonts/DejaVuSans.ttf")) else {
+            eprintln!("skipped: no fonts under {data}");
+            return;
+        };
+        let font = Font::new(&bytes, 0).unwrap();
+        let width = |text: &str| font.line(text, 100.0).advance;
+        assert!((width("nn") - 2.0 * width("n")).abs() < 1e-3);
+        assert!(width("AV") < width("A") + width("V") - 1.0, "kerning");
+        let line = font.line("Hxg", 100.0);
+        let bounds = line.path.bounds().unwrap();
+        assert!(bounds.min().y < -70.0 && bounds.max().y > 15.0 && bounds.max().x <= line.advance);
+        assert!(line.ascent > 70.0 && line.descent > 15.0);
+        assert!(Font::new(b"not a font", 0).is_err());
+        // A file cut short has no outlines where they are missing, and nothing breaks.
+        let cut = Font::new(&bytes[..bytes.len() / 2], 0).map(|f| f.line("Hxg", 100.0).advance);
+        assert!(cut.is_ok_and(|advance| advance.is_finite()));
+    }
+}

@@ -1,0 +1,120 @@
+//! Seed fills against labelling of connected regions by union-find.
+
+use crate::raster_coverage::Random;
+use durer::raster::seed_fill::{Connectivity, Options, SeedFill, Step, boundary_fill, flood_fill};
+use durer::target::Pixels;
+use durer::trace::{NoTrace, Recorder};
+
+fn root(parents: &mut [usize], mut i: usize) -> usize {
+    while parents[i] != i {
+        parents[i] = parents[parents[i]];
+        i = parents[i];
+    }
+    i
+}
+
+/// For every pixel the label of its region of equal values.
+fn labels(image: &Pixels<u8>, eight: bool) -> Vec<usize> {
+    let (w, h) = (image.width() as usize, image.height() as usize);
+    let mut parents: Vec<usize> = (0..w * h).collect();
+    let data = image.data();
+    for i in 0..w * h {
+        let (x, y) = (i % w, i / w);
+        let mut join = |other: usize| {
+            if data[other] == data[i] {
+                let (a, b) = (root(&mut parents, i), root(&mut parents, other));
+                parents[a] = b;
+            }
+        };
+        if x > 0 {
+            join(i - 1);
+        }
+        if y > 0 {
+            join(i - w);
+        }
+        if eight && y > 0 && x > 0 {
+            join(i - w - 1);
+        }
+        if eight && y > 0 && x + 1 < w {
+            join(i - w + 1);
+        }
+    }
+    (0..w * h).map(|i| root(&mut parents, i)).collect()
+}
+
+#[test]
+fn fills_take_exactly_the_connected_region() {
+    let mut random = Random(1);
+    for round in 0..120 {
+        let (w, h) = (1 + (random.next() * 150.0) as u32, 1 + (random.next() * 20.0) as u32);
+        let density = [0.3, 0.45, 0.6][round % 3];
+        let data = (0..w * h).map(|_| u8::from(random.next() < density)).collect();
+        let image = Pixels::from_data(w, h, data).unwrap();
+        let seed = ((random.next() * f64::from(w)) as u32, (random.next() * f64::from(h)) as u32);
+        for connectivity in [Connectivity::Four, Connectivity::Eight] {
+            let labels = labels(&image, connectivity == Connectivity::Eight);
+            let own = labels[(seed.1 * w + seed.0) as usize];
+            let options = Options { connectivity };
+            for method in SeedFill::ALL {
+                let mut filled = image.clone();
+                let mut recorder: Recorder<Step> = Recorder::default();
+                let n = flood_fill(&mut filled, seed, 9, 0, *method, &options, &mut recorder);
+                let expected: Vec<u8> = image
+                    .data()
+                    .iter()
+                    .zip(&labels)
+                    .map(|(v, l)| if *l == own { 9 } else { *v })
+                    .collect();
+                assert_eq!(filled.data(), expected, "{method} {connectivity:?}");
+                assert_eq!(n as usize, labels.iter().filter(|l| **l == own).count());
+                let mut replayed = image.clone();
+                for s in recorder.steps() {
+                    (s.x0..s.x1).for_each(|x| replayed.set(x, s.y, 9));
+                }
+                assert_eq!(replayed, filled);
+            }
+        }
+    }
+}
+
+#[test]
+fn boundaries_and_tolerance_on_colours() {
+    let rows = ["..#..", ".#a#.", "#abc#", ".#a#."];
+    let value = |c: char| match c {
+        '#' => [0_u8, 0, 0, 255],
+        'a' => [100, 100, 100, 255],
+        'b' => [104, 98, 100, 255],
+        'c' => [130, 100, 100, 255],
+        _ => [255; 4],
+    };
+    let data = rows.iter().flat_map(|r| r.chars().map(value)).collect();
+    let image = Pixels::from_data(5, 4, data).unwrap();
+    let red = [255, 0, 0, 255];
+    for method in SeedFill::ALL {
+        let fill = |tolerance| {
+            let mut i = image.clone();
+            flood_fill(&mut i, (2, 1), red, tolerance, *method, &Options::default(), &mut NoTrace)
+        };
+        assert_eq!([fill(0), fill(3), fill(4), fill(30)], [1, 1, 4, 5]);
+        let mut i = image.clone();
+        let black = [0, 0, 0, 255];
+        let four = Options::default();
+        assert_eq!(boundary_fill(&mut i, (2, 2), red, black, 0, *method, &four, &mut NoTrace), 5);
+        let mut i = image.clone();
+        let eight = Options { connectivity: Connectivity::Eight };
+        assert_eq!(boundary_fill(&mut i, (2, 2), red, black, 0, *method, &eight, &mut NoTrace), 13);
+        assert_eq!(flood_fill(&mut i, (5, 0), red, 0, *method, &eight, &mut NoTrace), 0);
+        assert_eq!(
+            flood_fill(
+                &mut Pixels::new(0, 0, true),
+                (0, 0),
+                false,
+                0,
+                *method,
+                &eight,
+                &mut NoTrace
+            ),
+            0
+        );
+    }
+}

@@ -1,0 +1,88 @@
+//! The production path against a z-buffer of a dozen lines over the classical rasterizer.
+
+use crate::scenes::{self, Numbers};
+use durer::math::{DVec3, Vec3};
+use durer::pipeline::{Cull, RenderOptions, render};
+use durer::raster::triangle::{Options, SnappedTriangle, TriangleRasterizer};
+use durer::scene::{Camera, Mesh, Projection, Scene};
+use durer::target::NO_ITEM;
+use durer::view::View;
+use durer::view::window::PixelRect;
+use durer::visibility::surface::input::SurfaceInput;
+use durer::visibility::surface::setup::Filter;
+
+/// Nearest item and its depth at each pixel's centre.
+fn by_the_book(scene: &Scene, view: &View) -> (Vec<u32>, Vec<f32>) {
+    let filter = Filter { cull: Cull::None, sample_reach: 0 };
+    let input = SurfaceInput::new(scene, view, filter).expect("triangles");
+    let (width, height) = (view.width(), view.height());
+    let options = Options { clip: PixelRect::of_size(width, height).expect("size") };
+    let mut items = vec![NO_ITEM; (width * height) as usize];
+    let mut depths = vec![1.0; items.len()];
+    for t in &input.triangles {
+        let corners = [0, 1, 2].map(|i| [t.x[i], t.y[i]]);
+        let snapped = SnappedTriangle::new(corners).expect("inside the guard band");
+        let [ox, oy] = t.origin();
+        TriangleRasterizer::EdgeFunction.rasterize(&snapped, &options, |span| {
+            for x in span.x0..span.x1 {
+                let at = (span.y as u32 * width + x as u32) as usize;
+                let depth = t.depth_at((x - ox) as f32, (span.y - oy) as f32);
+                let wins = depth < depths[at] || (depth == depths[at] && t.item < items[at]);
+                if wins && depth < 1.0 {
+                    (items[at], depths[at]) = (t.item, depth);
+                }
+            }
+        });
+    }
+    (items, depths)
+}
+
+#[test]
+fn items_and_depths_are_those_of_the_definition() {
+    let mut numbers = Numbers(9);
+    for seed in 0..120 {
+        let triangles = [3, 40, 400][seed as usize % 3];
+        let scene = scenes::soup(triangles, seed);
+        let size = |n: &mut Numbers| 1 + (n.next() * n.next() * 300.0) as u32;
+        let (width, height) = (size(&mut numbers), size(&mut numbers));
+        let mut options = scenes::options(&scene, width, height);
+        (options.item, options.depth) = (true, true);
+        let (found, _) = render(&scene, &options).expect("picture");
+        let view = View::new(options.camera, width, height).expect("view");
+        let (items, depths) = by_the_book(&scene, &view);
+        assert_eq!(found.item.expect("items").data(), items, "seed {seed} {width}x{height}");
+        assert_eq!(found.depth.expect("depths").data(), depths, "seed {seed} {width}x{height}");
+    }
+}
+
+/// Triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel.
+fn on_the_grid(seed: u64, size: f64) -> (Scene, Camera) {
+    let mut numbers = Numbers(seed);
+    let mut at = || ((numbers.next() * 2.0 * size as f32).floor() * 0.5) - 0.5 * size as f32;
+    let positions = (0..120).map(|i| Vec3::new(at(), at(), -((i / 3) as f32) * 0.01)).collect();
+    let mesh = Mesh { positions, ..Mesh::default() };
+    let scene =
+        Scene { meshes: vec![mesh], instances: vec![scenes::instance(0)], ..Scene::default() };
+    let camera = Camera {
+        eye: DVec3::Z,
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: size },
+        near: 0.5,
+        far: 4.0,
+    };
+    (scene, camera)
+}
+
+#[test]
+fn pixels_on_edges_belong_to_the_top_left_side() {
+    for seed in 0..60 {
+        let (scene, camera) = on_the_grid(seed, 24.0);
+        let mut options = RenderOptions::new(camera);
+        (options.width, options.height, options.item) = (24, 24, true);
+        let (found, _) = render(&scene, &options).expect("picture");
+        let view = View::new(camera, 24, 24).expect("view");
+        let (items, _) = by_the_book(&scene, &view);
+        assert_eq!(found.item.expect("items").data(), items, "seed {seed}");
+    }
+}

@@ -1,0 +1,184 @@
+//! Anti-aliased fills: durer, vello_cpu, tiny-skia.
+
+use crate::medians;
+use crate::scenes::{self, Scene};
+use durer::raster::coverage::{FillRule, Overlap};
+use durer::raster::paint::{Canvas, Options, Paint};
+use durer::target::Pixels;
+
+fn all() -> Vec<Box<dyn Fn() -> Scene>> {
+    let data = std::env::var("DURER_DATA").unwrap_or("../../../../shared/data".into());
+    let file = format!("{data}/svg/openclipart/van_gogh_s_room_enrique__01.svg");
+    let other = file.clone();
+    vec![
+        Box::new(scenes::small_polygons),
+        Box::new(scenes::mesh),
+        Box::new(move || scenes::art(&file, 1024)),
+        Box::new(move || scenes::art(&other, 4096)),
+        Box::new(|| scenes::heavy("coast", false)),
+        Box::new(|| scenes::heavy("walk", false)),
+        Box::new(|| scenes::heavy("walk", true)),
+        Box::new(|| scenes::heavy("spikes", false)),
+        Box::new(|| scenes::heavy("spikes", true)),
+    ]
+}
+
+fn durer(scene: &Scene, overlap: Overlap, target: &mut Pixels<[u8; 4]>) {
+    let options = Options { overlap, ..Options::default() };
+    let mut canvas = Canvas::new(scene.size, scene.size, options).unwrap();
+    canvas.clear([255; 4]);
+    for s in &scene.shapes {
+        let rule = if s.even_odd { FillRule::EvenOdd } else { FillRule::NonZero };
+        canvas.fill_contours(&s.contours, rule, &Paint::Color(s.color), 1.0);
+    }
+    canvas.render(target).unwrap();
+}
+
+fn bez(scene: &Scene) -> Vec<vello_cpu::kurbo::BezPath> {
+    let path = |s: &scenes::Shape| {
+        let mut p = vello_cpu::kurbo::BezPath::new();
+        for (points, _) in s.contours.iter() {
+            for (i, q) in points.iter().enumerate() {
+                if i == 0 { p.move_to((q.x, q.y)) } else { p.line_to((q.x, q.y)) }
+            }
+            p.close_path();
+        }
+        p
+    };
+    scene.shapes.iter().map(path).collect()
+}
+
+fn vello(
+    scene: &Scene,
+    paths: &[vello_cpu::kurbo::BezPath],
+    context: &mut vello_cpu::RenderContext,
+    resources: &mut vello_cpu::Resources,
+    pixmap: &mut vello_cpu::Pixmap,
+) {
+    use vello_cpu::peniko::{Fill, color::AlphaColor};
+    context.reset();
+    context.set_paint(AlphaColor::from_rgba8(255, 255, 255, 255));
+    context.fill_rect(&vello_cpu::kurbo::Rect::new(0.0, 0.0, scene.size.into(), scene.size.into()));
+    for (s, p) in scene.shapes.iter().zip(paths) {
+        context.set_fill_rule(if s.even_odd { Fill::EvenOdd } else { Fill::NonZero });
+        let [r, g, b, a] = s.color;
+        context.set_paint(AlphaColor::from_rgba8(r, g, b, a));
+        context.fill_path(p);
+    }
+    context.flush();
+    context.render(pixmap, resources);
+}
+
+fn skia_paths(scene: &Scene) -> Vec<Option<tiny_skia::Path>> {
+    let path = |s: &scenes::Shape| {
+        let mut b = tiny_skia::PathBuilder::new();
+        for (points, _) in s.contours.iter() {
+            for (i, q) in points.iter().enumerate() {
+                let (x, y) = (q.x as f32, q.y as f32);
+                if i == 0 { b.move_to(x, y) } else { b.line_to(x, y) }
+            }
+            b.close();
+        }
+        b.finish()
+    };
+    scene.shapes.iter().map(path).collect()
+}
+
+pub fn skia(
+    scene: &Scene,
+    paths: &[Option<tiny_skia::Path>],
+    smooth: bool,
+    pixmap: &mut tiny_skia::Pixmap,
+) {
+    pixmap.fill(tiny_skia::Color::WHITE);
+    for (s, p) in scene.shapes.iter().zip(paths) {
+        let Some(p) = p else { continue };
+        let mut paint = tiny_skia::Paint { anti_alias: smooth, ..Default::default() };
+        let [r, g, b, a] = s.color;
+        paint.set_color_rgba8(r, g, b, a);
+        let rule =
+            if s.even_odd { tiny_skia::FillRule::EvenOdd } else { tiny_skia::FillRule::Winding };
+        pixmap.fill_path(p, &paint, rule, tiny_skia::Transform::identity(), None);
+    }
+}
+
+pub fn anti_aliased(filter: &str) {
+    println!(
+        "| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    for make in all() {
+        let scene = make();
+        if !scene.name.contains(filter) {
+            continue;
+        }
+        let side = scene.size;
+        let mut targets = [(); 3].map(|()| Pixels::new(side, side, [255; 4]));
+        let [t0, t1, t2] = &mut targets;
+        let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
+        let settings = vello_cpu::RenderSettings { num_threads: 0, ..Default::default() };
+        let mut context = vello_cpu::RenderContext::new_with(side as u16, side as u16, settings);
+        let mut resources = vello_cpu::Resources::new();
+        let mut pixmap = vello_cpu::Pixmap::new(side as u16, side as u16);
+        let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
+        let slow = scene.name.starts_with("spikes");
+        let rounds = if slow { 3 } else { 9 };
+        let m = medians(
+            rounds,
+            &mut [
+                ("exact", Box::new(|| one.install(|| durer(&scene, Overlap::Exact, t0)))),
+                (
+                    "accumulated",
+                    Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, t1))),
+                ),
+                ("two", Box::new(|| two.install(|| durer(&scene, Overlap::Exact, t2)))),
+                (
+                    "vello",
+                    Box::new(|| vello(&scene, &bez, &mut context, &mut resources, &mut pixmap)),
+                ),
+                (
+                    "tiny-skia",
+                    Box::new(|| {
+                        if !slow {
+                            skia(&scene, &skia_paths, true, &mut skia_map)
+                        }
+                    }),
+                ),
+            ],
+        );
+        println!(
+            "| {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} |",
+            scene.name,
+            m[0],
+            m[1],
+            m[2],
+            m[3],
+            m[4],
+            m[3] / m[0],
+            m[3] / m[1],
+            m[4] / m[0],
+            m[0] / m[2]
+        );
+        if std::env::var("PICTURES").is_ok() {
+            let name = scene.name.replace(' ', "_");
+            image::save_buffer(
+                format!("{name}_durer.png"),
+                targets[0].data().as_flattened(),
+                side,
+                side,
+                image::ColorType::Rgba8,
+            )
+            .unwrap();
+            image::save_buffer(
+                format!("{name}_vello.png"),
+                pixmap.data_as_u8_slice(),
+                side,
+                side,
+                image::ColorType::Rgba8,
+            )
+            .unwrap();
+        }
+    }
+}

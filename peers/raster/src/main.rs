@@ -1,0 +1,39 @@
+//! Side by side with other rasterizers: same paths, same run, medians, alternating.
+
+mod fills;
+mod lines;
+mod scenes;
+
+use std::time::Instant;
+
+/// Milliseconds of every contestant, the median of `rounds` runs that alternate between them.
+pub fn medians(rounds: usize, contestants: &mut [(&str, Box<dyn FnMut() + '_>)]) -> Vec<f64> {
+    let mut times = vec![Vec::new(); contestants.len()];
+    for round in 0..=rounds {
+        for (i, (_, run)) in contestants.iter_mut().enumerate() {
+            let start = Instant::now();
+            run();
+            if round > 0 {
+                times[i].push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+    }
+    times
+        .iter_mut()
+        .map(|t| {
+            t.sort_by(f64::total_cmp);
+            t[t.len() / 2]
+        })
+        .collect()
+}
+
+fn main() {
+    let args: Vec<String> = std::env::args().collect();
+    let filter = args.get(2).cloned().unwrap_or_default();
+    match args.get(1).map(String::as_str) {
+        Some("fill") => fills::anti_aliased(&filter),
+        Some("lines") => lines::aliased(),
+        Some("flood") => lines::floods(),
+        _ => eprintln!("usage: peers-raster fill [scene] | lines | flood"),
+    }
+}

@@ -1,0 +1,54 @@
+//! Mesa's llvmpipe, by a harness of its own that is named by `LLVMPIPE_BENCH`.
+
+use crate::Result;
+use crate::clock::Cost;
+use crate::picture::Picture;
+use crate::scene;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The harness, if there is one.
+pub fn harness() -> Option<PathBuf> {
+    std::env::var_os("LLVMPIPE_BENCH").map(PathBuf::from)
+}
+
+/// One turn of frames with so many raster threads (0 = all in the calling one); the medians that the
+/// harness prints.
+pub fn turn(
+    harness: &Path,
+    mesh: &Path,
+    samples: u32,
+    threads: u32,
+    picture: Option<&Path>,
+) -> Result<Cost> {
+    let mut command = Command::new(harness);
+    command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe");
+    command.env("LP_NUM_THREADS", threads.to_string());
+    command.arg("mesh").arg(mesh);
+    command.args(["--frames", &scene::FRAMES.to_string(), "--warm", &scene::WARM.to_string()]);
+    if samples > 1 {
+        command.args(["--msaa", &samples.to_string()]);
+    }
+    if let Some(path) = picture {
+        command.arg("--png").arg(path);
+    }
+    let output = command.output().map_err(|e| format!("{}: {e}", harness.display()))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let told = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() || !told.contains("llvmpipe") {
+        return Err(format!("{}: {told}", harness.display()).into());
+    }
+    let value = |name: &str| -> Result<f64> {
+        let word = text.split_whitespace().find_map(|w| w.strip_prefix(name));
+        Ok(word.ok_or_else(|| format!("no {name} in {text}"))?.parse::<f64>()? / 1000.0)
+    };
+    Ok(Cost { cpu: value("cpu_med=")?, wall: value("med_ms=")?, memory: 0.0 })
+}
+
+/// The picture that the harness has written.
+pub fn picture(path: &Path) -> Result<Picture> {
+    let mut picture = Picture::read(path)?;
+    // The harness clears to these; Mesa rounds halves up.
+    picture.background = scene::BACKGROUND.map(|c| (c * 255.0 + 0.5) as u8);
+    Ok(picture)
+}
