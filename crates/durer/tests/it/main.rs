@@ -3,11 +3,15 @@
 mod a_buffer;
 mod clip_place;
 mod clip_volume;
+mod conformance_hidden_line;
 mod conformance_overlay;
 mod conformance_visible_surface;
 mod data;
 mod determinism;
 mod golden;
+mod hidden_line;
+mod line_oracle;
+mod line_scenes;
 mod overlay;
 mod raster_coverage;
 mod raster_interpolate;
