@@ -111,6 +111,11 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
+//! **Which part of an edge?** [`visibility::line`]: [hidden lines](visibility::line::hidden_line) by
+//! quantitative invisibility, [wireframe](visibility::line::wireframe), as a
+//! [drawing](target::drawing). [`visibility::object`] has the welded faces, edges and bodies for solvers
+//! in object space.
+//!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
 //! [textures](shade::texture).

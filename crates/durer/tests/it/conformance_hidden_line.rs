@@ -37,7 +37,7 @@ fn lengths_of_visible_and_hidden_lines() {
         let polyhedron = model["planar_faces_only"].as_bool().expect("kind");
         for (i, v) in model["views"].as_array().expect("views").iter().enumerate() {
             let options =
-                Options { tolerance: 0.0, crease: 20.0_f64.to_radians(), ..Options::default() };
+                Options { tolerance: 0.0, crease: 15.0_f64.to_radians(), ..Options::default() };
             let found = draw(&scene, &view(v), &options, &mut NoTrace).expect("drawing");
             let length = |key: &str| v[key].as_f64().unwrap_or(0.0);
             let visible = length("visible_sharp_length") + length("visible_outline_length");
@@ -47,10 +47,9 @@ fn lengths_of_visible_and_hidden_lines() {
                 "{name} {i}: visible {} of {visible}, hidden {} of {hidden}",
                 ours[0], ours[1]
             );
-            if polyhedron {
-                assert!((ours[0] - visible).abs() <= 1e-3 * visible, "{name} {i}");
-                assert!((ours[1] - hidden).abs() <= 1e-3 * hidden, "{name} {i}");
-            }
+            let within = if polyhedron { 1e-3 } else { 1e-2 };
+            assert!((ours[0] - visible).abs() <= within * visible, "{name} {i}");
+            assert!((ours[1] - hidden).abs() <= within * hidden, "{name} {i}");
         }
     }
 }

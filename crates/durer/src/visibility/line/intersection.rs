@@ -155,8 +155,24 @@ impl<'a> Tree<'a> {
         if !na.touches(&nb) {
             return None;
         }
-        let ends = meeting(self.faces.corners(a)?, self.faces.corners(b)?)?;
+        let (ca, cb) = (self.faces.corners(a)?, self.faces.corners(b)?);
+        // Neighbours at a vertex are the most of all pairs, and few of them meet elsewhere too: the
+        // two other corners of one would have to lie on different sides of the other.
+        if shared == 1 && (one_sided(ta, &ca, tb, &cb) || one_sided(tb, &cb, ta, &ca)) {
+            return None;
+        }
+        let ends = meeting(ca, cb)?;
         Some(Meeting { ends, items: [a, b] })
+    }
+}
+
+/// Whether the corners of the second triangle that the first has not lie on one side of its plane.
+fn one_sided(t: [u32; 3], corners: &[DVec3; 3], other: [u32; 3], of_other: &[DVec3; 3]) -> bool {
+    let own = (0..3).filter(|&k| !t.contains(&other[k]));
+    let mut sides = own.map(|k| side(corners, of_other[k]));
+    match (sides.next(), sides.next()) {
+        (Some(a), Some(b)) => (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0),
+        _ => false,
     }
 }
 
