@@ -177,11 +177,8 @@ impl<'a> Occluders<'a> {
         let nearest = (depth[0].min(depth[1]).min(depth[2]) as f32).next_down();
         self.cells.rows_of(&occluder.corners.map(|c| c.at), |row, from, to| {
             let start = (row * self.cells.columns) as usize;
-            for cell in start + from as usize..=start + to as usize {
-                if marked[cell] {
-                    f(cell, nearest);
-                }
-            }
+            let cells = start + from as usize..=start + to as usize;
+            cells.filter(|&cell| marked[cell]).for_each(|cell| f(cell, nearest));
         });
     }
 
