@@ -5,6 +5,7 @@ pub mod layout;
 pub mod pick;
 pub mod projection;
 pub mod topology;
+pub mod warp;
 pub mod window;
 
 use crate::math::{DMat4, DVec4};

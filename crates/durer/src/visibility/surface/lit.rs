@@ -240,7 +240,9 @@ impl<'a> Lit<'a> {
         material: &PreparedMaterial<'_>,
         shading: Shading,
     ) -> Option<[Reflected; 3]> {
-        if !matches!(shading, Shading::Flat | Shading::Gouraud) {
+        // Light on corners or faces would not know where shadows fall.
+        let interpolated = matches!(shading, Shading::Flat | Shading::Gouraud);
+        if !interpolated || !self.shared.lights.shadows.is_empty() {
             return None;
         }
         if let Some((kept, corners)) = self.reflected
