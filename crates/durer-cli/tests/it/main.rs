@@ -4,6 +4,7 @@ mod clip;
 mod conformance_clip;
 mod conformance_models;
 mod harness;
+mod memory;
 mod options;
 mod outputs;
 mod pick;
