@@ -1,3 +1,6 @@
 //! Which surfaces and lines can be seen.
 
+pub mod line;
+pub mod object;
+pub mod region;
 pub mod surface;
