@@ -134,7 +134,8 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     test: &mut Option<&mut T>,
 ) {
     let columns = 8 >> plane.shift;
-    let mut x = x0 & -columns;
+    // Not on a multiple of the columns, so that fewer steps reach over a small box.
+    let mut x = x0.min(TILE - columns);
     let px = (tile[0] + x) * SUBPIXELS + HALF_PIXEL;
     let py = (tile[1] + y0) * SUBPIXELS + HALF_PIXEL;
     let lane_x = i32x8::from_slice(simd, &plane.lanes[0]);
@@ -147,14 +148,20 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
         let at = dx * (py - t.y[i]) - dy * (px - t.x[i]) - i32::from(!top_left(dx, dy));
         edges.row[i] = lane_y * dx - lane_x * dy + at;
         edges.step_y[i] = dx * SUBPIXELS;
-        step_x[i] = -dy * (columns * SUBPIXELS);
+        step_x[i] = -dy * SUBPIXELS;
     }
-    while x <= x1 {
+    loop {
         fill_rows(simd, plane, t, tile, edges, [x, y0, y1], test);
-        edges.row[0] += step_x[0];
-        edges.row[1] += step_x[1];
-        edges.row[2] += step_x[2];
         x += columns;
+        if x > x1 {
+            return;
+        }
+        // The last step may not reach beyond the tile.
+        let over = (x + columns - TILE).max(0);
+        x -= over;
+        for i in 0..3 {
+            edges.row[i] += step_x[i] * (columns - over);
+        }
     }
 }
 
