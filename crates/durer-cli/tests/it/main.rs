@@ -5,6 +5,7 @@ mod conformance_clip;
 mod conformance_models;
 mod faults;
 mod harness;
+mod memory;
 mod options;
 mod outputs;
 mod pick;
