@@ -4,7 +4,9 @@ mod args;
 mod camera;
 mod clip;
 mod color;
+mod draw;
 mod failure;
+mod fill;
 mod fit;
 mod info;
 mod input;
@@ -43,6 +45,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Render(args) => on_threads(&args.running, || render::run(&args)),
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
+        Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),

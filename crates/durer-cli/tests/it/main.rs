@@ -3,6 +3,8 @@
 mod clip;
 mod conformance_clip;
 mod conformance_models;
+mod draw;
+mod fill;
 mod harness;
 mod options;
 mod outputs;
