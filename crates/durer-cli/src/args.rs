@@ -52,6 +52,12 @@ pub enum Command {
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
     Clip(Box<crate::clip::ClipArgs>),
+    /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a PNG picture
+    #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Draw(Box<crate::draw::DrawArgs>),
+    /// Fill what is connected with a pixel of a PNG or JPEG, by seed fill
+    #[command(after_long_help = crate::fill::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Fill(Box<crate::fill::FillArgs>),
     /// Say what is in a model
     Info(InfoArgs),
     /// Say which objects and triangles lie behind a point or a rectangle of the picture

@@ -6,7 +6,9 @@ mod camera;
 mod clip;
 mod color;
 mod compare;
+mod draw;
 mod failure;
+mod fill;
 mod fit;
 mod info;
 mod input;
@@ -48,6 +50,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
         Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
+        Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
+        Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),

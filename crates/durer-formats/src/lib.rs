@@ -19,6 +19,7 @@ pub mod ply;
 pub mod png;
 mod sniff;
 pub mod stl;
+pub mod svg;
 mod text;
 pub mod threemf;
 

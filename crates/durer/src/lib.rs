@@ -52,6 +52,7 @@
 //! | Several views in one picture? | [`view::layout`] |
 //! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
 //! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
+//! | Where does the label of an area go, and which labels have room? | [`view::interior_point`], [`view::label`] |
 //! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
 //!
 //! **Which part of a line lies in the window?** [`clip::line`]

@@ -4,6 +4,8 @@ mod clip;
 mod conformance_clip;
 mod conformance_models;
 mod faults;
+mod draw;
+mod fill;
 mod harness;
 mod memory;
 mod options;

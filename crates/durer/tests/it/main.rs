@@ -26,6 +26,7 @@ mod surface_scenes;
 mod surface_warnock;
 mod tidy;
 mod view_cull;
+mod view_label;
 mod view_pick;
 mod view_projection;
 mod view_window;
