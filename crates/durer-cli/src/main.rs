@@ -1,6 +1,7 @@
 //! The `durer` command.
 
 mod args;
+mod beside;
 mod camera;
 mod clip;
 mod color;
@@ -27,6 +28,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    beside::clean_up_when_interrupted();
     match run(Cli::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -115,6 +115,9 @@
 //!
 //! [Wireframe](visibility::wireframe) draws all edges, hidden ones too.
 //!
+//! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
+//! letters from the [single-stroke font](curve::stroke_font).
+//!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
 //! [textures](shade::texture); [shadow maps](shade::shadow).
@@ -164,6 +167,8 @@ pub mod clip;
 pub mod view;
 
 pub mod raster;
+
+pub mod paper;
 
 pub mod shade;
 

@@ -4,6 +4,7 @@ mod algorithms;
 mod clip;
 mod conformance_clip;
 mod conformance_models;
+mod faults;
 mod harness;
 mod options;
 mod outputs;

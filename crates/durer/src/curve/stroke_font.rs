@@ -1,193 +1,340 @@
-//! A small font of strokes for labels: no file, no licence, the same everywhere.
+//! A single-stroke font: letters as chains of lines for a pen to follow, for labels on drawings,
+//! plotters and contact sheets.
 //!
-//! Glyphs are polylines on a grid of 4 × 8 units, to be stroked with round caps and joins, as plotters
-//! and vector displays drew them. ASCII only; other characters appear as a box. For real text there is
-//! [`super::text`].
+//! A design of its own, on a grid where capitals are 12 units high, small letters 8, and descenders
+//! reach 4 below the base line. Round shapes are quarters of ellipses that start and end along the grid.
+//! Widths are proportional, figures stand in columns. Printable ASCII, the signs that drawings need
+//! (° µ × ± – … Ø ² ³), and Latin letters with accents; anything else is an empty box.
 
-use super::Path;
-use super::text::TextLine;
-use crate::math::{DAffine2, DVec2};
+use crate::math::DVec2;
 
-/// Grid units from the top of capitals to the lowest descender; the base line is at 6.
-const HEIGHT: f64 = 8.0;
-const BASE_LINE: f64 = 6.0;
-/// Free units between two glyphs.
-const GAP: f64 = 2.0;
+/// A line of text as strokes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StrokeText {
+    /// Chains of at least two points, y down, the first letter's origin on the base line at (0, 0). A
+    /// chain that is closed repeats its first point.
+    pub strokes: Vec<Vec<DVec2>>,
+    /// Where the next letter would start. Half of the space between letters stands on either side of
+    /// each, so half of `advance` is the middle of the text.
+    pub advance: f64,
+}
 
-/// The width of the strokes that looks right, as a part of the size.
-pub const STROKE_WIDTH: f64 = 0.09;
+/// The height of capital letters on the grid.
+const CAP: f64 = 12.0;
+/// The space between two letters.
+const SPACING: f64 = 3.4;
+/// The width of a space between words, its letter spacing not counted.
+const WORD: f64 = 2.4;
+/// Chords per quarter of an ellipse: 0.4 % of its radius off, a hundredth of a millimetre for letters
+/// of 5 mm.
+const CHORDS: u32 = 6;
+/// What is drawn for a letter that the font does not have.
+const MISSING: Glyph = (6.0, "M0 0 L6 0 L6 12 L0 12 L0 0");
 
-/// What a character that is not here looks like.
-const MISSING: (char, &str) = ('\u{fffd}', "00 40 46 06 00");
+/// Width and outline: `M` starts a stroke, `L` is a line; `H` and `V` are quarters of an ellipse that
+/// leave horizontally or vertically, `Q` is a quadratic Bézier curve with its control point first.
+type Glyph = (f64, &'static str);
 
-/// Characters with their strokes: points are column and row, `,` begins a new stroke, one point alone
-/// is a dot.
-const GLYPHS: &[(char, &str)] = &[
-    ('!', "00 04,06"),
-    ('"', "00 01,20 21"),
-    ('#', "10 16,30 36,02 42,04 44"),
-    ('%', "06 40,01,45"),
-    ('\'', "00 01"),
-    ('(', "10 01 05 16"),
-    (')', "00 11 15 06"),
-    ('*', "21 25,02 44,04 42"),
-    ('+', "22 26,04 44"),
-    (',', "15 07"),
-    ('-', "04 34"),
-    ('.', "06"),
-    ('/', "06 40"),
-    ('0', "10 30 41 45 36 16 05 01 10,14 32"),
-    ('1', "01 20 26,06 46"),
-    ('2', "01 10 30 41 42 06 46"),
-    ('3', "01 10 30 41 42 33 44 45 36 16 05,13 33"),
-    ('4', "36 30 04 44"),
-    ('5', "40 00 03 33 44 45 36 16 05"),
-    ('6', "41 30 10 01 05 16 36 45 44 33 13 04"),
-    ('7', "00 40 41 16"),
-    ('8', "13 02 01 10 30 41 42 33 13 04 05 16 36 45 44 33"),
-    ('9', "05 16 36 45 41 30 10 01 02 13 33 42"),
-    (':', "03,06"),
-    (';', "13,15 07"),
-    ('<', "32 04 36"),
-    ('=', "03 43,05 45"),
-    ('>', "02 34 06"),
-    ('?', "01 10 30 41 42 23 24,26"),
-    ('A', "06 02 20 42 46,04 44"),
-    ('B', "03 33 42 41 30 00 06 36 45 44 33"),
-    ('C', "41 30 10 01 05 16 36 45"),
-    ('D', "00 06 26 44 42 20 00"),
-    ('E', "40 00 06 46,03 33"),
-    ('F', "40 00 06,03 33"),
-    ('G', "41 30 10 01 05 16 36 45 43 23"),
-    ('H', "00 06,40 46,03 43"),
-    ('I', "00 20,10 16,06 26"),
-    ('J', "40 45 36 16 05"),
-    ('K', "00 06,40 03 46"),
-    ('L', "00 06 46"),
-    ('M', "06 00 23 40 46"),
-    ('N', "06 00 46 40"),
-    ('O', "10 30 41 45 36 16 05 01 10"),
-    ('P', "06 00 30 41 42 33 03"),
-    ('Q', "10 30 41 45 36 16 05 01 10,24 46"),
-    ('R', "06 00 30 41 42 33 03,23 46"),
-    ('S', "41 30 10 01 02 13 33 44 45 36 16 05"),
-    ('T', "00 40,20 26"),
-    ('U', "00 05 16 36 45 40"),
-    ('V', "00 26 40"),
-    ('W', "00 16 23 36 40"),
-    ('X', "00 46,40 06"),
-    ('Y', "00 23 40,23 26"),
-    ('Z', "00 40 06 46"),
-    ('[', "10 00 06 16"),
-    ('\\', "00 46"),
-    (']', "00 10 16 06"),
-    ('^', "02 20 42"),
-    ('_', "07 47"),
-    ('a', "43 32 12 03 05 16 36 45,42 46"),
-    ('b', "00 06,03 12 32 43 45 36 16 05"),
-    ('c', "43 32 12 03 05 16 36 45"),
-    ('d', "40 46,43 32 12 03 05 16 36 45"),
-    ('e', "04 44 43 32 12 03 05 16 36 45"),
-    ('f', "30 20 11 16,02 22"),
-    ('g', "42 47 38 18 07,43 32 12 03 05 16 36 45"),
-    ('h', "00 06,03 12 32 43 46"),
-    ('i', "02 06,00"),
-    ('j', "22 27 18 07,20"),
-    ('k', "00 06,32 04 36"),
-    ('l', "00 05 16"),
-    ('m', "02 06,03 12 23 26,23 32 43 46"),
-    ('n', "02 06,03 12 32 43 46"),
-    ('o', "12 32 43 45 36 16 05 03 12"),
-    ('p', "02 08,03 12 32 43 45 36 16 05"),
-    ('q', "42 48,43 32 12 03 05 16 36 45"),
-    ('r', "02 06,04 13 22 32"),
-    ('s', "43 32 12 03 14 34 45 36 16 05"),
-    ('t', "10 15 26 36,02 32"),
-    ('u', "02 05 16 36 45,42 46"),
-    ('v', "02 26 42"),
-    ('w', "02 16 23 36 42"),
-    ('x', "02 46,42 06"),
-    ('y', "02 26,42 26 17 08"),
-    ('z', "02 42 06 46"),
-    ('{', "20 11 12 03 14 15 26"),
-    ('|', "00 07"),
-    ('}', "00 11 12 23 14 15 06"),
-    ('~', "04 13 34 43"),
-];
-
-/// Lays out one line of text; `size` is the distance from the top of capitals to the lowest descender.
-/// Control characters are left out. The path is to be stroked, e.g. [`STROKE_WIDTH`] · `size` wide with
-/// round caps and joins.
+/// Lays out one line of text whose capitals are `cap_height` high, in any unit.
+///
+/// Control characters are left out. A height that is not finite counts as 0.
 ///
 /// ```
-/// let line = durer::curve::stroke_font::line("z-buffer: 0", 16.0);
-/// assert!(line.advance > 16.0 && !line.path.is_empty());
+/// use durer::curve::stroke_font;
+/// let text = stroke_font::line("L", 12.0);
+/// assert_eq!(text.strokes.len(), 1);
+/// assert_eq!(text.strokes[0].len(), 3);
+/// assert_eq!(text.strokes[0][0].y, -12.0); // y down: the top of the letter
 /// ```
-pub fn line(text: &str, size: f64) -> TextLine {
-    let size = if size.is_finite() { size.clamp(0.0, 1e6) } else { 0.0 };
-    let unit = size / HEIGHT;
-    let (ascent, descent) = (BASE_LINE * unit, (HEIGHT - BASE_LINE) * unit);
-    let mut line = TextLine { ascent, descent, ..TextLine::default() };
+pub fn line(text: &str, cap_height: f64) -> StrokeText {
+    let height = if cap_height.is_finite() { cap_height.clamp(0.0, 1e9) } else { 0.0 };
+    let scale = height / CAP;
+    let mut line = StrokeText::default();
+    let mut x = 0.0;
     for character in text.chars().filter(|c| !c.is_control()) {
-        let (path, width) = glyph(character);
-        let place = DVec2::new(line.advance, -ascent);
-        let placed = DAffine2::from_scale_angle_translation(DVec2::splat(unit), 0.0, place);
-        line.path.extend(&path.transformed(placed));
-        line.advance += (width + GAP) * unit;
+        let letter = letter(character);
+        let place = |p: DVec2| DVec2::new(x + SPACING * 0.5 + p.x, -p.y) * scale;
+        let placed = letter.strokes.iter().map(|s| s.iter().map(|&p| place(p)).collect());
+        line.strokes.extend(placed);
+        x += letter.width + SPACING;
     }
+    line.advance = x * scale;
     line
 }
 
-/// The strokes of a character in grid units, and its width.
-fn glyph(character: char) -> (Path, f64) {
-    if character == ' ' {
-        return (Path::new(), 2.0);
-    }
-    let found = GLYPHS.binary_search_by_key(&character, |g| g.0).ok();
-    let (_, strokes) = found.and_then(|i| GLYPHS.get(i)).unwrap_or(&MISSING);
-    let (mut path, mut width) = (Path::new(), 0.0f64);
-    for stroke in strokes.split(',') {
-        let points = || stroke.split(' ').filter_map(point);
-        width = points().map(|p| p.x).fold(width, f64::max);
-        let dot = DVec2::new(0.0, 0.01);
-        let end = points().next().filter(|_| points().nth(1).is_none()).map(|p| p + dot);
-        path.extend(&Path::polyline(points().chain(end)));
-    }
-    (path, width)
+/// A letter on the grid, y up.
+struct Letter {
+    strokes: Vec<Vec<DVec2>>,
+    width: f64,
 }
 
-/// Column and row, a digit each.
-fn point(text: &str) -> Option<DVec2> {
-    let mut digits = text.chars().filter_map(|c| c.to_digit(10));
-    Some(DVec2::new(f64::from(digits.next()?), f64::from(digits.next()?)))
+fn letter(character: char) -> Letter {
+    if matches!(character, ' ' | '\u{a0}') {
+        return Letter { strokes: Vec::new(), width: WORD };
+    }
+    let plain = |(width, outline): Glyph| Letter { strokes: strokes(outline), width };
+    if let Some(glyph) = glyph(character) {
+        return plain(glyph);
+    }
+    match raised(character) {
+        Some(letter) => letter,
+        None => plain(accented(character).unwrap_or(MISSING)).with_accent(character),
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Small figures: half as large, at the height of capitals.
+fn raised(character: char) -> Option<Letter> {
+    let figure = match character {
+        '²' => '2',
+        '³' => '3',
+        '¹' => '1',
+        _ => return None,
+    };
+    let (width, outline) = glyph(figure)?;
+    let up = |p: DVec2| p * 0.55 + DVec2::new(0.0, 0.45 * CAP);
+    let strokes = strokes(outline).iter().map(|s| s.iter().map(|&p| up(p)).collect()).collect();
+    Some(Letter { strokes, width: width * 0.55 })
+}
 
-    #[test]
-    fn every_printable_character_has_its_own_strokes() {
-        assert!(GLYPHS.is_sorted_by_key(|g| g.0));
-        let absent: String = (' '..='~')
-            .filter(|c| *c != ' ' && GLYPHS.binary_search_by_key(c, |g| g.0).is_err())
-            .collect();
-        assert_eq!(absent, "$&@`");
-        for (i, (c, strokes)) in GLYPHS.iter().enumerate() {
-            assert!(GLYPHS[..i].iter().all(|g| g.1 != *strokes), "{c} looks like another");
-            for stroke in strokes.split(',') {
-                assert!(stroke.split(' ').all(|p| p.len() == 2 && point(p).is_some()), "{c}");
+impl Letter {
+    /// The same letter with the accent of `character` over (or under) its middle.
+    fn with_accent(mut self, character: char) -> Self {
+        let Some((base, accent)) = decomposed(character) else { return self };
+        let Some((width, outline)) = accent_glyph(accent) else { return self };
+        let lift = if base.is_uppercase() && accent != '¸' { CAP - X_HEIGHT } else { 0.0 };
+        let shift = DVec2::new((self.width - width) * 0.5, lift);
+        let moved =
+            strokes(outline).into_iter().map(|s| s.into_iter().map(|p| p + shift).collect());
+        self.strokes.extend(moved);
+        self
+    }
+}
+
+/// The height of small letters on the grid.
+const X_HEIGHT: f64 = 8.0;
+
+/// The letter under an accent.
+fn accented(character: char) -> Option<Glyph> {
+    match decomposed(character)?.0 {
+        'i' => Some((0.0, "M0 0 L0 8")),
+        base => glyph(base),
+    }
+}
+
+/// A letter with an accent as its two parts.
+fn decomposed(character: char) -> Option<(char, char)> {
+    let row = ACCENTED.iter().find(|(_, _, all)| all.contains(character))?;
+    let index = row.2.chars().position(|c| c == character)?;
+    Some((row.1.chars().nth(index)?, row.0))
+}
+
+/// Accent, letters, letters with the accent.
+const ACCENTED: &[(char, &str, &str)] = &[
+    ('¨', "aeiouyAEIOUY", "äëïöüÿÄËÏÖÜŸ"),
+    ('´', "aeiouycnszAEIOUYCNSZ", "áéíóúýćńśźÁÉÍÓÚÝĆŃŚŹ"),
+    ('`', "aeiouAEIOU", "àèìòùÀÈÌÒÙ"),
+    ('^', "aeiouAEIOU", "âêîôûÂÊÎÔÛ"),
+    ('~', "anoANO", "ãñõÃÑÕ"),
+    ('ˇ', "cdenrszCDENRSZ", "čďěňřšžČĎĚŇŘŠŽ"),
+    ('˚', "auAU", "åůÅŮ"),
+    ('¸', "csCS", "çşÇŞ"),
+];
+
+/// Accents over a small letter.
+fn accent_glyph(accent: char) -> Option<Glyph> {
+    Some(match accent {
+        '¨' => (3.0, "M0 10.3 L0 10.9 M3 10.3 L3 10.9"),
+        '´' => (1.8, "M0 9.6 L1.8 11.8"),
+        '`' => (1.8, "M1.8 9.6 L0 11.8"),
+        '^' => (3.6, "M0 9.6 L1.8 11.6 L3.6 9.6"),
+        '~' => (4.0, "M0 10 Q1 11.6 2 10.7 Q3 9.8 4 11.4"),
+        'ˇ' => (3.6, "M0 11.6 L1.8 9.6 L3.6 11.6"),
+        '˚' => (2.4, "M1.2 11.8 H2.4 10.6 V1.2 9.4 H0 10.6 V1.2 11.8"),
+        '¸' => (1.4, "M0.8 0 L0.5 -1.1 Q1.6 -1.3 1.5 -2.2 Q1.3 -3 0 -2.9"),
+        _ => return None,
+    })
+}
+
+/// The chains of points of an outline.
+fn strokes(outline: &str) -> Vec<Vec<DVec2>> {
+    let mut strokes: Vec<Vec<DVec2>> = Vec::new();
+    let mut control = None;
+    let mut words = outline.split_ascii_whitespace();
+    while let (Some(first), Some(second)) = (words.next(), words.next()) {
+        // The first number of a quadratic's end has no letter before it.
+        let (command, x) = match first.split_at_checked(1) {
+            Some((letter, x)) if letter.as_bytes().iter().all(u8::is_ascii_alphabetic) => {
+                (letter, x)
             }
+            _ => ("", first),
+        };
+        let to = DVec2::new(x.parse().unwrap_or(0.0), second.parse().unwrap_or(0.0));
+        match (command, strokes.last_mut()) {
+            ("M", _) | (_, None) => strokes.push(vec![to]),
+            ("Q", _) => control = Some(to),
+            (command, Some(stroke)) => extend(stroke, command, control.take(), to),
         }
     }
+    strokes
+}
 
-    #[test]
-    fn lines_grow_with_their_size_and_stay_within_it() {
-        let small = line("Hg", 8.0);
-        assert_eq!((small.advance, small.ascent, small.descent), (12.0, 6.0, 2.0));
-        let bounds = small.path.bounds().expect("strokes");
-        assert_eq!((bounds.min().y, bounds.max().y), (-6.0, 2.0));
-        assert_eq!(line("Hg", 16.0).advance, 24.0);
-        assert_eq!(line("a\u{7}é", f64::NAN).advance, 0.0);
+/// Lengthens a stroke by one piece.
+fn extend(stroke: &mut Vec<DVec2>, command: &str, control: Option<DVec2>, to: DVec2) {
+    let Some(&from) = stroke.last() else { return };
+    let quarter = |corner: DVec2, i: u32| {
+        let center = from + to - corner;
+        let (sin, cos) =
+            libm::sincos(std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(CHORDS));
+        center + (from - center) * cos + (to - center) * sin
+    };
+    match (command, control) {
+        ("H", _) => stroke.extend((1..CHORDS).map(|i| quarter(DVec2::new(to.x, from.y), i))),
+        ("V", _) => stroke.extend((1..CHORDS).map(|i| quarter(DVec2::new(from.x, to.y), i))),
+        (_, Some(c)) => stroke.extend((1..CHORDS).map(|i| {
+            let t = f64::from(i) / f64::from(CHORDS);
+            from.lerp(c, t).lerp(c.lerp(to, t), t)
+        })),
+        _ => {}
     }
+    stroke.push(to);
+}
+
+/// Letters, figures and signs on the grid.
+fn glyph(character: char) -> Option<Glyph> {
+    Some(match character {
+        'A' => (8.0, "M0 0 L4 12 L8 0 M1.333 4 L6.667 4"),
+        'B' => (7.0, "M0 6.3 L0 0 L3.8 0 H7 3.15 V3.8 6.3 L0 6.3 L0 12 L3.6 12 H6.4 9.15 V3.6 6.3"),
+        'C' => (8.0, "M8 8.8 V4.4 12 H0 6 V4.4 0 H8 3.2"),
+        'D' => (8.0, "M0 0 L0 12 L3 12 H8 7 L8 5 V3 0 L0 0"),
+        'E' => (6.4, "M6.4 12 L0 12 L0 0 L6.4 0 M0 6.3 L5.4 6.3"),
+        'F' => (6.2, "M6.2 12 L0 12 L0 0 M0 6.1 L5.2 6.1"),
+        'G' => (8.4, "M8 8.9 V4.4 12 H0 6 V4.4 0 H8.4 4 L8.4 5.6 L5 5.6"),
+        'H' => (8.0, "M0 0 L0 12 M8 0 L8 12 M0 6.2 L8 6.2"),
+        'I' => (0.0, "M0 0 L0 12"),
+        'J' => (5.0, "M5 12 L5 3 V2.5 0 H0 2.5"),
+        'K' => (7.5, "M0 0 L0 12 M7.2 12 L0 4.8 M2.7 7.5 L7.5 0"),
+        'L' => (6.0, "M0 12 L0 0 L6 0"),
+        'M' => (9.0, "M0 0 L0 12 L4.5 4 L9 12 L9 0"),
+        'N' => (8.0, "M0 0 L0 12 L8 0 L8 12"),
+        'O' => (9.0, "M4.5 12 H9 6 V4.5 0 H0 6 V4.5 12"),
+        'P' => (6.8, "M0 0 L0 12 L3.6 12 H6.8 8.7 V3.6 5.4 L0 5.4"),
+        'Q' => (9.0, "M4.5 12 H9 6 V4.5 0 H0 6 V4.5 12 M5.6 3.2 L9 -1"),
+        'R' => (7.2, "M0 0 L0 12 L3.6 12 H6.8 8.7 V3.6 5.4 L0 5.4 M3.8 5.4 L7.2 0"),
+        'S' => (7.0, "M6.7 9.3 V3.5 12 H0.3 9.1 V3.5 6.2 H7 3.1 V3.5 0 H0 2.8"),
+        'T' => (8.0, "M0 12 L8 12 M4 12 L4 0"),
+        'U' => (8.0, "M0 12 L0 4 V4 0 H8 4 L8 12"),
+        'V' => (8.0, "M0 12 L4 0 L8 12"),
+        'W' => (11.0, "M0 12 L2.8 0 L5.5 11 L8.2 0 L11 12"),
+        'X' => (7.6, "M0 0 L7.6 12 M0 12 L7.6 0"),
+        'Y' => (8.0, "M0 12 L4 5.6 L8 12 M4 5.6 L4 0"),
+        'Z' => (7.2, "M0 12 L7.2 12 L0 0 L7.2 0"),
+        'a' => (6.0, "M6 8 L6 0 M6 4 V3 8 H0 4 V3 0 H6 4"),
+        'b' => (6.0, "M0 12 L0 0 M0 4 V3 0 H6 4 V3 8 H0 4"),
+        'c' => (5.4, "M5.4 6 V3 8 H0 4 V3 0 H5.4 2"),
+        'd' => (6.0, "M6 12 L6 0 M6 4 V3 8 H0 4 V3 0 H6 4"),
+        'e' => (6.0, "M0 4.2 L6 4.2 V3 8 H0 4 V3 0 H5.7 1.9"),
+        'f' => (4.0, "M1.4 0 L1.4 9.6 V3.6 12 L4.2 12 M0 8 L3.8 8"),
+        'g' => (6.0, "M6 8 L6 -1 V3 -4 H0.4 -2.2 M6 4 V3 8 H0 4 V3 0 H6 4"),
+        'h' => (5.6, "M0 12 L0 0 M0 5 V2.9 8 H5.6 5 L5.6 0"),
+        'i' => (0.0, "M0 0 L0 8 M0 10.6 L0 11.2"),
+        'j' => (2.2, "M2.2 8 L2.2 -1.8 V0 -4 M2.2 10.6 L2.2 11.2"),
+        'k' => (5.4, "M0 0 L0 12 M5 8 L0 3 M1.9 4.9 L5.4 0"),
+        'l' => (1.6, "M0 12 L0 1.6 V1.6 0"),
+        'm' => (9.4, "M0 0 L0 8 M0 5.4 V2.5 8 H4.7 5.4 L4.7 0 M4.7 5.4 V7.2 8 H9.4 5.4 L9.4 0"),
+        'n' => (5.6, "M0 0 L0 8 M0 5 V2.9 8 H5.6 5 L5.6 0"),
+        'o' => (6.0, "M3 8 H6 4 V3 0 H0 4 V3 8"),
+        'p' => (6.0, "M0 8 L0 -4 M0 4 V3 8 H6 4 V3 0 H0 4"),
+        'q' => (6.0, "M6 8 L6 -4 M6 4 V3 8 H0 4 V3 0 H6 4"),
+        'r' => (3.6, "M0 0 L0 8 M0 5 V2.9 8 L3.6 8"),
+        's' => (5.0, "M4.8 6.3 V2.5 8 H0.2 6.1 V2.5 4.2 H5 2.1 V2.5 0 H0 1.8"),
+        't' => (3.8, "M1.4 11 L1.4 2 V3.2 0 L4 0 M0 8 L3.8 8"),
+        'u' => (5.6, "M0 8 L0 3 V2.7 0 H5.6 3 M5.6 8 L5.6 0"),
+        'v' => (6.0, "M0 8 L3 0 L6 8"),
+        'w' => (9.0, "M0 8 L2.25 0 L4.5 7.3 L6.75 0 L9 8"),
+        'x' => (5.6, "M0 0 L5.6 8 M0 8 L5.6 0"),
+        'y' => (6.0, "M0 8 L3 0 M6 8 L1.5 -4"),
+        'z' => (5.0, "M0 8 L5 8 L0 0 L5 0"),
+        _ => return figure(character).or_else(|| sign(character)),
+    })
+}
+
+/// All figures have one width.
+fn figure(character: char) -> Option<Glyph> {
+    let outline = match character {
+        '0' => "M3.5 12 H7 8 L7 4 V3.5 0 H0 4 L0 8 V3.5 12",
+        '1' => "M1 9.4 L4.2 12 L4.2 0",
+        '2' => "M0.3 9 V3.5 12 H6.8 8.9 Q6.8 7 4.9 5.1 L0 0 L7 0",
+        '3' => "M0.5 9.4 V3.5 12 H6.6 9.2 V3.5 6.4 L2.4 6.4 M3.5 6.4 H7 3.2 V3.5 0 H0.1 2.8",
+        '4' => "M5.3 0 L5.3 12 L0 3.4 L7 3.4",
+        '5' => "M6.3 12 L1 12 L0.6 6.7 Q1.7 7.6 3.4 7.6 H7 3.8 V3.4 0 H0 2.6",
+        '6' => "M6 12 Q0 9.8 0 3.8 V3.5 0 H7 3.8 V3.5 7.5 H0 3.8",
+        '7' => "M0 12 L7 12 L2.2 0",
+        '8' => "M3.5 6.5 H0.4 9.25 V3.5 12 H6.6 9.25 V3.5 6.5 H7 3.25 V3.5 0 H0 3.25 V3.5 6.5",
+        '9' => "M1 0 Q7 2.2 7 8.2 V3.5 12 H0 8.2 V3.5 4.5 H7 8.2",
+        _ => return None,
+    };
+    Some((7.0, outline))
+}
+
+/// Punctuation and the signs of measures.
+fn sign(character: char) -> Option<Glyph> {
+    Some(match character {
+        '.' => (0.0, "M0 0 L0 0.6"),
+        ',' => (0.8, "M0.8 0.6 L0 -2"),
+        ':' => (0.0, "M0 0 L0 0.6 M0 6.6 L0 7.2"),
+        ';' => (0.8, "M0.8 0.6 L0 -2 M0.8 6.6 L0.8 7.2"),
+        '!' => (0.0, "M0 12 L0 3.4 M0 0 L0 0.6"),
+        '?' => (6.0, "M0 9.2 V3 12 H6 9 Q6 7.4 4.5 6.2 Q3 5 3 3.4 M3 0 L3 0.6"),
+        '"' | '“' | '”' => (2.2, "M0 12 L0 9 M2.2 12 L2.2 9"),
+        '\'' | '‘' | '’' => (0.0, "M0 12 L0 9"),
+        '#' => (8.0, "M1.5 1 L3 11 M5 1 L6.5 11 M0 4 L7.5 4 M0.5 8 L8 8"),
+        '$' => (7.0, "M6.7 9.3 V3.5 12 H0.3 9.1 V3.5 6.2 H7 3.1 V3.5 0 H0 2.8 M3.5 -1.6 L3.5 13.6"),
+        '%' => (
+            10.0,
+            "M1.4 0 L8.6 12 M2 12 H4 9.75 V2 7.5 H0 9.75 V2 12 M8 4.5 H10 2.25 V8 0 H6 2.25 V8 4.5",
+        ),
+        '&' => (
+            8.6,
+            "M8.6 0 L2 7.8 Q1.1 8.9 1.1 10 V3.2 12 H5.3 10 Q5.3 8.5 2.9 7.1 Q0 5.4 0 3 V3.2 0 Q6.8 0 7.8 5",
+        ),
+        '(' => (2.4, "M2.4 13 Q0 9.5 0 5 Q0 0.5 2.4 -3"),
+        ')' => (2.4, "M0 13 Q2.4 9.5 2.4 5 Q2.4 0.5 0 -3"),
+        '*' => (5.0, "M2.5 12 L2.5 6.4 M0 10.6 L5 7.8 M5 10.6 L0 7.8"),
+        '+' => (7.0, "M3.5 1.5 L3.5 8.5 M0 5 L7 5"),
+        '±' => (7.0, "M3.5 2.6 L3.5 9.4 M0 6 L7 6 M0 0 L7 0"),
+        '-' => (4.0, "M0 5 L4 5"),
+        '−' => (7.0, "M0 5 L7 5"),
+        '–' => (6.0, "M0 5 L6 5"),
+        '—' => (10.0, "M0 5 L10 5"),
+        '/' => (5.6, "M0 -1 L5.6 13"),
+        '\\' => (5.6, "M0 13 L5.6 -1"),
+        '<' => (6.4, "M6.4 9 L0 5 L6.4 1"),
+        '>' => (6.4, "M0 9 L6.4 5 L0 1"),
+        '=' => (7.0, "M0 6.6 L7 6.6 M0 3.4 L7 3.4"),
+        '@' => (
+            11.0,
+            "M7.8 5.6 V5.5 8.2 H3.2 5.6 V5.5 3 H7.8 5.6 M7.8 8.2 L7.8 4.6 V9.4 3 H11 6 V5.5 12 H0 5.5 V5.5 -1 Q7.8 -1 9 0",
+        ),
+        '[' => (2.4, "M2.4 13 L0 13 L0 -3 L2.4 -3"),
+        ']' => (2.4, "M0 13 L2.4 13 L2.4 -3 L0 -3"),
+        '{' => (3.4, "M3.4 13 H1.7 11 L1.7 7 V0 5 H1.7 3 L1.7 -1 V3.4 -3"),
+        '}' => (3.4, "M0 13 H1.7 11 L1.7 7 V3.4 5 H1.7 3 L1.7 -1 V0 -3"),
+        '|' => (0.0, "M0 13 L0 -3"),
+        '^' => (6.0, "M0 7.6 L3 12 L6 7.6"),
+        '_' => (7.0, "M0 -2 L7 -2"),
+        '`' => (1.8, "M0 12 L1.8 9.8"),
+        '´' => (1.8, "M0 9.8 L1.8 12"),
+        '~' => (7.0, "M0 4 Q1.6 6.6 3.5 5.1 Q5.4 3.6 7 6.2"),
+        '°' => (3.8, "M1.9 12 H3.8 10.1 V1.9 8.2 H0 10.1 V1.9 12"),
+        'µ' | 'μ' => (5.6, "M0 8 L0 -4 M0 3 V2.7 0 H5.6 3 M5.6 8 L5.6 0"),
+        '×' => (6.0, "M0 2 L6 8 M0 8 L6 2"),
+        '÷' => (7.0, "M0 5 L7 5 M3.5 8 L3.5 8.6 M3.5 1.4 L3.5 2"),
+        '·' => (0.0, "M0 4.7 L0 5.3"),
+        '•' => (2.0, "M1 6 H2 5 V1 4 H0 5 V1 6"),
+        '…' => (8.0, "M0 0 L0 0.6 M4 0 L4 0.6 M8 0 L8 0.6"),
+        'Ø' | '⌀' => (9.0, "M4.5 12 H9 6 V4.5 0 H0 6 V4.5 12 M0.6 -0.8 L8.4 12.8"),
+        'ø' => (6.0, "M3 8 H6 4 V3 0 H0 4 V3 8 M0 -0.8 L6 8.8"),
+        'ß' => (6.4, "M0 0 L0 9 V2.9 12 H5.7 9.3 V3.2 6.7 H6.4 3.35 V3.2 0 L2 0"),
+        _ => return None,
+    })
 }

@@ -7,6 +7,7 @@ mod clip_volume;
 mod commands;
 mod conformance_overlay;
 mod conformance_visible_surface;
+mod curve_stroke_font;
 mod data;
 mod determinism;
 mod fragment_mask;

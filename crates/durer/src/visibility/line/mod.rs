@@ -1,0 +1,1 @@
+//! Visible lines: what of the edges of a scene can be seen, as exact drawings.
