@@ -1,5 +1,6 @@
 //! The command as its users see it: the built binary, run on small models.
 
+mod algorithms;
 mod clip;
 mod conformance_clip;
 mod conformance_models;

@@ -1,13 +1,16 @@
 //! The one test binary of the library.
 
 mod a_buffer;
+mod blended;
 mod clip_place;
 mod clip_volume;
+mod commands;
 mod conformance_overlay;
 mod conformance_visible_surface;
 mod curve_stroke_font;
 mod data;
 mod determinism;
+mod fragment_mask;
 mod golden;
 mod overlay;
 mod raster_coverage;
@@ -19,7 +22,9 @@ mod raster_seed_fill;
 mod raster_triangle;
 mod scenes;
 mod shading;
+mod shadows;
 mod surface_depth_sort;
+mod surface_fuzz;
 mod surface_methods;
 mod surface_ray;
 mod surface_scenes;
@@ -29,6 +34,8 @@ mod view_cull;
 mod view_label;
 mod view_pick;
 mod view_projection;
+mod view_warp;
 mod view_window;
 mod visible_surface;
+mod wireframe;
 mod z_buffer;
