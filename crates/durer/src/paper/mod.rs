@@ -119,7 +119,9 @@ impl Options {
                 let scale = match self.scale {
                     Scale::Given(scale) => scale,
                     Scale::Fit => largest_scale(size, DVec2::splat(FITTED_SIDE)),
-                    Scale::Standard => standard_scale(largest_scale(size, DVec2::splat(FITTED_SIDE))),
+                    Scale::Standard => {
+                        standard_scale(largest_scale(size, DVec2::splat(FITTED_SIDE)))
+                    }
                 };
                 let page = size * scale + taken;
                 if page.max_element() > LARGEST {
@@ -251,13 +253,22 @@ fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
         for &class in LineClass::ALL.iter().rev() {
             let (name, pen) = layer_and_pen(class, depth, options);
             let here = |l: &&Line| {
-                l.class == class && l.invisibility.min(deepest) == depth && (deepest > 0 || l.is_visible())
+                l.class == class
+                    && l.invisibility.min(deepest) == depth
+                    && (deepest > 0 || l.is_visible())
             };
             let mut marks = Vec::new();
             let pen_index = sheet.pens.iter().position(|p| *p == pen).unwrap_or(sheet.pens.len());
             for view in views {
                 for line in view.drawing.lines.iter().filter(here) {
-                    stroke(&mut marks, line, view.origin, factor, pen_index, !pen.dashes.is_empty());
+                    stroke(
+                        &mut marks,
+                        line,
+                        view.origin,
+                        factor,
+                        pen_index,
+                        !pen.dashes.is_empty(),
+                    );
                 }
             }
             if !marks.is_empty() {
@@ -274,7 +285,9 @@ fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
 fn layer_and_pen(class: LineClass, depth: u32, options: &Options) -> (String, Pen) {
     match (depth, options.hidden) {
         (0, _) => (format!("visible-{class}"), options.pens.visible(class)),
-        (_, Hidden::Layer) => (format!("hidden-{depth}-{class}"), options.pens.hidden(class, false)),
+        (_, Hidden::Layer) => {
+            (format!("hidden-{depth}-{class}"), options.pens.hidden(class, false))
+        }
         _ => (format!("hidden-{class}"), options.pens.hidden(class, true)),
     }
 }
@@ -299,7 +312,11 @@ fn stroke(
     let closed = line.closed;
     if dashed {
         let parts = dashes::at_corners(&points, closed);
-        marks.extend(parts.into_iter().map(|(points, closed)| Mark::Stroke { points, closed, pen }));
+        marks.extend(parts.into_iter().map(|(points, closed)| Mark::Stroke {
+            points,
+            closed,
+            pen,
+        }));
     } else {
         marks.push(Mark::Stroke { points, closed, pen });
     }

@@ -87,7 +87,9 @@ impl FromStr for Scale {
         let ratio = number(paper).zip(number(truth)).map(|(p, t)| p / t);
         match ratio.filter(|r| (1e-9..=1e9).contains(r)) {
             Some(ratio) => Ok(Self::Given(ratio)),
-            None => Err(Error::parameter("scale", text, "auto, or a scale such as 1:10, 2:1 or 0.5")),
+            None => {
+                Err(Error::parameter("scale", text, "auto, or a scale such as 1:10, 2:1 or 0.5"))
+            }
         }
     }
 }

@@ -16,7 +16,12 @@ use crate::target::sheet::{Mark, Pen, Sheet};
 /// # Errors
 /// [`crate::Error::Limit`] for sides beyond 32,767 pixels; [`crate::Error::Parameter`] for pens that
 /// are not at least 0 wide.
-pub fn paint(sheet: &Sheet, width: u32, height: u32, background: [u8; 4]) -> Result<Pixels<[u8; 4]>> {
+pub fn paint(
+    sheet: &Sheet,
+    width: u32,
+    height: u32,
+    background: [u8; 4],
+) -> Result<Pixels<[u8; 4]>> {
     let mut canvas = Canvas::new(width, height, Options::default())?;
     canvas.clear(background);
     let picture = DVec2::new(f64::from(width), f64::from(height));

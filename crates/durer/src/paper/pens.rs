@@ -51,7 +51,11 @@ impl Default for Pens {
 impl Pens {
     /// The width for a class of visible lines, millimetres.
     pub fn width(&self, class: LineClass) -> f64 {
-        LineClass::ALL.iter().zip(&self.widths).find(|(c, _)| **c == class).map_or(0.25, |(_, w)| *w)
+        LineClass::ALL
+            .iter()
+            .zip(&self.widths)
+            .find(|(c, _)| **c == class)
+            .map_or(0.25, |(_, w)| *w)
     }
 
     fn set(&mut self, class: LineClass, width: f64) {

@@ -78,10 +78,7 @@ pub fn third_angle(views: &Views, title: &TitleBlock, options: &Options) -> Resu
     let placed = [
         Placed { drawing: views.front, origin: DVec2::new(x, y) },
         // As low as it can, next to the front view.
-        Placed {
-            drawing: views.top,
-            origin: DVec2::new(x, row - gap.y + top.min().y * factor),
-        },
+        Placed { drawing: views.top, origin: DVec2::new(x, row - gap.y + top.min().y * factor) },
         Placed { drawing: views.right, origin: DVec2::new(column - right.min().x * factor, y) },
         Placed {
             drawing: views.iso,

@@ -97,7 +97,13 @@ fn write(
     for (text, height, y) in lines.into_iter().filter(|l| l.1 > 0.05) {
         let pen = text_pen(sheet, height, options);
         let at = at + DVec2::new(PAD, y);
-        block.marks.push(Mark::Text { at, text: text.to_owned(), height, anchor: Anchor::Start, pen });
+        block.marks.push(Mark::Text {
+            at,
+            text: text.to_owned(),
+            height,
+            anchor: Anchor::Start,
+            pen,
+        });
     }
 }
 
