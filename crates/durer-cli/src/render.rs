@@ -160,7 +160,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));
         let report = if drawing::is_wanted(args, kind(args)) {
-            let (scene, format) = (&model.scene, &model.format.to_string());
+            let (scene, format) = (&model.scene, model.format.as_str());
             let subject = Subject { scene, name: &job.stem, format };
             drawing::render(args, &subject, picture.frame, &picture.color, kind(args))
         } else {
