@@ -72,12 +72,6 @@ pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
     bounded(file, metadata.len(), limit).map_err(fail)
 }
 
-/// All bytes of a file, refused above the limit.
-pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
-    let file = File::open(path).map_err(|e| Failure::of_file(path, in_words(&e)))?;
-    bounded(file, 0, limit).map_err(|e| Failure::of_file(path, e))
-}
-
 /// All bytes of a source, refused above the limit.
 fn bounded(source: impl Read, expected: u64, limit: u64) -> Result<Vec<u8>, String> {
     let too_large =

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod color;
+pub mod drawing;
 mod error;
 pub mod geo;
 pub mod gltf;

@@ -57,7 +57,7 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     input::check_streams(&inputs)?;
     let names = output::stems(&inputs).into_iter().take(1);
     let names: Vec<Name> = names.map(|stem| Name { stem, frame: None }).collect();
-    let target = output::plan("--output", &args.output, &names)?;
+    let target = output::plan("--output", &args.output, &names, output::Kind::Png)?;
     let Some(target) = target.into_iter().next() else {
         return Err(Failure::Usage("nothing to draw".to_owned()));
     };
@@ -126,8 +126,7 @@ impl Job<'_> {
         let told = self.args.from.filter(|_| !svg);
         let format = told.or_else(|| GeoFormat::of_content(&bytes)).or_else(by_name);
         let Some(format) = format else {
-            let what =
-                if bytes.is_empty() { "the file is empty" } else { "not a known format" };
+            let what = if bytes.is_empty() { "the file is empty" } else { "not a known format" };
             let message = format!("{name}: {what}; drawn are SVG, GeoJSON, WKT and WKB");
             return Err(Failure::Data(message));
         };

@@ -65,9 +65,8 @@ fn windows_and_viewports_choose_the_part_and_its_place() {
 fn edges_are_smoothed_or_not() {
     let folder = folder();
     folder.write("slope.wkt", "POLYGON ((0 0, 100 0, 100 37))");
-    let grey = |name: &str| {
-        picture(&folder, name).pixels().filter(|p| p[0] != 255 && p[0] != 0).count()
-    };
+    let grey =
+        |name: &str| picture(&folder, name).pixels().filter(|p| p[0] != 255 && p[0] != 0).count();
     let style = "draw --fill black --stroke none slope.wkt --size 99x";
     folder.must(&format!("{style} -o a.png"));
     folder.must(&format!("{style} -o b.png --aa none"));
@@ -137,8 +136,12 @@ fn threads_change_nothing() {
 fn streams_are_read_and_written() {
     let folder = folder();
     let mut command = folder.command("draw - -o - --size 20x");
-    let mut child =
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     child.stdin.take().unwrap().write_all(RED_SQUARE.as_bytes()).unwrap();
     let ended = Ended::of(child.wait_with_output().unwrap());
     assert_eq!(ended.code, 0, "{}", ended.err);
