@@ -7,8 +7,10 @@
 
 mod color;
 mod error;
+pub mod formula;
 pub mod geo;
 pub mod gltf;
+pub mod height_map;
 pub mod image;
 mod model;
 mod mtl;

@@ -166,6 +166,8 @@ pub mod fragment;
 
 pub mod visibility;
 
+pub mod plot;
+
 pub mod explain;
 
 pub mod pipeline;

@@ -3,6 +3,7 @@
 pub mod cull;
 pub mod layout;
 pub mod pick;
+pub mod picture_plane;
 pub mod projection;
 pub mod topology;
 pub mod window;
