@@ -1,11 +1,11 @@
 //! What can be said on the command line.
 
-use crate::values::{self, Size};
+use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use durer::math::{DVec2, DVec3, Rect};
-use durer::pipeline::{self, Background, SurfaceMethod};
+use durer::pipeline::{self, Background};
 use durer::scene::{self, Light};
 use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
@@ -26,6 +26,8 @@ Examples:
   durer render part.stl -o sheet.png --viewports front,top,right,iso --size 1600x1200
   durer render part.stl -o frames/part_%03d.png --turntable 72
   durer render *.stl -o thumbnails/ --size 256x256 --skip-failures
+  durer render bunny.obj -o compare.png --algorithm all
+  durer render bunny.obj -o bunny.png --light directional:-1,-2,-1:white:3 --shadows map
   durer render bunny.obj -o bunny.png --item items.png --depth depth.png --normal normals.png
   curl -s https://example.org/a.glb | durer render - -o - --size 256x256 > a.png
 
@@ -54,6 +56,9 @@ pub enum Command {
     Info(InfoArgs),
     /// Say which objects and triangles lie behind a point or a rectangle of the picture
     Pick(Box<PickArgs>),
+    /// Make a new view from a picture and its depths, for a camera near by
+    #[command(after_long_help = crate::warp::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Warp(Box<crate::warp::WarpArgs>),
     /// Write a completion script for a shell to standard output
     Completions {
         /// The shell
@@ -160,10 +165,13 @@ pub struct PictureArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
     pub size: Size,
-    /// How visible surfaces are found
-    #[arg(long, value_name = "NAME", default_value = "z-buffer", value_parser = values::algorithm())]
-    pub algorithm: SurfaceMethod,
+    /// How visible surfaces are found [default: z-buffer, or a-buffer where a material blends or
+    /// --aa is 64, or ray where --shadows rays or --bounces asks for it]
+    #[arg(long, value_name = "NAME", value_parser = values::algorithm())]
+    pub algorithm: Option<Algorithm>,
     /// Samples per pixel, where the algorithm takes several
+    ///
+    /// The A-buffer has masks of 16 sub-pixels, or of 64 for 64.
     #[arg(long, value_name = "N", default_value = "4")]
     pub aa: Samples,
     /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
@@ -243,6 +251,15 @@ pub struct LookArgs {
     /// Which faces are left out
     #[arg(long, value_name = "WHICH", default_value = "none")]
     pub cull: Cull,
+    /// Whether surfaces keep light from others
+    #[arg(long, value_name = "HOW", default_value = "none")]
+    pub shadows: Shadows,
+    /// Texels along the side of a shadow map
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    pub shadow_map: u32,
+    /// How often rays are reflected by mirrors and refracted by what blends
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
+    pub bounces: u32,
 }
 
 /// Pictures of other planes than colour.
@@ -304,7 +321,7 @@ pub struct RunningArgs {
 }
 
 /// `--aa`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Samples {
     /// One, at the centre: no anti-aliasing
     #[value(name = "1")]
@@ -315,6 +332,20 @@ pub enum Samples {
     /// Sixteen
     #[value(name = "16")]
     Sixteen,
+    /// Sixty-four: by the A-buffer
+    #[value(name = "64")]
+    SixtyFour,
+}
+
+/// `--shadows`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Shadows {
+    /// No shadows
+    None,
+    /// By maps of what each light sees
+    Map,
+    /// By rays to the lights; with the algorithm ray
+    Rays,
 }
 
 /// `--shading`.
@@ -366,7 +397,18 @@ impl From<Samples> for pipeline::Samples {
         match samples {
             Samples::One => Self::One,
             Samples::Four => Self::Four,
-            Samples::Sixteen => Self::Sixteen,
+            // The A-buffer counts sub-pixels, not samples.
+            Samples::Sixteen | Samples::SixtyFour => Self::Sixteen,
+        }
+    }
+}
+
+impl From<Shadows> for pipeline::Shadows {
+    fn from(shadows: Shadows) -> Self {
+        match shadows {
+            Shadows::None => Self::None,
+            Shadows::Map => Self::Map,
+            Shadows::Rays => Self::Rays,
         }
     }
 }

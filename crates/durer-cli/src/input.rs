@@ -68,6 +68,12 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
     read_model(&bytes, &name, resources, options).map_err(|e| fail(e.to_string()))
 }
 
+/// All bytes of a file, refused above the limit.
+pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
+    let file = File::open(path).map_err(|e| Failure::of_file(path, in_words(&e)))?;
+    bounded(file, 0, limit).map_err(|e| Failure::of_file(path, e))
+}
+
 /// All bytes of a source, refused above the limit.
 fn bounded(source: impl Read, expected: u64, limit: u64) -> Result<Vec<u8>, String> {
     let too_large =

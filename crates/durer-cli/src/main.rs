@@ -1,9 +1,11 @@
 //! The `durer` command.
 
 mod args;
+mod beside;
 mod camera;
 mod clip;
 mod color;
+mod compare;
 mod failure;
 mod fit;
 mod info;
@@ -17,6 +19,7 @@ mod render;
 mod report;
 mod resources;
 mod values;
+mod warp;
 
 use args::{Cli, Command, RunningArgs};
 use clap::{CommandFactory, Parser};
@@ -25,6 +28,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    beside::clean_up_when_interrupted();
     match run(Cli::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
@@ -43,6 +47,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Render(args) => on_threads(&args.running, || render::run(&args)),
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),

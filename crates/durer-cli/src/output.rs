@@ -1,9 +1,10 @@
 //! Where pictures go: one file, many files, or standard output; never half a file.
 
+use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -225,38 +226,11 @@ fn write_special(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a new file beside the old one and renames it, so that at any moment there is the old file
-/// or the whole new one. A link stays a link; permissions stay.
+/// Writes a new file beside the old one and renames it.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let old = fs::metadata(&path).ok();
-    if old.as_ref().is_some_and(|m| m.permissions().readonly()) {
-        return Err(io::Error::other("the file is read-only"));
-    }
-    let (beside, mut file) = create_beside(&path)?;
-    let written = file.write_all(bytes).and_then(|()| match &old {
-        Some(old) => file.set_permissions(old.permissions()),
-        None => Ok(()),
-    });
-    drop(file);
-    let done = written.and_then(|()| fs::rename(&beside, &path));
-    if done.is_err() {
-        // The first error is the one to tell; a file that cannot be removed stays.
-        let _ = fs::remove_file(&beside);
-    }
-    done
-}
-
-/// A new file in the same folder, with a name that nothing has.
-pub fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
-    for attempt in 0u32.. {
-        let beside = path.with_file_name(format!(".durer-{}-{attempt}.tmp", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&beside) {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
-            other => return other.map(|file| (beside, file)),
-        }
-    }
-    Err(io::ErrorKind::AlreadyExists.into())
+    let mut file = Beside::create(path)?;
+    file.write_all(bytes)?;
+    file.commit()
 }
 
 #[cfg(test)]

@@ -111,6 +111,9 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
+//! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
+//! letters from the [single-stroke font](curve::stroke_font).
+//!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
 //! [textures](shade::texture).
@@ -159,6 +162,8 @@ pub mod clip;
 pub mod view;
 
 pub mod raster;
+
+pub mod paper;
 
 pub mod shade;
 

@@ -3,6 +3,7 @@
 mod clip;
 mod conformance_clip;
 mod conformance_models;
+mod faults;
 mod harness;
 mod options;
 mod outputs;

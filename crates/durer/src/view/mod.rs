@@ -6,6 +6,7 @@ pub mod pick;
 pub mod picture_plane;
 pub mod projection;
 pub mod topology;
+pub mod warp;
 pub mod window;
 
 use crate::math::{DMat4, DVec4};

@@ -5,6 +5,7 @@ mod clip_place;
 mod clip_volume;
 mod conformance_overlay;
 mod conformance_visible_surface;
+mod curve_stroke_font;
 mod data;
 mod determinism;
 mod floating_horizon;

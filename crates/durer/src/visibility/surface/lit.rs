@@ -124,6 +124,24 @@ impl<'a> Lit<'a> {
         })
     }
 
+    /// Linear RGBA, straight alpha, of a whole face under given lights: flat shading, where the
+    /// material is not unlit.
+    pub fn face_color(&mut self, item: u32, lights: &PreparedLights) -> Vec4 {
+        let parallel = self.parallel_view;
+        let weights = [1.0 / 3.0; 3];
+        let view = parallel.unwrap_or_else(|| -blend(&self.triangle(item).positions, weights));
+        let seen = Seen::Point { weights, view };
+        self.with_surface_seen(item, seen, |surface, material, _, shading| {
+            if shading == Shading::Unlit {
+                return shade(surface, material, lights, shading);
+            }
+            let face = surface.geometric_normal;
+            let lit = shade_face(surface.position, surface.view, face, material, lights);
+            let surface = Surface { lit: Some(lit), ..*surface };
+            shade(&surface, material, lights, Shading::Flat)
+        })
+    }
+
     /// The alpha of a point of an item.
     pub fn alpha(&mut self, item: u32, seen: Seen) -> f32 {
         self.with_surface_seen(item, seen, |surface, material, _, _| material.alpha(surface))
@@ -222,7 +240,9 @@ impl<'a> Lit<'a> {
         material: &PreparedMaterial<'_>,
         shading: Shading,
     ) -> Option<[Reflected; 3]> {
-        if !matches!(shading, Shading::Flat | Shading::Gouraud) {
+        // Light on corners or faces would not know where shadows fall.
+        let interpolated = matches!(shading, Shading::Flat | Shading::Gouraud);
+        if !interpolated || !self.shared.lights.shadows.is_empty() {
             return None;
         }
         if let Some((kept, corners)) = self.reflected
