@@ -179,6 +179,8 @@ pub mod commands;
 
 pub mod visibility;
 
+pub mod plot;
+
 pub mod explain;
 
 pub mod pipeline;

@@ -5,6 +5,7 @@ pub mod interior_point;
 pub mod label;
 pub mod layout;
 pub mod pick;
+pub mod picture_plane;
 pub mod projection;
 pub mod topology;
 pub mod warp;
