@@ -142,7 +142,8 @@ fn viewport(text: &str) -> Result<PixelRect, String> {
     if x < 0 || y < 0 || w < 1 || h < 1 {
         return Err("a viewport starts at 0,0 or later and is 1x1 at least".to_owned());
     }
-    let (right, bottom) = (x.checked_add(w).ok_or_else(wrong)?, y.checked_add(h).ok_or_else(wrong)?);
+    let (right, bottom) =
+        (x.checked_add(w).ok_or_else(wrong)?, y.checked_add(h).ok_or_else(wrong)?);
     PixelRect::new(x, y, right, bottom).map_err(|e| e.to_string())
 }
 

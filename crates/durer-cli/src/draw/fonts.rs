@@ -65,7 +65,10 @@ fn find(path: &Path, depth: u32, files: &mut Vec<PathBuf>) -> std::io::Result<()
 fn system_folders() -> Vec<PathBuf> {
     let home = std::env::home_dir().unwrap_or_default();
     if cfg!(windows) {
-        vec![PathBuf::from(r"C:\Windows\Fonts"), home.join(r"AppData\Local\Microsoft\Windows\Fonts")]
+        vec![
+            PathBuf::from(r"C:\Windows\Fonts"),
+            home.join(r"AppData\Local\Microsoft\Windows\Fonts"),
+        ]
     } else if cfg!(target_os = "macos") {
         vec!["/System/Library/Fonts".into(), "/Library/Fonts".into(), home.join("Library/Fonts")]
     } else {

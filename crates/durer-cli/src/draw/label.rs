@@ -49,7 +49,8 @@ pub struct Anchor {
 impl Anchor {
     /// The place for the label of a feature, within what is seen.
     pub fn of(geometry: &Geometry, screen: &WindowToViewport, seen: &Rect) -> Option<Self> {
-        let parts = Parts { screen, seen, areas: Vec::new(), lines: Vec::new(), points: Vec::new() };
+        let parts =
+            Parts { screen, seen, areas: Vec::new(), lines: Vec::new(), points: Vec::new() };
         let mut parts = parts;
         parts.add(geometry);
         parts.largest_area().or_else(|| parts.longest_line()).or_else(|| parts.first_point())
@@ -96,7 +97,8 @@ impl Parts<'_> {
 
     /// Within the largest polygon, as far as it is seen.
     fn largest_area(&self) -> Option<Anchor> {
-        let cut = |s: &Shapes| rectangle::clip(self.seen, s, &rectangle::Options, &mut NoTrace).ok();
+        let cut =
+            |s: &Shapes| rectangle::clip(self.seen, s, &rectangle::Options, &mut NoTrace).ok();
         let pieces: Vec<Shapes> = self.areas.iter().filter_map(cut).collect();
         let polygons = pieces.iter().flat_map(Shapes::polygons);
         let largest = polygons.max_by(|a, b| a.area().abs().total_cmp(&b.area().abs()))?;
@@ -113,8 +115,7 @@ impl Parts<'_> {
     fn longest_line(&self) -> Option<Anchor> {
         let length = |l: &[DVec2]| l.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
         let seen = self.lines.iter().filter(|l| l.iter().any(|p| self.seen.contains(*p)));
-        let (size, line) =
-            seen.map(|l| (length(l), l)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (size, line) = seen.map(|l| (length(l), l)).max_by(|a, b| a.0.total_cmp(&b.0))?;
         let mut left = size * 0.5;
         for pair in line.windows(2) {
             let piece = pair[0].distance(pair[1]);
@@ -145,9 +146,7 @@ pub fn draw(
     let (bytes, index) = fonts.find(None).ok_or_else(no_font)?;
     let font = Font::new(bytes, index).map_err(|e| Failure::Data(e.to_string()))?;
     // The sort is stable: what is equal stays in the order of the file.
-    labels.sort_by(|a, b| {
-        b.layer.cmp(&a.layer).then(b.anchor.size.total_cmp(&a.anchor.size))
-    });
+    labels.sort_by(|a, b| b.layer.cmp(&a.layer).then(b.anchor.size.total_cmp(&a.anchor.size)));
     let mut placer = Placer::new(*seen);
     let mut counts = vec![(0, 0); styles.len()];
     for label in &labels {

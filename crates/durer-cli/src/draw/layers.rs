@@ -164,11 +164,12 @@ impl FromArgMatches for Layers {
         let mut common = Style::default();
         apply(matches, 0..first, &mut common);
         let ends = places.iter().skip(1).copied().chain([usize::MAX]);
-        let layers = inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
-            let mut style = common.clone();
-            let styled = apply(matches, *start..end, &mut style) || style != Style::default();
-            Layer { input, style, styled }
-        });
+        let layers =
+            inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
+                let mut style = common.clone();
+                let styled = apply(matches, *start..end, &mut style) || style != Style::default();
+                Layer { input, style, styled }
+            });
         Ok(Self(layers.collect()))
     }
 

@@ -126,8 +126,7 @@ impl Job<'_> {
         let told = self.args.from.filter(|_| !svg);
         let format = told.or_else(|| GeoFormat::of_content(&bytes)).or_else(by_name);
         let Some(format) = format else {
-            let what =
-                if bytes.is_empty() { "the file is empty" } else { "not a known format" };
+            let what = if bytes.is_empty() { "the file is empty" } else { "not a known format" };
             let message = format!("{name}: {what}; drawn are SVG, GeoJSON, WKT and WKB");
             return Err(Failure::Data(message));
         };
@@ -187,7 +186,7 @@ fn frame(viewport: &Viewport) -> durer::curve::Path {
     durer::curve::Path::rectangle(x, y, f64::from(p.width()), f64::from(p.height()))
 }
 
-/// Whether standard input is what a path stands for; such a file has no folder.
+/// Whether a layer is a file, which has a folder, and not standard input.
 fn has_folder(layer: &Layer) -> bool {
     !is_stream(&layer.input)
 }

@@ -45,7 +45,8 @@ impl<'a> Painter<'a> {
     /// Runs `work` one level deeper, unless that is too deep.
     fn deeper(&mut self, work: impl FnOnce(&mut Self)) {
         if self.depth == MAX_DEPTH {
-            return self.warn(format!("what is nested more than {MAX_DEPTH} levels deep is left out"));
+            return self
+                .warn(format!("what is nested more than {MAX_DEPTH} levels deep is left out"));
         }
         self.depth += 1;
         work(self);

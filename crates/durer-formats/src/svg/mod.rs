@@ -30,6 +30,7 @@ mod paint;
 
 pub use fonts::Fonts;
 
+use crate::gltf::uri::relative_path;
 use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
@@ -96,6 +97,7 @@ impl Drawing {
         let (tree, told) = {
             let told = Told::default();
             let usvg_options = usvg::Options {
+                font_family: options.fonts.default_family(),
                 fontdb: options.fonts.database(),
                 font_resolver: fonts::resolver(&told),
                 image_href_resolver: images(options, &told),
@@ -192,11 +194,14 @@ fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a
     let (resources, limit) = (options.resources, options.limits.decoded_bytes);
     ImageHrefResolver {
         resolve_data: ImageHrefResolver::default_data_resolver(),
-        resolve_string: Box::new(move |href, usvg_options| match resources.read(href, limit) {
-            Ok(bytes) => kind_of(bytes, usvg_options),
-            Err(why) => {
-                told.tell(format!("image `{href}` is left out: {why}"));
-                None
+        resolve_string: Box::new(move |href, usvg_options| {
+            let path = relative_path(href).map_err(str::to_owned);
+            match path.and_then(|path| resources.read(&path, limit)) {
+                Ok(bytes) => kind_of(bytes, usvg_options),
+                Err(why) => {
+                    told.tell(format!("image `{href}` is left out: {why}"));
+                    None
+                }
             }
         }),
     }

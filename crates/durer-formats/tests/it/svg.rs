@@ -93,7 +93,11 @@ struct OnePicture(Vec<u8>);
 
 impl Resources for OnePicture {
     fn read(&self, path: &str, _limit: u64) -> Result<Vec<u8>, String> {
-        if path == "none.png" { Err("there is no such file".to_owned()) } else { Ok(self.0.clone()) }
+        if path == "none.png" {
+            Err("there is no such file".to_owned())
+        } else {
+            Ok(self.0.clone())
+        }
     }
 }
 
@@ -125,14 +129,20 @@ fn text_without_fonts_is_told() {
 fn what_is_no_drawing_is_refused_with_its_place() {
     let error = |text: &[u8]| Drawing::read(text, &ReadOptions::default()).unwrap_err().to_string();
     assert!(error(b"<svg\n  <rect/>").starts_with("line 2, column 3: not well-formed XML: "));
-    assert!(error(b"<svg xmlns='http://www.w3.org/2000/svg' width='0' height='5'/>").contains("size"));
+    assert!(
+        error(b"<svg xmlns='http://www.w3.org/2000/svg' width='0' height='5'/>").contains("size")
+    );
     assert!(error(b"<html/>").contains("svg") || error(b"<html/>").contains("size"));
     assert!(error(b"\xff\xff").contains("UTF-8"));
 }
 
 #[test]
 fn what_is_nested_deeply_is_left_out() {
-    let body = format!("{}<rect width='20' height='20'/>{}", "<g opacity='.9'>".repeat(300), "</g>".repeat(300));
+    let body = format!(
+        "{}<rect width='20' height='20'/>{}",
+        "<g opacity='.9'>".repeat(300),
+        "</g>".repeat(300)
+    );
     let (_, warnings) = paint(&drawing(&body));
     assert!(warnings[0].contains("200 levels deep"), "{warnings:?}");
 }

@@ -79,10 +79,8 @@ pub fn interior_point(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Option<Interior> {
-    let rings: Vec<Vec<DVec2>> = rings
-        .iter()
-        .map(|ring| ring.iter().copied().filter(|p| p.is_finite()).collect())
-        .collect();
+    let rings: Vec<Vec<DVec2>> =
+        rings.iter().map(|ring| ring.iter().copied().filter(|p| p.is_finite()).collect()).collect();
     let bounds = Rect::around(rings.iter().flatten().copied())?;
     let side = bounds.size().min_element();
     let precision = if options.precision > 0.0 { options.precision } else { 0.0 };

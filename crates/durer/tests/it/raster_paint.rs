@@ -196,7 +196,8 @@ fn clearing_is_filling_before() {
 fn patterns_repeat() {
     let image = Pixels::from_data(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 255]]).unwrap();
     let transform = DAffine2::from_scale(DVec2::splat(4.0));
-    let pattern = Pattern { image: Arc::new(image), transform, spread: Some(Spread::Repeat), smooth: false };
+    let pattern =
+        Pattern { image: Arc::new(image), transform, spread: Some(Spread::Repeat), smooth: false };
     let mut c = canvas(20);
     let paint = Paint::Pattern(Arc::new(pattern));
     c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &paint, 1.0);
@@ -272,7 +273,12 @@ fn stroked(path: &Path, stroke: &Stroke) -> f64 {
 
 #[test]
 fn contours_and_dashes_without_length_are_dots() {
-    let at = |cap, dashes: &[f64]| Stroke { width: 10.0, cap, dashes: dashes.to_vec(), ..Stroke::default() };
+    let at = |cap, dashes: &[f64]| Stroke {
+        width: 10.0,
+        cap,
+        dashes: dashes.to_vec(),
+        ..Stroke::default()
+    };
     let mut point = Path::new();
     point.move_to(20.0, 20.0).line_to(20.0, 20.0);
     let (disk, square) = (std::f64::consts::PI * 25.0, 100.0);
@@ -306,7 +312,12 @@ fn a_mask_restricts_what_follows_until_it_is_popped() {
         c.fill(&all, FillRule::NonZero, &Paint::Color([0, 0, 0, 255]), 1.0);
         c.pop(1.0);
         c.pop(1.0);
-        c.fill(&Path::rectangle(15.0, 15.0, 5.0, 5.0), FillRule::NonZero, &Paint::Color([9, 9, 9, 255]), 1.0);
+        c.fill(
+            &Path::rectangle(15.0, 15.0, 5.0, 5.0),
+            FillRule::NonZero,
+            &Paint::Color([9, 9, 9, 255]),
+            1.0,
+        );
         let picture = rendered(&c, 20, [0; 4]);
         let alpha = |x, y| picture.get(x, y).unwrap()[3];
         assert_eq!([alpha(2, 5), alpha(7, 5)], expected, "{kind:?}");
@@ -324,7 +335,12 @@ fn what_is_left_open_or_closed_too_often_is_defined() {
     c.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &Paint::Color([1; 4]), 1.0);
     assert!(rendered(&c, 4, WHITE).data().iter().all(|p| *p == WHITE));
     c.pop(1.0);
-    c.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &Paint::Color([1, 1, 1, 255]), 1.0);
+    c.fill(
+        &Path::rectangle(0.0, 0.0, 4.0, 4.0),
+        FillRule::NonZero,
+        &Paint::Color([1, 1, 1, 255]),
+        1.0,
+    );
     assert!(rendered(&c, 4, WHITE).data().iter().all(|p| *p == [1, 1, 1, 255]));
 }
 

@@ -34,7 +34,10 @@ fn nothing_is_inside_of_nothing() {
     assert_eq!(find(&[ring(&[(1.0, 1.0)])], 0.5), None);
     assert_eq!(find(&[ring(&[(0.0, 0.0), (5.0, 5.0)])], 0.5), None);
     assert_eq!(find(&[ring(&[(0.0, 0.0), (f64::NAN, 5.0), (5.0, 0.0)])], 0.5), None);
-    assert!(find(&[ring(&[(0.0, 0.0), (1e300, 0.0), (1e300, 1e300)])], 0.0).is_none_or(|f| f.0.is_finite()));
+    assert!(
+        find(&[ring(&[(0.0, 0.0), (1e300, 0.0), (1e300, 1e300)])], 0.0)
+            .is_none_or(|f| f.0.is_finite())
+    );
     // A needle a million times longer than wide.
     let needle = ring(&[(0.0, 0.0), (1e6, 0.0), (1e6, 1.0), (0.0, 1.0)]);
     assert!(find(&[needle], 0.01).is_some_and(|f| f.1 > 0.3));
