@@ -117,7 +117,7 @@ fn labels_are_drawn_once_and_never_overlap() {
     folder
         .run("draw map.geojson --label nom -o m.png")
         .fails(1, "no feature has this property; there are: n, name");
-    let report = folder.must("draw map.geojson --label n -o m.png --json").json();
+    let report = folder.must("draw map.geojson --label n --label-size 40 -o m.png --json").json();
     assert_eq!(report["layers"][0]["map"]["labels"], 1);
     let dark = picture(&folder, "m.png").pixels().filter(|p| p[0] < 0x40).count();
     assert!(dark > 5, "the label is to be seen");

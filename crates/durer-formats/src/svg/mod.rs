@@ -93,6 +93,12 @@ impl Drawing {
         })?;
         let xml = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
         let document = roxmltree::Document::parse_with_options(text, xml).map_err(not_xml)?;
+        let root = document.root_element().tag_name();
+        if root != ROOT.into() {
+            let name = root.name();
+            let message = format!("the root is `{name}`, not `svg` with xmlns=\"{}\"", ROOT.0);
+            return Err(Error::line(1, 0, message));
+        }
         let mut warnings = passed_over(&document);
         let (tree, told) = {
             let told = Told::default();
@@ -135,7 +141,8 @@ impl Drawing {
     }
 }
 
-const TEXT: (&str, &str) = ("http://www.w3.org/2000/svg", "text");
+const ROOT: (&str, &str) = ("http://www.w3.org/2000/svg", "svg");
+const TEXT: (&str, &str) = (ROOT.0, "text");
 
 fn warning(message: impl Into<String>) -> Warning {
     Warning { place: Place::Whole, message: message.into() }
