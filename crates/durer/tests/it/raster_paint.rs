@@ -326,6 +326,18 @@ fn a_mask_restricts_what_follows_until_it_is_popped() {
 }
 
 #[test]
+fn a_group_is_clipped_once() {
+    let mut c = canvas(4);
+    c.push_clip(&Path::rectangle(0.0, 0.0, 1.5, 4.0), FillRule::NonZero);
+    c.push_group();
+    c.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &color(0, 0, 0, 255), 1.0);
+    c.pop(1.0);
+    c.pop(1.0);
+    let picture = rendered(&c, 4, [0; 4]);
+    assert_eq!(picture.row(1).iter().map(|p| p[3]).collect::<Vec<_>>(), [255, 128, 0, 0]);
+}
+
+#[test]
 fn what_is_left_open_or_closed_too_often_is_defined() {
     let mut c = canvas(4);
     c.pop(1.0);
