@@ -7,7 +7,7 @@ use durer::math::{DMat4, DVec2, DVec3, Vec3};
 use durer::raster::{line::wide::Stroke, paint::Canvas};
 use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
 use durer::target::{Framebuffer, Pixels};
-use durer::trace::Counts;
+use durer::trace::Recorder;
 use durer::visibility::surface::method::{Options, SurfaceMethod, render_with};
 use durer::visibility::surface::{Cull, input::SurfaceInput, setup::Filter};
 
@@ -37,10 +37,10 @@ fn steps(method: SurfaceMethod, scene: &Scene, side: u32) -> durer::Result<f64> 
     let camera = Camera { eye, target, up, projection, near: 0.5, far: 6.0 };
     let view = durer::view::View::new(camera, side, side)?;
     let input = SurfaceInput::new(scene, &view, Filter { cull: Cull::None, sample_reach: 128 })?;
-    let (mut counts, mut picture) = (Counts::default(), Framebuffer::new(side, side));
+    let (mut counts, mut picture) = (Recorder::with_cap(1), Framebuffer::new(side, side));
     let lights = durer::shade::PreparedLights::of(scene, &camera);
     render_with(method, &input, &lights, &Options::default(), &mut picture, &mut counts)?;
-    Ok(counts.steps as f64)
+    Ok((counts.steps().len() + counts.dropped()) as f64)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -53,11 +53,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let pen = |c: &mut Canvas, path: &Path, ink| {
             c.stroke(path, &Stroke { width: 1.6, ..Stroke::default() }, &ink, 1.0)
         };
-        let text = |c: &mut Canvas, text: &str, at: DVec2, ink| {
-            stroke_font::line(text, 10.0)
-                .strokes
-                .into_iter()
-                .try_for_each(|s| pen(c, &Path::polyline(s.into_iter().map(|p| p + at)), ink))
+        let text = |c: &mut Canvas, text: &str, at: DVec2, ink: durer::raster::paint::Paint| {
+            stroke_font::line(text, 10.0).strokes.into_iter().try_for_each(|s| {
+                pen(c, &Path::polyline(s.into_iter().map(|p| p + at)), ink.clone())
+            })
         };
         let black = durer::raster::paint::Paint::Color([20, 20, 30, 255]);
         pen(

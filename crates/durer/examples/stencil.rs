@@ -12,15 +12,15 @@ fn quad(corners: [DVec3; 4]) -> Command {
     Command::Draw(Primitive::Polygon, corners.map(Vertex::from).into())
 }
 
-/// A cube from −1 to 1, its faces counter-clockwise from outside, without those whose axis is left out.
-fn cube() -> Vec<Command> {
+/// A cube from −1 to 1, its faces counter-clockwise from outside, coloured by their light.
+fn colored_cube(color: impl Fn(f32) -> Vec4) -> Vec<Command> {
     let faces = DVec3::AXES.into_iter().enumerate().flat_map(|(k, axis)| [(k, axis), (k, -axis)]);
     faces
         .flat_map(|(k, n)| {
             let u = DVec3::AXES[(k + 1) % 3];
             let v = n.cross(u);
             let light = 0.35 + 0.25 * k as f32 + 0.1 * n.max_element() as f32;
-            let color = Command::Color(Vec4::new(light, light * 0.8, light * 0.4, 1.0));
+            let color = Command::Color(color(light));
             [color, quad([n - u - v, n + u - v, n + u + v, n - u + v])]
         })
         .collect()
@@ -34,10 +34,14 @@ fn stencil(compare: Compare, pass: StencilOp, state: FragmentState) -> Command {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut lists, mut target) =
         (DisplayLists::default(), Framebuffer::new(600, 200).with_depth().with_stencil());
-    let (cube, plain) = (lists.record(cube()), FragmentState::default());
+    let (cube, plain) = (
+        lists.record(colored_cube(|light| Vec4::new(light, light * 0.8, light * 0.4, 1.0))),
+        FragmentState::default(),
+    );
+    let dark = lists.record(colored_cube(|_| Vec4::new(0.0, 0.02, 0.2, 1.0)));
     let above = FragmentState { depth: None, ..plain };
     let (eye, up, projection) =
-        (DVec3::new(3.0, 2.6, 5.0), DVec3::Y, Projection::Perspective { fov_y: 0.62 });
+        (DVec3::new(3.0, 2.6, 5.0), DVec3::Y, Projection::Perspective { fov_y: 0.8 });
     let camera =
         Camera { eye, target: DVec3::new(0.0, -0.2, 0.0), up, projection, near: 1.0, far: 20.0 };
     let scale = |s: DVec3| Command::MultiplyModelView(DMat4::from_scale(s));
@@ -59,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Command::Call(cube),
         stencil(Compare::NotEqual, StencilOp::Keep, above),
         scale(DVec3::splat(1.06)),
-        Command::Call(cube),
+        Command::Call(dark),
     ]);
     // The reflection: drawn mirrored, only where the floor is.
     let floor = |y: f64| {
