@@ -4,6 +4,7 @@ mod a_buffer;
 mod blended;
 mod clip_place;
 mod clip_volume;
+mod coherence;
 mod commands;
 mod conformance_overlay;
 mod conformance_visible_surface;
