@@ -4,6 +4,7 @@ pub mod cull;
 pub mod layout;
 pub mod pick;
 pub mod projection;
+pub mod section;
 pub mod topology;
 pub mod window;
 
