@@ -4,7 +4,9 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
 
 use super::color::Space;
-use super::{Canvas, Color, Prepared, Source};
+use super::command::{Prepared, sort_into_bands};
+use super::source::Source;
+use super::{Canvas, Color, MaskKind};
 use crate::raster::coverage::Overlap;
 use crate::raster::coverage::band::{BandFiller, PathEdges};
 use crate::raster::coverage::cells::BAND_ROWS;
@@ -22,7 +24,7 @@ pub(super) fn render<P: Space>(
     if target.data().is_empty() {
         return;
     }
-    let by_band = sort_into_bands(commands, target.height());
+    let by_band = sort_into_bands(commands, target.height(), BAND_ROWS);
     let rows_per_band = width * BAND_ROWS as usize;
     let paint = |painter: &mut Option<Painter<P>>, (band, rows): (usize, &mut [Color])| {
         let painter = painter.get_or_insert_with(|| Painter::new(canvas));
@@ -45,31 +47,11 @@ pub(super) fn render<P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
-/// For each band the indices of the commands that concern it: fills of their rows, everything else in all.
-fn sort_into_bands<P>(commands: &[Prepared<'_, P>], height: u32) -> Vec<Vec<u32>> {
-    let count = (height as usize).div_ceil(BAND_ROWS as usize);
-    let mut bands = vec![Vec::new(); count];
-    for (i, command) in commands.iter().enumerate() {
-        let range = match command {
-            Prepared::Fill { path, .. } => {
-                let last = ((path.rows.1 - 1) / BAND_ROWS) as usize + 1;
-                (path.rows.0 / BAND_ROWS) as usize..last.min(count)
-            }
-            _ => 0..count,
-        };
-        for band in bands.get_mut(range).into_iter().flatten() {
-            band.push(i as u32);
-        }
-    }
-    bands
-}
-
 /// Buffers of one thread.
 struct Painter<P> {
     filler: BandFiller,
     width: usize,
     exact: bool,
-    anti_alias: bool,
     background: Option<Color>,
     /// A layer for each open group.
     layers: Vec<Vec<P>>,
@@ -88,7 +70,6 @@ impl<P: Space> Painter<P> {
             filler: BandFiller::new(canvas.width),
             width,
             exact: canvas.options.overlap == Overlap::Exact,
-            anti_alias: canvas.options.anti_alias,
             background: canvas.background,
             layers: Vec::new(),
             clips: Vec::new(),
@@ -142,20 +123,21 @@ impl<P: Space> Painter<P> {
     {
         for command in commands {
             match command {
-                Prepared::Fill { path, rule, source } => {
-                    dispatch!(level, simd => self.fill(simd, path, *rule, source, (top, &mut *base)));
+                Prepared::Fill { path, rule, source, smooth } => {
+                    let at = (top, *smooth, &mut *base);
+                    dispatch!(level, simd => self.fill(simd, path, *rule, source, at));
                 }
-                Prepared::PushClip { path, rule } => {
-                    dispatch!(level, simd => self.push_clip(simd, path, *rule, top));
+                Prepared::PushClip { path, rule, smooth } => {
+                    dispatch!(level, simd => self.push_clip(simd, path, *rule, (top, *smooth)));
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
-                Prepared::PushGroup => {
-                    let mut layer = self.spare.pop().unwrap_or_default();
-                    layer.clear();
-                    layer.resize(base.len(), P::CLEAR);
-                    self.layers.push(layer);
-                }
+                Prepared::PushGroup => self.push_group(base.len()),
                 Prepared::PopGroup { opacity } => self.pop_group(*opacity, base),
+                Prepared::BeginMask => {
+                    self.push_group(base.len());
+                    self.clips.push(vec![255; base.len()]);
+                }
+                Prepared::EndMask { kind } => self.end_mask(*kind),
             }
         }
     }
@@ -166,10 +148,10 @@ impl<P: Space> Painter<P> {
         path: &PathEdges,
         rule: super::FillRule,
         source: &Source<P>,
-        (top, base): (i32, &mut [P]),
+        (top, anti_alias, base): (i32, bool, &mut [P]),
     ) {
         let Self { filler, layers, clips, coverage, colors, .. } = self;
-        let (width, anti_alias) = (self.width, self.anti_alias);
+        let width = self.width;
         let layer = layers.last_mut().map_or(base, |l| l.as_mut_slice());
         let clip = clips.last();
         let color = source.color();
@@ -212,9 +194,15 @@ impl<P: Space> Painter<P> {
         BandFiller::fill(simd, filler, path, top, rule, self.exact, paint);
     }
 
-    fn push_clip<S: Simd>(&mut self, simd: S, path: &PathEdges, rule: super::FillRule, top: i32) {
+    fn push_clip<S: Simd>(
+        &mut self,
+        simd: S,
+        path: &PathEdges,
+        rule: super::FillRule,
+        (top, anti_alias): (i32, bool),
+    ) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
-        let (width, below, anti_alias) = (self.width, self.clips.last(), self.anti_alias);
+        let (width, below) = (self.width, self.clips.last());
         if !path.misses(top) {
             let write = |_: S, row: i32, runs: &[Run], own: &[u32]| {
                 let start = row as usize * width;
@@ -230,6 +218,28 @@ impl<P: Space> Painter<P> {
             BandFiller::fill(simd, &mut self.filler, path, top, rule, self.exact, write);
         }
         self.clips.push(clip);
+    }
+
+    fn push_group(&mut self, len: usize) {
+        let mut layer = self.spare.pop().unwrap_or_default();
+        layer.clear();
+        layer.resize(len, P::CLEAR);
+        self.layers.push(layer);
+    }
+
+    /// Makes a clip of the last layer.
+    fn end_mask(&mut self, kind: MaskKind) {
+        let (Some(layer), Some(mut clip)) = (self.layers.pop(), self.clips.pop()) else { return };
+        let below = self.clips.last();
+        for (i, (mask, pixel)) in clip.iter_mut().zip(&layer).enumerate() {
+            let own = match kind {
+                MaskKind::Alpha => pixel.alpha(),
+                MaskKind::Luminance => pixel.luminance(),
+            };
+            *mask = multiplied(u32::from(own), below.map_or(255, |b| b[i])) as u8;
+        }
+        self.clips.push(clip);
+        self.spare.push(layer);
     }
 
     /// Lays the last layer over the one below it, within the clip paths that are open.

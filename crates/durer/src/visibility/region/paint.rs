@@ -10,6 +10,7 @@ use crate::parallel;
 use crate::scene::Scene;
 use crate::shade::color::encode_rgba8;
 use crate::shade::{PreparedLights, PreparedMaterials};
+use crate::simd::Level;
 use crate::target::drawing::{Line, LineClass, Region, RegionKind};
 use crate::view::View;
 use crate::visibility::surface::lit::{Lighting, Lit};
@@ -162,17 +163,20 @@ fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>
 }
 
 /// The flat colours of items under the lights that reach them.
-fn colors(
-    scene: &Scene,
-    view: &View,
-    lights: &PreparedLights,
-    shown: &[Shown],
-) -> Vec<[u8; 4]> {
+fn colors(scene: &Scene, view: &View, lights: &PreparedLights, shown: &[Shown]) -> Vec<[u8; 4]> {
     let Ok(runs) = runs(scene) else { return Vec::new() };
     let materials = PreparedMaterials::new(scene);
     // Flat light is computed by hand, for the lights that reach the face.
     let shading = None;
-    let shared = Lighting { scene, view, runs: &runs, materials: &materials, lights, shading };
+    let shared = Lighting {
+        scene,
+        view,
+        runs: &runs,
+        materials: &materials,
+        lights,
+        shading,
+        level: Level::new(),
+    };
     let parts = parallel::map(shown.chunks(TASK).collect(), |part| {
         let mut lit = Lit::new(shared);
         let mut some = (LIT, lights.clone());

@@ -141,7 +141,8 @@ impl<'a> Lamps<'a> {
         let seen = |half: u32| picture.shown[picture.map.face_of[half as usize] as usize];
         let ((_, on), (_, other)) = (seen(half)?, seen(half ^ 1)?);
         let face = &picture.faces[on as usize];
-        let ends = [half, half ^ 1].map(|h| float(picture.map.points[picture.map.start(h) as usize]));
+        let ends =
+            [half, half ^ 1].map(|h| float(picture.map.points[picture.map.start(h) as usize]));
         if face.item == picture.faces[other as usize].item || is_own(face, ends) {
             return None;
         }
@@ -197,7 +198,11 @@ impl Lamp {
         let mut all = vec![f64::INFINITY; scene.triangle_count() as usize];
         for view in &views {
             for (kept, error) in all.iter_mut().zip(errors(&view.faces, scene)) {
-                *kept = if kept.is_finite() && error.is_finite() { kept.max(error) } else { kept.min(error) };
+                *kept = if kept.is_finite() && error.is_finite() {
+                    kept.max(error)
+                } else {
+                    kept.min(error)
+                };
             }
         }
         Ok(Self { from, views, errors: all })
@@ -205,7 +210,8 @@ impl Lamp {
 
     /// Whether another face lies between the light and a point of an item.
     fn is_hidden(&self, point: DVec3, item: u32) -> bool {
-        let error = self.errors.get(item as usize).copied().filter(|e| e.is_finite()).unwrap_or(0.0);
+        let error =
+            self.errors.get(item as usize).copied().filter(|e| e.is_finite()).unwrap_or(0.0);
         let hidden = |picture: &VisibleMap| {
             let (at, depth) = picture.frame.project_world(point)?;
             let half = picture.frame.half();

@@ -28,7 +28,9 @@ impl Trap<'_> {
         let of = |patch: &Patch| {
             let (mut area, mut length) = (0.0, 0.0);
             for ring in &patch.rings {
-                let at = |i: usize| float(self.map.points[self.map.start(ring[i % ring.len()]) as usize]);
+                let at = |i: usize| {
+                    float(self.map.points[self.map.start(ring[i % ring.len()]) as usize])
+                };
                 for i in 0..ring.len() {
                     area += (at(i) - at(0)).perp_dot(at(i + 1) - at(0)) * 0.5;
                     length += at(i).distance(at(i + 1));
@@ -98,7 +100,8 @@ impl Trap<'_> {
     /// Into the sector between two half-edges that leave a vertex, to where it is one unit away from both.
     fn bisector(&self, from: u32, to: u32) -> DVec2 {
         let direction = |half: u32| {
-            let [a, b] = [half, half ^ 1].map(|h| float(self.map.points[self.map.start(h) as usize]));
+            let [a, b] =
+                [half, half ^ 1].map(|h| float(self.map.points[self.map.start(h) as usize]));
             (b - a).normalize_or_zero()
         };
         let normal = direction(from).perp();

@@ -107,7 +107,8 @@ impl Cells {
         let (min, size) = (self.corner(column, row), (1u64 << self.shift) as f64);
         let slope = face.plane.slope * size;
         let at = face.plane.depth(min);
-        let (near, far) = (at + slope.min(DVec2::ZERO).element_sum(), at + slope.max(DVec2::ZERO).element_sum());
+        let (near, far) =
+            (at + slope.min(DVec2::ZERO).element_sum(), at + slope.max(DVec2::ZERO).element_sum());
         (near.max(face.near) - face.error, far.min(face.far))
     }
 
@@ -172,7 +173,11 @@ impl Cells {
         // When a border between columns or rows is met next; borders beyond the end are never met.
         let meet = |cell: &[i64; 2], k: usize| {
             let border = if d[k] > 0.0 { cell[k] + 1 } else { cell[k] };
-            if cell[k] == end[k] { f64::INFINITY } else { ((border as f64 - p[k]) / d[k]).clamp(0.0, 1.0) }
+            if cell[k] == end[k] {
+                f64::INFINITY
+            } else {
+                ((border as f64 - p[k]) / d[k]).clamp(0.0, 1.0)
+            }
         };
         let mut t = 0.0;
         loop {
@@ -207,8 +212,7 @@ impl Cells {
                     let tolerance = error + face.error;
                     if depth < before - tolerance {
                         (depth, face.error, i)
-                    } else if depth <= before + tolerance
-                        && face.item < faces[chosen as usize].item
+                    } else if depth <= before + tolerance && face.item < faces[chosen as usize].item
                     {
                         (depth.min(before), face.error, i)
                     } else {

@@ -111,9 +111,8 @@ fn may_penetrate(f: &Face, g: &Face) -> bool {
 
 /// Corners that two faces have in common.
 fn shared(f: &Face, g: &Face) -> usize {
-    let has = |&(p, d): &(Place, f64)| {
-        g.corners.iter().zip(g.depths).any(|(&q, e)| p == q && d == e)
-    };
+    let has =
+        |&(p, d): &(Place, f64)| g.corners.iter().zip(g.depths).any(|(&q, e)| p == q && d == e);
     f.corners.into_iter().zip(f.depths).filter(|v| has(v)).count()
 }
 

@@ -238,8 +238,7 @@ impl Vertices {
         }
         self.instance = Some(instance);
         self.clip.clear();
-        self.clip
-            .extend(mesh.positions.iter().map(|p| *clip_from_mesh * p.as_dvec3().extend(1.0)));
+        self.clip.extend(mesh.positions.iter().map(|p| *clip_from_mesh * p.as_dvec3().extend(1.0)));
         let options = volume::Options::default();
         let inside = |p: &DVec4| {
             let d = volume::boundary_coordinates(*p, options.depth);

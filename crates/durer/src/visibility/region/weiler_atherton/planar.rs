@@ -79,7 +79,9 @@ impl Planar {
         for vertex in 0..self.points.len() as u32 {
             let around = self.around(vertex);
             let kept = |half: &&u32| keep(**half as usize / 2);
-            let Some(mut before) = around.iter().filter(kept).next_back().copied() else { continue };
+            let Some(mut before) = around.iter().filter(kept).next_back().copied() else {
+                continue;
+            };
             for &half in around.iter().filter(kept) {
                 next[half as usize ^ 1] = before;
                 before = half;
