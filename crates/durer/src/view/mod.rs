@@ -7,6 +7,7 @@ pub mod layout;
 pub mod pick;
 pub mod picture_plane;
 pub mod projection;
+pub mod section;
 pub mod topology;
 pub mod warp;
 pub mod window;

@@ -145,18 +145,19 @@ impl Paint {
 }
 
 fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>) -> Key {
-    let kind = if options.caps.contains(&item) {
+    let run = world.run(item);
+    let material = run.and_then(|r| r.material);
+    let kind = if material.is_some() && material == options.cap_material {
         RegionKind::Cap
     } else if mask != LIT {
         RegionKind::Shadow
     } else {
         RegionKind::Surface
     };
-    let run = world.run(item);
     let of = match options.merge {
         Merge::Face => Some(u64::from(item)),
         Merge::Part => run.map(|r| r.instance as u64),
-        Merge::Shade | Merge::Material => run.and_then(|r| r.material).map(|m| m as u64),
+        Merge::Shade | Merge::Material => material.map(|m| m as u64),
     };
     Key { kind, of: of.unwrap_or(u64::MAX), color }
 }
