@@ -3,6 +3,7 @@
 mod conformance_geo;
 mod conformance_gltf;
 mod conformance_meshes;
+mod fuzz;
 mod geo;
 mod gltf;
 mod mesh_properties;

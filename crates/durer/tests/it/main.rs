@@ -7,6 +7,7 @@ mod conformance_overlay;
 mod conformance_visible_surface;
 mod data;
 mod determinism;
+mod fuzz;
 mod golden;
 mod overlay;
 mod raster_coverage;
