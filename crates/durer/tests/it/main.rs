@@ -14,6 +14,7 @@ mod data;
 mod determinism;
 mod floating_horizon;
 mod fragment_mask;
+mod fuzz;
 mod golden;
 mod height_field;
 mod hidden_line;
