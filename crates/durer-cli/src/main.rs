@@ -14,6 +14,7 @@ mod lights;
 mod messages;
 mod output;
 mod pick;
+mod plot;
 mod progress;
 mod render;
 mod report;
@@ -49,6 +50,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
         Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
+        Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),
     }
