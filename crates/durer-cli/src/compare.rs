@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::report::{ComparedReport, PictureReport};
-use durer::curve::{Path, stroke_font};
-use durer::math::DVec2;
+use durer::curve::stroke_font;
+use durer::math::{DAffine2, DVec2};
 use durer::pipeline::{Background, Compared, RenderOptions, compare};
 use durer::raster::line::wide::{Cap, Join, Stroke};
 use durer::raster::paint::{self, Canvas, Color};
@@ -17,11 +17,11 @@ use durer::visibility::wireframe;
 /// Free pixels around the pictures of a sheet.
 const GAP: u32 = 8;
 
-/// Height of capitals in a label, in pixels.
-const LETTERS: f64 = 11.0;
+/// Height of a label's capitals, pixels.
+const LETTERS: f64 = 10.5;
 
-/// Width of their strokes, as a part of that.
-const STROKE: f64 = 0.13;
+/// Width of a label's strokes, as a part of the height of its capitals.
+const STROKE_WIDTH: f64 = 0.12;
 
 /// Rows below a picture for its label: name, and count of differing pixels.
 const LABEL: u32 = 44;
@@ -124,11 +124,12 @@ fn lay_out(compared: &[Compared], options: &RenderOptions) -> durer::Result<Fram
 fn write(canvas: &mut Canvas, text: &str, at: DVec2, width: f64, ink: Color) -> durer::Result<()> {
     let whole = stroke_font::line(text, LETTERS).advance;
     let size = LETTERS * ((width - 4.0) / whole.max(1.0)).clamp(0.2, 1.0);
-    let mut path = Path::new();
-    for stroke in stroke_font::line(text, size).strokes {
-        path.extend(&Path::polyline(stroke.into_iter().map(|p| p + at)));
-    }
-    let stroke =
-        Stroke { width: size * STROKE, cap: Cap::Round, join: Join::Round, ..Stroke::default() };
+    let path = stroke_font::line(text, size).path().transformed(DAffine2::from_translation(at));
+    let stroke = Stroke {
+        width: size * STROKE_WIDTH,
+        cap: Cap::Round,
+        join: Join::Round,
+        ..Stroke::default()
+    };
     canvas.stroke(&path, &stroke, &ink.into(), 1.0)
 }

@@ -53,6 +53,7 @@
 //! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
 //! | What does a near camera see of this picture with depth? | [`view::warp`]: forward warping |
 //! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
+//! | Where does the label of an area go, and which labels have room? | [`view::interior_point`], [`view::label`] |
 //! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
 //!
 //! **Which part of a line lies in the window?** [`clip::line`]
@@ -64,6 +65,7 @@
 //! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are no rectangles |
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
+//! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
 //! | [Polylines](clip::line::polyline) | polygon with holes | chains with attributes, inside or outside part |
 //!
@@ -177,6 +179,8 @@ pub mod fragment;
 pub mod commands;
 
 pub mod visibility;
+
+pub mod plot;
 
 pub mod explain;
 

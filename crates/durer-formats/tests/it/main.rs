@@ -3,8 +3,11 @@
 mod conformance_geo;
 mod conformance_gltf;
 mod conformance_meshes;
+mod conformance_svg;
+mod fuzz;
 mod geo;
 mod gltf;
 mod mesh_properties;
 mod shared;
+mod svg;
 mod threemf;

@@ -6,6 +6,7 @@
 //! Widths are proportional, figures stand in columns. Printable ASCII, the signs that drawings need
 //! (° µ × ± – … Ø ² ³), and Latin letters with accents; anything else is an empty box.
 
+use super::Path;
 use crate::math::DVec2;
 
 /// A line of text as strokes.
@@ -17,6 +18,17 @@ pub struct StrokeText {
     /// Where the next letter would start. Half of the space between letters stands on either side of
     /// each, so half of `advance` is the middle of the text.
     pub advance: f64,
+}
+
+impl StrokeText {
+    /// The strokes as a path, to be stroked with round caps and joins.
+    pub fn path(&self) -> Path {
+        let mut path = Path::new();
+        for stroke in &self.strokes {
+            path.extend(&Path::polyline(stroke.iter().copied()));
+        }
+        path
+    }
 }
 
 /// The height of capital letters on the grid.
