@@ -21,6 +21,7 @@ mod progress;
 mod render;
 mod report;
 mod resources;
+mod section;
 mod values;
 mod warp;
 
