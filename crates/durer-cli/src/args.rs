@@ -2,6 +2,7 @@
 
 use crate::drawing::args::DrawingArgs;
 use crate::output::Kind;
+use crate::section::SectionArgs;
 use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -128,6 +129,9 @@ pub struct RenderArgs {
     /// How surfaces look.
     #[command(flatten)]
     pub look: LookArgs,
+    /// Planes that cut the model.
+    #[command(flatten)]
+    pub section: SectionArgs,
     /// Exact drawings.
     #[command(flatten)]
     pub drawing: DrawingArgs,

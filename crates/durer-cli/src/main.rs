@@ -22,6 +22,7 @@ mod progress;
 mod render;
 mod report;
 mod resources;
+mod section;
 mod values;
 mod warp;
 

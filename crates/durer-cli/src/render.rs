@@ -235,6 +235,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         model.scene.up_axis = axis.into();
     }
     messages.warnings(&name, &model.warnings);
+    let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
     messages.detail(|| {
         format!(
             "{name}: {}, {} triangles, read in {read_seconds:.3} s",
@@ -248,7 +249,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         messages.progress.stage(|| format!("rendering {name}"));
         let report = if drawing::is_wanted(args, kind(args)) {
             let (scene, format) = (&model.scene, model.format.as_str());
-            let subject = Subject { scene, name: &job.stem, format };
+            let subject = Subject { scene, name: &job.stem, format, cap_material };
             drawing::render(args, &subject, picture.frame, &picture.color, kind(args))
         } else {
             render_picture(args, &model.scene, picture)

@@ -55,6 +55,7 @@
 //! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
 //! | Where does the label of an area go, and which labels have room? | [`view::interior_point`], [`view::label`] |
 //! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
+//! | What is inside, if planes cut it open? | [`view::section`] |
 //!
 //! **Which part of a line lies in the window?** [`clip::line`]
 //!
@@ -114,6 +115,9 @@
 //! | [Depth sort](visibility::surface::depth_sort) | painting from back to front, splitting what has no order |
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
+//!
+//! **What of each face can be seen, exactly?** [`visibility::region`]: regions of one colour with exact shadows,
+//! by [Weiler–Atherton](visibility::region::weiler_atherton); [hatching](visibility::region::hatch) for pens.
 //!
 //! [Wireframe](visibility::wireframe) draws all edges, hidden ones too.
 //!

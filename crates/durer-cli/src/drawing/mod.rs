@@ -135,6 +135,8 @@ pub struct Subject<'a> {
     pub name: &'a str,
     /// The format found.
     pub format: &'a str,
+    /// The material of the caps, where the model was cut.
+    pub cap_material: Option<usize>,
 }
 
 /// Draws one picture of a model and writes its file.
@@ -153,7 +155,8 @@ pub fn render(
     };
     let mut drawings = Vec::new();
     for camera in cameras {
-        let options = draw_options(args, kind, style, camera);
+        let cap_material = subject.cap_material;
+        let options = DrawOptions { cap_material, ..draw_options(args, kind, style, camera) };
         let drawing =
             pipeline::draw(subject.scene, &options).map_err(|e| Failure::Usage(e.to_string()))?;
         drawings.push(drawing);
@@ -242,6 +245,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         cull: args.look.cull.into(),
         merge: merge.into(),
         trapped: viewed && drawing.hatch != Some(Hatch::Shade),
+        cap_material: None,
     }
 }
 

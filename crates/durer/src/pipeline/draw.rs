@@ -86,6 +86,9 @@ pub struct DrawOptions {
     /// Whether regions reach under their neighbours, so that viewers show no hairline cracks;
     /// otherwise they share their borders.
     pub trapped: bool,
+    /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): their
+    /// regions are told apart and get the hatching of sections.
+    pub cap_material: Option<usize>,
 }
 
 impl DrawOptions {
@@ -100,6 +103,7 @@ impl DrawOptions {
             cull: Cull::None,
             merge: Merge::Shade,
             trapped: false,
+            cap_material: None,
         }
     }
 }
@@ -153,7 +157,7 @@ fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing>
         merge: options.merge,
         fill: if options.trapped { Fill::Trapped { reach } } else { Fill::Disjoint },
         shadows: options.style == DrawStyle::Shadows,
-        ..region::Options::default()
+        cap_material: options.cap_material,
     };
     let mut drawing = region::draw(scene, view, &lights, &region_options)?;
     // Fills show where shadows end; their outlines are drawn where they are asked for.

@@ -71,6 +71,9 @@ impl Paint {
         if matches!(options.merge, Merge::Material | Merge::Part) {
             share_colors(map, &shown, &distinct, &mut keys);
         }
+        if options.merge == Merge::Shade {
+            darken(&mut keys);
+        }
         let mut sorted = keys.clone();
         sorted.sort_unstable();
         sorted.dedup();
@@ -190,6 +193,20 @@ fn colors(scene: &Scene, view: &View, lights: &PreparedLights, shown: &[Shown]) 
             .collect::<Vec<_>>()
     });
     parts.into_iter().flatten().collect()
+}
+
+/// What is as dark as a shadow on the same material, since it is turned away from the light, is one
+/// region with it.
+fn darken(keys: &mut [Key]) {
+    let shadows = keys.iter().filter(|k| k.kind == RegionKind::Shadow);
+    let mut dark: Vec<(u64, [u8; 4])> = shadows.map(|k| (k.of, k.color)).collect();
+    dark.sort_unstable();
+    dark.dedup();
+    for key in keys.iter_mut().filter(|k| k.kind == RegionKind::Surface) {
+        if dark.binary_search(&(key.of, key.color)).is_ok() {
+            key.kind = RegionKind::Shadow;
+        }
+    }
 }
 
 /// Gives all items of one material or part the colour that most of its area has.
