@@ -9,6 +9,7 @@ mod options;
 mod outputs;
 mod pick;
 mod pictures;
+mod plot;
 mod readme;
 mod resources;
 mod streams;
