@@ -23,6 +23,7 @@ mod render;
 mod report;
 mod resources;
 mod section;
+mod section;
 mod values;
 mod warp;
 
