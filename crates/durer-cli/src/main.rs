@@ -23,7 +23,6 @@ mod render;
 mod report;
 mod resources;
 mod section;
-mod section;
 mod values;
 mod warp;
 
