@@ -6,9 +6,12 @@
 #![forbid(unsafe_code)]
 
 mod color;
+pub mod drawing;
 mod error;
+pub mod formula;
 pub mod geo;
 pub mod gltf;
+pub mod height_map;
 pub mod image;
 mod model;
 mod mtl;

@@ -5,8 +5,11 @@ pub mod interior_point;
 pub mod label;
 pub mod layout;
 pub mod pick;
+pub mod picture_plane;
 pub mod projection;
+pub mod section;
 pub mod topology;
+pub mod warp;
 pub mod window;
 
 use crate::math::{DMat4, DVec4};

@@ -1,3 +1,7 @@
 //! Which surfaces and lines can be seen.
 
+pub mod line;
+pub mod object;
+pub mod region;
 pub mod surface;
+pub mod wireframe;

@@ -1,0 +1,76 @@
+//! A drawing on paper: pens, fills and text in millimetres, in named layers. What the writers of SVG,
+//! PDF, DXF and HPGL take, and what is painted into pixels.
+
+use super::drawing::Anchor;
+use crate::math::DVec2;
+
+/// With what a stroke is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pen {
+    /// Width of the stroke, millimetres, > 0.
+    pub width: f64,
+    /// sRGB with straight alpha.
+    pub color: [u8; 4],
+    /// Lengths of dashes and gaps in turn, millimetres; empty for a solid line. An even number of
+    /// values, all > 0. They are nominal: each stroke stretches them a little, so that it begins and
+    /// ends with a whole dash ([`crate::paper::dashes`]).
+    pub dashes: Vec<f64>,
+}
+
+/// One thing on the paper.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// A chain of straight pieces with round caps and joins.
+    Stroke {
+        /// At least two points.
+        points: Vec<DVec2>,
+        /// Whether the last point is joined to the first.
+        closed: bool,
+        /// Index into [`Sheet::pens`].
+        pen: usize,
+    },
+    /// A filled area.
+    Fill {
+        /// Open rings, filled by the non-zero rule: outer rings run one way, holes the other.
+        rings: Vec<Vec<DVec2>>,
+        /// sRGB with straight alpha.
+        color: [u8; 4],
+    },
+    /// A line of text.
+    Text {
+        /// Where the base line stands.
+        at: DVec2,
+        /// What it says.
+        text: String,
+        /// Height of capital letters, millimetres.
+        height: f64,
+        /// How it stands to `at`.
+        anchor: Anchor,
+        /// Index into [`Sheet::pens`].
+        pen: usize,
+    },
+}
+
+/// Marks that are shown or hidden together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SheetLayer {
+    /// A name such as `visible-silhouette`; unique in its sheet.
+    pub name: String,
+    /// The marks, in the order of drawing.
+    pub marks: Vec<Mark>,
+}
+
+/// A piece of paper. Coordinates are millimetres from the upper left corner, y down.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sheet {
+    /// What is drawn, for the file's title; may be empty.
+    pub title: String,
+    /// Width and height, millimetres.
+    pub size: DVec2,
+    /// What the paper is filled with; `None` leaves it blank.
+    pub background: Option<[u8; 4]>,
+    /// The pens that marks refer to.
+    pub pens: Vec<Pen>,
+    /// The layers, the lowest first.
+    pub layers: Vec<SheetLayer>,
+}

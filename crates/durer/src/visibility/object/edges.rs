@@ -1,0 +1,101 @@
+//! Which triangles meet at an edge.
+
+use super::Faces;
+
+/// One triangle at an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Side {
+    other: u32,
+    packed: u32,
+}
+
+impl Side {
+    /// The triangle.
+    #[inline]
+    pub fn item(self) -> u32 {
+        self.packed >> 1
+    }
+
+    /// Whether the triangle runs through the edge from the smaller to the larger vertex number: it
+    /// lies to the left of that direction, seen from its front.
+    #[inline]
+    pub fn forward(self) -> bool {
+        self.packed & 1 == 1
+    }
+}
+
+/// All edges of the faces, with the triangles at each.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Edges {
+    /// For each vertex, where its sides start; one more at the end.
+    starts: Vec<u32>,
+    /// By smaller vertex, then larger vertex, then item.
+    sides: Vec<Side>,
+}
+
+impl Edges {
+    /// Finds the edges of those triangles that `filter` lets through. O(n) for vertices of bounded
+    /// degree: sides are counted into the lists of their smaller vertices and sorted there.
+    pub fn new(faces: &Faces, filter: impl Fn(u32) -> bool) -> Self {
+        let mut starts = vec![0u32; faces.points().len() + 1];
+        let corners = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)];
+        for (item, t) in faces.triangles() {
+            if filter(item) {
+                corners(t).iter().for_each(|&(a, b)| starts[a.min(b) as usize] += 1);
+            }
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        // Filled from behind, so each start comes to its place and items stay in order.
+        let mut sides = vec![Side { other: 0, packed: 0 }; sum as usize];
+        for item in (0..faces.len() as u32).rev() {
+            let Some(t) = faces.triangle(item).filter(|_| filter(item)) else { continue };
+            for (a, b) in corners(t) {
+                let start = &mut starts[a.min(b) as usize];
+                *start -= 1;
+                sides[*start as usize] =
+                    Side { other: a.max(b), packed: item << 1 | u32::from(a < b) };
+            }
+        }
+        for w in starts.windows(2) {
+            sides[w[0] as usize..w[1] as usize].sort_unstable();
+        }
+        Self { starts, sides }
+    }
+
+    /// Each edge once: its vertices, the smaller first, and the triangles at it in item order.
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
+        self.from_vertices(0..self.starts.len().saturating_sub(1) as u32)
+    }
+
+    /// The triangles at the edge between two vertices, the smaller first; none where there is no such
+    /// edge.
+    pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
+        let Some([from, to]) = self.starts.get(a as usize..).and_then(|s| s.first_chunk::<2>())
+        else {
+            return &[];
+        };
+        let sides = &self.sides[*from as usize..*to as usize];
+        let start = sides.partition_point(|s| s.other < b);
+        let end = sides.partition_point(|s| s.other <= b);
+        &sides[start..end]
+    }
+
+    /// The edges whose smaller vertex lies in a range.
+    pub fn from_vertices(
+        &self,
+        vertices: std::ops::Range<u32>,
+    ) -> impl Iterator<Item = ([u32; 2], &[Side])> + '_ {
+        let of = |v: u32| {
+            let [from, to] = [v, v + 1].map(|v| self.starts[v as usize] as usize);
+            self.sides[from..to]
+                .chunk_by(|a, b| a.other == b.other)
+                .map(move |s| ([v, s[0].other], s))
+        };
+        let end = vertices.end.min(self.starts.len().saturating_sub(1) as u32);
+        (vertices.start..end).flat_map(of)
+    }
+}

@@ -1,0 +1,185 @@
+//! Triangles in item order, with their vertices welded by position, in world space.
+
+use super::weld::{Welded, weld};
+use crate::math::DVec3;
+use crate::scene::{Mesh, Scene, Topology};
+use crate::visibility::surface::setup::runs;
+use crate::{Error, Result};
+use std::ops::Range;
+
+/// A run of faces of one instance and one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceRun {
+    /// The items of its triangles.
+    pub items: Range<u32>,
+    /// Index into [`Scene::instances`].
+    pub instance: usize,
+    /// Index into [`Scene::meshes`].
+    pub mesh: usize,
+    /// The triangle of the mesh that is the first item.
+    pub first: u32,
+    /// Index into [`Scene::materials`]; `None` is the default material.
+    pub material: Option<usize>,
+}
+
+/// The triangles of a scene.
+///
+/// Vertices of one mesh that lie at one place are one vertex (two coordinates are equal where they
+/// differ by no more than 2⁻²⁶ of the mesh's extent), so neighbours are found even where the file
+/// shares no vertices. Vertices of different instances are never shared.
+///
+/// # Guarantees
+/// All points are finite; the three vertices of a triangle differ.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Faces {
+    points: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    runs: Vec<FaceRun>,
+    polygons: Option<Vec<u32>>,
+}
+
+/// In place of the vertices of a triangle that has no area or no place.
+const NONE: [u32; 3] = [u32::MAX; 3];
+
+impl Faces {
+    /// The faces of a scene; O(n).
+    ///
+    /// # Errors
+    /// What [`Scene::check`] finds, and [`Error::Limit`] for more than 2³¹ − 1 triangles or vertices.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        scene.check()?;
+        let limit = |what, value: u64| {
+            let limit = u64::from(u32::MAX >> 1);
+            if value > limit { Err(Error::Limit { what, value, limit }) } else { Ok(()) }
+        };
+        limit("triangles", scene.triangle_count())?;
+        let vertices = |i: &crate::scene::Instance| scene.meshes[i.mesh].positions.len() as u64;
+        limit("vertices", scene.instances.iter().map(vertices).sum())?;
+        let mut faces = Self { runs: face_runs(scene)?, ..Self::default() };
+        faces.triangles.reserve_exact(scene.triangle_count() as usize);
+        let mut welded: Vec<Option<Welded>> = scene.meshes.iter().map(|_| None).collect();
+        for instance in &scene.instances {
+            let mesh = &scene.meshes[instance.mesh];
+            if mesh.topology == Topology::Triangles {
+                let welded = welded[instance.mesh].get_or_insert_with(|| weld(&mesh.positions));
+                let to_world = |v: &u32| {
+                    let p = mesh.positions[*v as usize].as_dvec3();
+                    instance.world_from_mesh.transform_point3(p)
+                };
+                faces.add(mesh, welded, to_world);
+            }
+        }
+        faces.polygons = polygons(scene);
+        Ok(faces)
+    }
+
+    fn add(&mut self, mesh: &Mesh, welded: &Welded, to_world: impl Fn(&u32) -> DVec3) {
+        let offset = self.points.len() as u32;
+        self.points.extend(welded.first.iter().map(to_world));
+        let mut lost = false;
+        for p in &mut self.points[offset as usize..] {
+            lost |= !p.is_finite();
+        }
+        for i in 0..mesh.triangle_count() {
+            let [a, b, c] = mesh.triangle(i).map(|v| welded.place[v as usize] + offset);
+            let mut whole = a != b && b != c && c != a;
+            if lost {
+                whole &= [a, b, c].iter().all(|&v| self.points[v as usize].is_finite());
+            }
+            self.triangles.push(if whole { [a, b, c] } else { NONE });
+        }
+        if lost {
+            // Nobody asks for these, but nothing non-finite is to be found here.
+            for p in self.points[offset as usize..].iter_mut().filter(|p| !p.is_finite()) {
+                *p = DVec3::ZERO;
+            }
+        }
+    }
+
+    /// The number of triangles: one more than the largest item.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there are no triangles.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The distinct vertices, world space. Some may belong to no triangle.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// The vertices of a triangle, indices into [`Self::points`], counter-clockwise seen from its front
+    /// (unless its instance mirrors); `None` where two are one, or one is not finite, or for an item
+    /// that does not exist.
+    #[inline]
+    pub fn triangle(&self, item: u32) -> Option<[u32; 3]> {
+        self.triangles.get(item as usize).copied().filter(|t| *t != NONE)
+    }
+
+    /// All triangles that have three vertices, with their items, in item order.
+    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
+        (0..).zip(&self.triangles).filter(|(_, t)| **t != NONE).map(|(item, t)| (item, *t))
+    }
+
+    /// The corners of a triangle, world space; `None` as in [`Self::triangle`].
+    #[inline]
+    pub fn corners(&self, item: u32) -> Option<[DVec3; 3]> {
+        Some(self.triangle(item)?.map(|v| self.points[v as usize]))
+    }
+
+    /// Runs of one instance and material, in item order.
+    pub fn runs(&self) -> &[FaceRun] {
+        &self.runs
+    }
+
+    /// The run of an item; `None` where there is no such item. O(log runs).
+    pub fn run_of(&self, item: u32) -> Option<&FaceRun> {
+        let run = self.runs.get(self.runs.partition_point(|r| r.items.end <= item))?;
+        run.items.contains(&item).then_some(run)
+    }
+
+    /// Whether two triangles are parts of one face with more than three corners, as the file had it:
+    /// what they share is no edge. Neighbours in item order only, as fans are.
+    #[inline]
+    pub fn same_polygon(&self, a: u32, b: u32) -> bool {
+        self.polygons.as_ref().is_some_and(|p| p.get(a as usize) == p.get(b as usize))
+    }
+}
+
+fn face_runs(scene: &Scene) -> Result<Vec<FaceRun>> {
+    let triangles = runs(scene)?
+        .into_iter()
+        .filter(|run| scene.meshes[run.mesh].topology == Topology::Triangles)
+        .map(|run| FaceRun {
+            items: run.first_item..run.first_item + run.range.len() as u32,
+            instance: run.instance,
+            mesh: run.mesh,
+            first: run.range.start,
+            material: run.material,
+        });
+    Ok(triangles.collect())
+}
+
+/// For each item the first item of its polygon; `None` where each polygon is one triangle.
+fn polygons(scene: &Scene) -> Option<Vec<u32>> {
+    scene.meshes.iter().any(|m| !m.faces.is_empty()).then(|| {
+        let mut first_of = Vec::new();
+        for instance in &scene.instances {
+            let mesh = &scene.meshes[instance.mesh];
+            let offset = first_of.len() as u32;
+            let mut starts = mesh.faces.iter().copied().peekable();
+            let mut first = 0;
+            for i in 0..mesh.triangle_count() as u32 {
+                let starts_here = std::iter::from_fn(|| starts.next_if(|&s| s <= i)).count() > 0;
+                if starts_here || mesh.faces.is_empty() {
+                    first = i;
+                }
+                first_of.push(offset + first);
+            }
+        }
+        first_of
+    })
+}

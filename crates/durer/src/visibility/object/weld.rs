@@ -1,0 +1,150 @@
+//! Vertices at one place get one number.
+//!
+//! Formats without shared vertices (STL) and exporters that write a vertex per face leave edges
+//! without neighbours; here they find each other. O(n) time and memory, by hashing places.
+
+use crate::math::{DVec3, Vec3};
+use crate::scene::Aabb;
+
+/// Coordinates that differ by no more than this part of the model's extent are one, as in
+/// [`crate::view::topology::mesh_topology`].
+const TOLERANCE: f64 = 1.0 / (1u64 << 26) as f64;
+
+/// Cells per extent. A cell is 64 tolerances wide, so few points have to be looked for in two cells,
+/// and still so small that hardly any two points share one.
+const CELLS: f64 = (1u64 << 20) as f64;
+
+/// What [`weld`] finds.
+pub(crate) struct Welded {
+    /// For each vertex the number of its place; places are numbered in order of first use.
+    pub place: Vec<u32>,
+    /// The first vertex of each place.
+    pub first: Vec<u32>,
+}
+
+/// Numbers the distinct places of the vertices. Those that are not finite stay alone.
+pub(crate) fn weld(positions: &[Vec3]) -> Welded {
+    let Some(bounds) = Aabb::around(positions.iter().map(|p| p.as_dvec3())) else {
+        return alone(positions.len());
+    };
+    let extent = bounds.size().max_element();
+    let scale = if extent > 0.0 { CELLS / extent } else { 0.0 };
+    let mut table = Table::new(positions.len());
+    let mut found = Welded { place: Vec::with_capacity(positions.len()), first: Vec::new() };
+    for (p, vertex) in positions.iter().zip(0u32..) {
+        let exact = p.as_dvec3();
+        let cell = (exact - bounds.min) * scale;
+        let known = if exact.is_finite() {
+            let near = |v: u32| {
+                let other = positions[v as usize].as_dvec3();
+                (other - exact).abs().max_element() <= extent * TOLERANCE
+            };
+            lookups(cell).find_map(|c| table.find(c, |place| near(found.first[place as usize])))
+        } else {
+            None
+        };
+        let place = known.unwrap_or_else(|| {
+            let place = found.first.len() as u32;
+            found.first.push(vertex);
+            if exact.is_finite() {
+                table.insert(cell.to_array().map(|c| c as u32), place);
+            }
+            place
+        });
+        found.place.push(place);
+    }
+    found
+}
+
+fn alone(count: usize) -> Welded {
+    let all: Vec<u32> = (0..count as u32).collect();
+    Welded { place: all.clone(), first: all }
+}
+
+/// The cells in which a point within tolerance may have been entered, its own first.
+fn lookups(cell: DVec3) -> impl Iterator<Item = [u32; 3]> {
+    let margin = TOLERANCE * CELLS;
+    let own = cell.to_array().map(|c| c as u32);
+    let step = cell.to_array().map(|c| {
+        let rest = c - c.floor();
+        if rest <= margin {
+            -1
+        } else if rest >= 1.0 - margin {
+            1
+        } else {
+            0
+        }
+    });
+    (0..8u32).filter_map(move |choice| {
+        let mut c = own;
+        for axis in 0..3 {
+            if choice >> axis & 1 == 1 {
+                if step[axis] == 0 {
+                    return None;
+                }
+                c[axis] = own[axis].checked_add_signed(step[axis])?;
+            }
+        }
+        Some(c)
+    })
+}
+
+/// An open-addressing hash table from cells to places; never grows, never holds more than half.
+struct Table {
+    /// Place + 1, or 0.
+    slots: Vec<u32>,
+    mask: usize,
+}
+
+impl Table {
+    fn new(count: usize) -> Self {
+        let size = (count.max(4) * 2).next_power_of_two();
+        Self { slots: vec![0; size], mask: size - 1 }
+    }
+
+    fn start(&self, [x, y, z]: [u32; 3]) -> usize {
+        let mix = |h: u64, v: u32| (h ^ u64::from(v)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let h = mix(mix(mix(0, x) >> 7, y) >> 5, z);
+        (h >> 24) as usize & self.mask
+    }
+
+    fn find(&self, cell: [u32; 3], is: impl Fn(u32) -> bool) -> Option<u32> {
+        let mut i = self.start(cell);
+        while let Some(place) = self.slots[i].checked_sub(1) {
+            if is(place) {
+                return Some(place);
+            }
+            i = (i + 1) & self.mask;
+        }
+        None
+    }
+
+    fn insert(&mut self, cell: [u32; 3], place: u32) {
+        let mut i = self.start(cell);
+        while self.slots[i] != 0 {
+            i = (i + 1) & self.mask;
+        }
+        self.slots[i] = place + 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_within_tolerance_are_one_and_others_are_not() {
+        let p = Vec3::new;
+        let positions = [
+            p(0.0, 0.0, 1.0),
+            p(5e-17, -0.0, 1.0),
+            p(1.0, 0.0, 0.0),
+            p(f32::NAN, 0.0, 0.0),
+            p(1e-6, 0.0, 1.0),
+            p(1.0, 0.0, -5e-17),
+        ];
+        let welded = weld(&positions);
+        assert_eq!(welded.place, [0, 0, 1, 2, 3, 1]);
+        assert_eq!(welded.first, [0, 2, 3, 4]);
+    }
+}
