@@ -1,17 +1,20 @@
 //! What can be said on the command line.
 
-use crate::values::{self, Size};
+use crate::drawing::args::DrawingArgs;
+use crate::output::Kind;
+use crate::section::SectionArgs;
+use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use durer::math::{DVec2, DVec3, Rect};
-use durer::pipeline::{self, Background, SurfaceMethod};
+use durer::pipeline::{self, Background};
 use durer::scene::{self, Light};
 use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
 use std::path::PathBuf;
 
-const ABOUT: &str = "Renders 3D models to pictures, on the CPU";
+const ABOUT: &str = "Renders 3D models to pictures and drawings, on the CPU";
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
@@ -26,7 +29,12 @@ Examples:
   durer render part.stl -o sheet.png --viewports front,top,right,iso --size 1600x1200
   durer render part.stl -o frames/part_%03d.png --turntable 72
   durer render *.stl -o thumbnails/ --size 256x256 --skip-failures
+  durer render bunny.obj -o compare.png --algorithm all
+  durer render bunny.obj -o bunny.png --light directional:-1,-2,-1:white:3 --shadows map
   durer render bunny.obj -o bunny.png --item items.png --depth depth.png --normal normals.png
+  durer render part.stl -o part.svg --view front --hidden dashed
+  durer render part.stl -o part.pdf --sheet third-angle --page A3 --hidden dashed
+  durer render scene.glb -o scene.png --style regions+lines --size 1600x1200
   curl -s https://example.org/a.glb | durer render - -o - --size 256x256 > a.png
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
@@ -44,16 +52,28 @@ pub struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render models to PNG pictures
+    /// Render models to PNG pictures, or draw them as SVG, PDF, DXF, HPGL or GeoJSON
     #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
     Clip(Box<crate::clip::ClipArgs>),
+    /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a PNG picture
+    #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Draw(Box<crate::draw::DrawArgs>),
+    /// Fill what is connected with a pixel of a PNG or JPEG, by seed fill
+    #[command(after_long_help = crate::fill::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Fill(Box<crate::fill::FillArgs>),
     /// Say what is in a model
     Info(InfoArgs),
     /// Say which objects and triangles lie behind a point or a rectangle of the picture
     Pick(Box<PickArgs>),
+    /// Make a new view from a picture and its depths, for a camera near by
+    #[command(after_long_help = crate::warp::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Warp(Box<crate::warp::WarpArgs>),
+    /// Plot a surface y = f(x, z): a formula or a height map
+    #[command(after_long_help = crate::plot::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Plot(Box<crate::plot::PlotArgs>),
     /// Write a completion script for a shell to standard output
     Completions {
         /// The shell
@@ -88,11 +108,18 @@ pub struct RenderArgs {
     pub models: Vec<PathBuf>,
     /// Where the picture goes
     ///
-    /// A .png file; `-` for standard output; a folder (existing, or ending in `/`) for NAME.png of
-    /// each model; for --turntable also a file name with a place for the frame's number, e.g.
-    /// `frame_%04d.png`. Missing folders are made. A file is replaced only by a whole picture.
+    /// A .png file, or a drawing as .svg, .pdf, .dxf, .hpgl or .geojson; `-` for standard output; a
+    /// folder (existing, or ending in `/`) for NAME.png of each model; for --turntable also a file
+    /// name with a place for the frame's number, e.g. `frame_%04d.png`. Missing folders are made. A
+    /// file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
+    /// The format of the output [default: by its suffix, else png]
+    #[arg(long, value_name = "FORMAT", value_parser = values::kind())]
+    pub format: Option<Kind>,
+    /// The options that were given, by their names in the parser.
+    #[arg(skip)]
+    pub given: Vec<String>,
     /// What the picture is like.
     #[command(flatten)]
     pub picture: PictureArgs,
@@ -102,6 +129,12 @@ pub struct RenderArgs {
     /// How surfaces look.
     #[command(flatten)]
     pub look: LookArgs,
+    /// Planes that cut the model.
+    #[command(flatten)]
+    pub section: SectionArgs,
+    /// Exact drawings.
+    #[command(flatten)]
+    pub drawing: DrawingArgs,
     /// Further planes.
     #[command(flatten)]
     pub planes: PlaneArgs,
@@ -160,10 +193,13 @@ pub struct PictureArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
     pub size: Size,
-    /// How visible surfaces are found
-    #[arg(long, value_name = "NAME", default_value = "z-buffer", value_parser = values::algorithm())]
-    pub algorithm: SurfaceMethod,
+    /// How visible surfaces are found [default: z-buffer, or a-buffer where a material blends or
+    /// --aa is 64, or ray where --shadows rays or --bounces asks for it]
+    #[arg(long, value_name = "NAME", value_parser = values::algorithm())]
+    pub algorithm: Option<Algorithm>,
     /// Samples per pixel, where the algorithm takes several
+    ///
+    /// The A-buffer has masks of 16 sub-pixels, or of 64 for 64.
     #[arg(long, value_name = "N", default_value = "4")]
     pub aa: Samples,
     /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
@@ -189,7 +225,7 @@ pub struct PictureArgs {
 }
 
 /// The camera: a named view, angles, a place, or one of the file's.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "View")]
 pub struct ViewArgs {
     /// iso, front, back, left, right, top or bottom; fits the model into the picture
@@ -243,6 +279,15 @@ pub struct LookArgs {
     /// Which faces are left out
     #[arg(long, value_name = "WHICH", default_value = "none")]
     pub cull: Cull,
+    /// Whether surfaces keep light from others
+    #[arg(long, value_name = "HOW", default_value = "none")]
+    pub shadows: Shadows,
+    /// Texels along the side of a shadow map
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    pub shadow_map: u32,
+    /// How often rays are reflected by mirrors and refracted by what blends
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
+    pub bounces: u32,
 }
 
 /// Pictures of other planes than colour.
@@ -304,7 +349,7 @@ pub struct RunningArgs {
 }
 
 /// `--aa`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Samples {
     /// One, at the centre: no anti-aliasing
     #[value(name = "1")]
@@ -315,6 +360,20 @@ pub enum Samples {
     /// Sixteen
     #[value(name = "16")]
     Sixteen,
+    /// Sixty-four: by the A-buffer
+    #[value(name = "64")]
+    SixtyFour,
+}
+
+/// `--shadows`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Shadows {
+    /// No shadows
+    None,
+    /// By maps of what each light sees
+    Map,
+    /// By rays to the lights; with the algorithm ray
+    Rays,
 }
 
 /// `--shading`.
@@ -366,7 +425,18 @@ impl From<Samples> for pipeline::Samples {
         match samples {
             Samples::One => Self::One,
             Samples::Four => Self::Four,
-            Samples::Sixteen => Self::Sixteen,
+            // The A-buffer counts sub-pixels, not samples.
+            Samples::Sixteen | Samples::SixtyFour => Self::Sixteen,
+        }
+    }
+}
+
+impl From<Shadows> for pipeline::Shadows {
+    fn from(shadows: Shadows) -> Self {
+        match shadows {
+            Shadows::None => Self::None,
+            Shadows::Map => Self::Map,
+            Shadows::Rays => Self::Rays,
         }
     }
 }

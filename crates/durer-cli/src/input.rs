@@ -47,25 +47,29 @@ pub fn read_options(args: &ReadingArgs) -> ReadOptions {
 
 /// Reads a model.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
-    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let limit = options.limits.decoded_bytes;
-    let bytes = if is_stream(path) {
-        bounded(std::io::stdin().lock(), 0, limit).map_err(fail)?
-    } else {
-        let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
-        let metadata = file.metadata().map_err(|e| fail(in_words(&e)))?;
-        if metadata.is_dir() {
-            return Err(fail("it is a folder; name the model in it".to_owned()));
-        }
-        bounded(file, metadata.len(), limit).map_err(fail)?
-    };
+    let bytes = bytes(path, options.limits.decoded_bytes)?;
     let folder = Folder::of(path);
     let resources: &dyn Resources = match &folder {
         Ok(folder) if !is_stream(path) => folder,
         _ => &NoResources,
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_model(&bytes, &name, resources, options).map_err(|e| fail(e.to_string()))
+    read_model(&bytes, &name, resources, options)
+        .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
+}
+
+/// All bytes of a file, or of standard input, refused above the limit.
+pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    if is_stream(path) {
+        return bounded(std::io::stdin().lock(), 0, limit).map_err(fail);
+    }
+    let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
+    let metadata = file.metadata().map_err(|e| fail(in_words(&e)))?;
+    if metadata.is_dir() {
+        return Err(fail("it is a folder; name the model in it".to_owned()));
+    }
+    bounded(file, metadata.len(), limit).map_err(fail)
 }
 
 /// All bytes of a source, refused above the limit.

@@ -28,6 +28,13 @@ impl Messages {
         self.progress.tell(&format!("durer: {message}"));
     }
 
+    /// A warning about a file that is not of its reader.
+    pub fn warning(&self, file: &str, message: impl std::fmt::Display) {
+        if !self.quiet {
+            self.progress.tell(&format!("durer: warning: {file}: {message}"));
+        }
+    }
+
     /// The warnings of a model.
     pub fn warnings(&self, file: &str, warnings: &[Warning]) {
         if self.quiet {

@@ -1,9 +1,11 @@
 //! Where pictures go: one file, many files, or standard output; never half a file.
 
+use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
+use durer_formats::drawing::DrawingFormat;
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -25,6 +27,30 @@ impl std::fmt::Display for Target {
     }
 }
 
+/// What kind of file a picture becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Pixels.
+    Png,
+    /// Vectors.
+    Drawing(DrawingFormat),
+}
+
+impl Kind {
+    /// The kind that a file's name asks for; pixels where it does not say.
+    pub fn of(path: &Path) -> Self {
+        let suffix = path.extension().unwrap_or_default().to_string_lossy();
+        DrawingFormat::of_suffix(&suffix).map_or(Self::Png, Self::Drawing)
+    }
+
+    fn suffix(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Drawing(format) => format.name(),
+        }
+    }
+}
+
 /// What a picture is called where there are several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
@@ -35,7 +61,7 @@ pub struct Name {
 }
 
 /// One target for each name; creates missing folders for what is to be several files.
-pub fn plan(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Failure> {
+pub fn plan(option: &str, path: &Path, names: &[Name], kind: Kind) -> Result<Vec<Target>, Failure> {
     let many = names.len() != 1;
     if is_stream(path) {
         return if many {
@@ -56,14 +82,14 @@ pub fn plan(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Fa
     }
     if path.is_dir() || ends_in_separator(path) || (many && path.extension().is_none()) {
         make_folder(path)?;
-        return Ok(names.iter().map(|n| Target::File(path.join(n.file_name()))).collect());
+        return Ok(names.iter().map(|n| Target::File(path.join(n.file_name(kind)))).collect());
     }
     if many {
         let frames = names.iter().any(|n| n.frame.is_some());
         let hint = if frames { " or a name such as frame_%04d.png" } else { "" };
         return Err(usage(option, path, &format!("several pictures need a folder{hint}")));
     }
-    single(option, path).map(|t| vec![t])
+    single(option, path, kind).map(|t| vec![t])
 }
 
 /// Refuses two pictures in one place.
@@ -95,15 +121,38 @@ fn stdout_target(option: &str) -> Result<Target, Failure> {
     Ok(Target::Stdout)
 }
 
-/// One file: a PNG by its name, in a folder that is there; or something special such as a device.
-fn single(option: &str, path: &Path) -> Result<Target, Failure> {
+const PNG_ONLY: &str = "pictures are written as PNG; end the name in .png";
+
+/// One file, named as its kind, in a folder that is there; or something special such as a device.
+fn single(option: &str, path: &Path, kind: Kind) -> Result<Target, Failure> {
     if is_special(path) {
         return Ok(Target::File(path.to_owned()));
     }
     let suffix = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    if suffix.as_deref() != Some("png") {
-        return Err(usage(option, path, "pictures are written as PNG; end the name in .png"));
+    if kind == Kind::Png && suffix.as_deref() != Some("png") {
+        let hint = "pictures are written as PNG; end the name in .png (drawings: .svg, .pdf, .dxf, \
+                    .hpgl, .geojson)";
+        return Err(usage(option, path, if option == "--output" { hint } else { PNG_ONLY }));
     }
+    in_its_folder(path)
+}
+
+/// One file of any format, or `-` for standard output; nothing is read or written yet.
+pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
+    if is_stream(path) {
+        return stdout_target(option);
+    }
+    if is_special(path) {
+        return Ok(Target::File(path.to_owned()));
+    }
+    if path.is_dir() || ends_in_separator(path) {
+        return Err(usage(option, path, "it is a folder; name a file in it"));
+    }
+    in_its_folder(path)
+}
+
+/// A file in a folder that is there.
+fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(folder) {
         Ok(m) if m.is_dir() => Ok(Target::File(path.to_owned())),
@@ -132,10 +181,11 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 
 impl Name {
     /// `NAME.png`, or `NAME_0001.png` for a frame.
-    fn file_name(&self) -> String {
+    fn file_name(&self, kind: Kind) -> String {
+        let suffix = kind.suffix();
         match self.frame {
-            Some(frame) => format!("{}_{frame:04}.png", self.stem),
-            None => format!("{}.png", self.stem),
+            Some(frame) => format!("{}_{frame:04}.{suffix}", self.stem),
+            None => format!("{}.{suffix}", self.stem),
         }
     }
 }
@@ -225,38 +275,11 @@ fn write_special(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a new file beside the old one and renames it, so that at any moment there is the old file
-/// or the whole new one. A link stays a link; permissions stay.
+/// Writes a new file beside the old one and renames it.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let old = fs::metadata(&path).ok();
-    if old.as_ref().is_some_and(|m| m.permissions().readonly()) {
-        return Err(io::Error::other("the file is read-only"));
-    }
-    let (beside, mut file) = create_beside(&path)?;
-    let written = file.write_all(bytes).and_then(|()| match &old {
-        Some(old) => file.set_permissions(old.permissions()),
-        None => Ok(()),
-    });
-    drop(file);
-    let done = written.and_then(|()| fs::rename(&beside, &path));
-    if done.is_err() {
-        // The first error is the one to tell; a file that cannot be removed stays.
-        let _ = fs::remove_file(&beside);
-    }
-    done
-}
-
-/// A new file in the same folder, with a name that nothing has.
-pub fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
-    for attempt in 0u32.. {
-        let beside = path.with_file_name(format!(".durer-{}-{attempt}.tmp", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&beside) {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
-            other => return other.map(|file| (beside, file)),
-        }
-    }
-    Err(io::ErrorKind::AlreadyExists.into())
+    let mut file = Beside::create(path)?;
+    file.write_all(bytes)?;
+    file.commit()
 }
 
 #[cfg(test)]

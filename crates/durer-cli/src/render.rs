@@ -1,14 +1,17 @@
 //! `durer render`.
 
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
+use crate::compare;
+use crate::drawing::{self, Subject};
 use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
-use crate::output::{self, Name, Target};
+use crate::output::{self, Kind, Name, Target};
 use crate::report::{self, Failed, ModelReport, PictureReport, Report};
-use crate::values::Size;
-use durer::pipeline::{self, Lighting, RenderOptions};
+use crate::section;
+use crate::values::{Algorithm, Size};
+use durer::pipeline::{self, Lighting, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::Scene;
 use durer::target::Framebuffer;
 use durer::view::layout::Layout;
@@ -51,6 +54,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
 fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
+    drawing::check(args, kind(args))?;
     let Size { width, height } = args.picture.size;
     let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);
     if pixels > limit {
@@ -60,12 +64,104 @@ fn check(args: &RenderArgs) -> Result<(), Failure> {
         );
         return Err(Failure::Usage(message));
     }
+    check_algorithm(args)?;
     shots(args, None).map(|_| ())
+}
+
+/// Whether the algorithm that is asked for can do what is asked of it.
+fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
+    let usage = |text: String| Err(Failure::Usage(text));
+    let rays = asks_for_rays(args);
+    match args.picture.algorithm {
+        Some(Algorithm::Surfaces(SurfaceMethod::Ray)) | None => {}
+        Some(_) if rays == Some("--bounces") => {
+            return usage("--bounces: only the algorithm ray follows reflected rays".to_owned());
+        }
+        Some(_) if rays.is_some() => {
+            let message = "--shadows rays: only the algorithm ray casts them; --shadows map goes \
+                           with all";
+            return usage(message.to_owned());
+        }
+        Some(_) => {}
+    }
+    match args.picture.algorithm {
+        None if args.picture.aa == Samples::SixtyFour && rays.is_some() => {
+            usage("--aa 64: rays take up to 16 samples".to_owned())
+        }
+        Some(Algorithm::Surfaces(method))
+            if args.picture.aa == Samples::SixtyFour && method != SurfaceMethod::ABuffer =>
+        {
+            usage(format!("--aa 64: the A-buffer does that, {method} takes up to 16 samples"))
+        }
+        Some(Algorithm::All) if args.picture.viewports.is_some() => {
+            usage("--algorithm all: one sheet at a time, so not with --viewports".to_owned())
+        }
+        Some(Algorithm::All | Algorithm::Wireframe) if has_planes(args) => usage(
+            "--item, --depth, --normal: they go with one algorithm that finds surfaces".to_owned(),
+        ),
+        _ => Ok(()),
+    }
+}
+
+fn has_planes(args: &RenderArgs) -> bool {
+    let planes = &args.planes;
+    planes.item.is_some() || planes.depth.is_some() || planes.normal.is_some()
+}
+
+/// The option that only rays can fulfil.
+fn asks_for_rays(args: &RenderArgs) -> Option<&'static str> {
+    if args.look.bounces > 0 {
+        Some("--bounces")
+    } else {
+        matches!(args.look.shadows, Shadows::Rays).then_some("--shadows")
+    }
+}
+
+/// How surfaces are found: as asked for, or as fits the scene and the other options.
+fn algorithm(args: &RenderArgs, scene: &Scene) -> Algorithm {
+    args.picture.algorithm.unwrap_or_else(|| {
+        Algorithm::Surfaces(match args.picture.aa {
+            _ if asks_for_rays(args).is_some() => SurfaceMethod::Ray,
+            Samples::SixtyFour => SurfaceMethod::ABuffer,
+            // One sample is one colour per pixel: the A-buffer would smooth it.
+            Samples::One => SurfaceMethod::ZBuffer,
+            _ => SurfaceMethod::for_scene(scene),
+        })
+    })
+}
+
+/// Tells of blended surfaces that will not be seen through.
+fn tell_opaque(args: &RenderArgs, name: &str, scene: &Scene, messages: &Messages) {
+    let blends = SurfaceMethod::for_scene(scene) == SurfaceMethod::ABuffer;
+    let unable = |m: &SurfaceMethod| {
+        let by_rays = *m == SurfaceMethod::Ray && asks_for_rays(args).is_some();
+        !m.composes() && !by_rays
+    };
+    let methods: Vec<&str> = match algorithm(args, scene) {
+        Algorithm::Surfaces(method) => {
+            [method].iter().filter(|m| unable(m)).map(|m| m.name()).collect()
+        }
+        Algorithm::All => {
+            SurfaceMethod::ALL.iter().filter(|m| unable(m)).map(|m| m.name()).collect()
+        }
+        Algorithm::Wireframe => Vec::new(),
+    };
+    if blends && !methods.is_empty() {
+        let message = format!("{}: blended surfaces are shown as if opaque", methods.join(", "));
+        messages.warning(name, message);
+    }
+}
+
+/// What is written: what --format says, or the name of the output.
+fn kind(args: &RenderArgs) -> Kind {
+    args.format.unwrap_or_else(|| Kind::of(&args.output))
 }
 
 /// A model and what is to be made of it.
 struct Job<'a> {
     model: &'a Path,
+    /// Its name without folder and suffix.
+    stem: String,
     pictures: Vec<Picture>,
 }
 
@@ -96,10 +192,12 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
         .flat_map(|stem| frames.iter().map(move |&frame| Name { stem: stem.clone(), frame }))
         .collect();
     let optional = |option: &str, path: &Option<PathBuf>| match path {
-        Some(path) => Ok(output::plan(option, path, &names)?.into_iter().map(Some).collect()),
+        Some(path) => {
+            Ok(output::plan(option, path, &names, Kind::Png)?.into_iter().map(Some).collect())
+        }
         None => Ok(vec![None; names.len()]),
     };
-    let color = output::plan("--output", &args.output, &names)?;
+    let color = output::plan("--output", &args.output, &names, kind(args))?;
     let item = optional("--item", &args.planes.item)?;
     let depth = optional("--depth", &args.planes.depth)?;
     let normal = optional("--normal", &args.planes.normal)?;
@@ -111,7 +209,12 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
     let jobs: Vec<Job> = args
         .models
         .iter()
-        .map(|model| Job { model, pictures: pictures.by_ref().take(frames.len()).collect() })
+        .zip(stems)
+        .map(|(model, stem)| Job {
+            model,
+            stem,
+            pictures: pictures.by_ref().take(frames.len()).collect(),
+        })
         .collect();
     let targets = || jobs.iter().flat_map(|j| &j.pictures).flat_map(Picture::targets);
     output::check_distinct(targets())?;
@@ -133,6 +236,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         model.scene.up_axis = axis.into();
     }
     messages.warnings(&name, &model.warnings);
+    let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
     messages.detail(|| {
         format!(
             "{name}: {}, {} triangles, read in {read_seconds:.3} s",
@@ -140,11 +244,19 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
             model.scene.triangle_count()
         )
     });
+    tell_opaque(args, &name, &model.scene, messages);
     let mut pictures = Vec::new();
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));
-        let report = render_picture(args, &model.scene, picture)
-            .map_err(|failure| with_file(&name, failure))?;
+        let report = if drawing::is_wanted(args, kind(args)) {
+            let (scene, format) = (&model.scene, model.format.as_str());
+            let subject = Subject { scene, name: &job.stem, format, cap_material };
+            drawing::render(args, &subject, picture.frame, &picture.color, kind(args))
+        } else {
+            render_picture(args, &model.scene, picture)
+        };
+        let report = report.map_err(|failure| with_file(&name, failure))?;
+        tell_differing(&name, &report, messages);
         messages.detail(|| describe(&report));
         messages.progress.advance();
         pictures.push(report);
@@ -157,6 +269,14 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
         pictures,
     })
+}
+
+/// All algorithms find the same surfaces; where they do not, that is worth a word.
+fn tell_differing(name: &str, report: &PictureReport, messages: &Messages) {
+    for c in report.compared.iter().filter(|c| c.differing_pixels > 0) {
+        let (algorithm, count) = (c.algorithm, c.differing_pixels);
+        messages.warning(name, format!("{algorithm} differs from the z-buffer at {count} pixels"));
+    }
 }
 
 /// Vertices that are no numbers are found by the renderer, not by the reader.
@@ -172,6 +292,9 @@ fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], me
 }
 
 fn describe(report: &PictureReport) -> String {
+    if let Some(drawing) = &report.drawing {
+        return format!("{}: {}", report.files.join(", "), drawing.summary());
+    }
     format!(
         "{}: {}x{}, {} triangles drawn; geometry {:.4} s, raster {:.4} s, encode {:.4} s",
         report.files.join(", "),
@@ -232,18 +355,37 @@ fn render_picture(
     let Size { width, height } = args.picture.size;
     let mut report = PictureReport { width, height, ..PictureReport::default() };
     let mut cells = Vec::new();
+    let algorithm = algorithm(args, scene);
     for cell in shots(args, picture.frame)? {
-        let options = render_options(args, scene, picture, &cell.shot)?;
-        let (framebuffer, stages) =
-            pipeline::render(scene, &options).map_err(|e| Failure::Usage(e.to_string()))?;
-        report.add(&stages);
+        let options = render_options(args, scene, picture, &cell.shot, algorithm)?;
+        report.cameras.push((&options.camera).into());
+        let framebuffer = match algorithm {
+            Algorithm::Surfaces(_) => {
+                let (framebuffer, stages) = pipeline::render(scene, &options).map_err(usage)?;
+                report.add(&stages);
+                framebuffer
+            }
+            Algorithm::Wireframe => compare::wireframe(scene, &options).map_err(usage)?,
+            Algorithm::All => compare::sheet(scene, &options, &mut report)?,
+        };
         cells.push((cell, framebuffer));
     }
+    report.algorithm = match algorithm {
+        Algorithm::Surfaces(method) => method.name().to_owned(),
+        Algorithm::Wireframe => durer::visibility::wireframe::INFO.name.to_owned(),
+        Algorithm::All => "all".to_owned(),
+    };
     let framebuffer = assemble(cells, args.picture.size);
+    (report.width, report.height) = (framebuffer.width(), framebuffer.height());
     let start = Instant::now();
     report.files = write(args, picture, &framebuffer)?;
     report.encode_seconds = start.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// Options that the renderer refuses.
+fn usage(e: durer::Error) -> Failure {
+    Failure::Usage(e.to_string())
 }
 
 fn render_options(
@@ -251,13 +393,17 @@ fn render_options(
     scene: &Scene,
     picture: &Picture,
     shot: &Shot,
+    algorithm: Algorithm,
 ) -> Result<RenderOptions, Failure> {
     let lighting = match &args.look.light[..] {
         [] => Lighting::Auto,
         lights => Lighting::Given(lights.to_vec()),
     };
     Ok(RenderOptions {
-        algorithm: args.picture.algorithm,
+        algorithm: match algorithm {
+            Algorithm::Surfaces(method) => method,
+            Algorithm::Wireframe | Algorithm::All => SurfaceMethod::ZBuffer,
+        },
         width: shot.size.width,
         height: shot.size.height,
         shading: args.look.shading.map(Into::into),
@@ -265,6 +411,13 @@ fn render_options(
         background: args.picture.background,
         cull: args.look.cull.into(),
         samples: args.picture.aa.into(),
+        mask: match args.picture.aa {
+            Samples::SixtyFour => Mask::M64,
+            _ => Mask::M16,
+        },
+        shadows: args.look.shadows.into(),
+        shadow_map_side: args.look.shadow_map,
+        bounces: args.look.bounces,
         depth: picture.depth.is_some(),
         item: picture.item.is_some(),
         normal: picture.normal.is_some(),

@@ -1,6 +1,7 @@
 //! What `durer render --json` says.
 
 use durer::pipeline;
+use durer::scene::{Camera, Projection};
 use serde::Serialize;
 
 /// The whole report.
@@ -38,18 +39,72 @@ pub struct ModelReport {
 pub struct PictureReport {
     /// Where it went; `-` is standard output.
     pub files: Vec<String>,
-    /// In pixels.
+    /// In pixels; 0 for vectors.
     pub width: u32,
-    /// In pixels.
+    /// In pixels; 0 for vectors.
     pub height: u32,
     /// Over all viewports.
     pub triangles: Triangles,
+    /// What was drawn, where it is a drawing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawing: Option<crate::drawing::report::DrawingReport>,
     /// Seconds for vertices, clipping and set-up.
     pub geometry_seconds: f64,
     /// Seconds for rasterization, shading and resolve.
     pub raster_seconds: f64,
     /// Seconds for encoding and writing.
     pub encode_seconds: f64,
+    /// How surfaces were found: an algorithm's name, `wireframe`, or `all`.
+    pub algorithm: String,
+    /// The eye of each viewport.
+    pub cameras: Vec<CameraReport>,
+    /// For `all`: each algorithm beside the z-buffer.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compared: Vec<ComparedReport>,
+}
+
+/// An eye, as the options of `render` and `warp` take it.
+#[derive(Debug, Serialize)]
+pub struct CameraReport {
+    /// In the world.
+    pub eye: [f64; 3],
+    /// What it looks at.
+    pub target: [f64; 3],
+    /// What is up in the picture.
+    pub up: [f64; 3],
+    /// Vertical angle of view in degrees, in perspective.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fov: Option<f64>,
+    /// Height of the view in world units, in parallel projection.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ortho: Option<f64>,
+    /// Distance of the near plane.
+    pub near: f64,
+    /// Distance of the far plane.
+    pub far: f64,
+}
+
+impl From<&Camera> for CameraReport {
+    fn from(camera: &Camera) -> Self {
+        let (fov, ortho) = match camera.projection {
+            Projection::Perspective { fov_y } => (Some(fov_y.to_degrees()), None),
+            Projection::Orthographic { height } => (None, Some(height)),
+        };
+        let Camera { eye, target, up, near, far, .. } = *camera;
+        let [eye, target, up] = [eye, target, up].map(|v| v.to_array());
+        Self { eye, target, up, fov, ortho, near, far }
+    }
+}
+
+/// One algorithm of a contact sheet.
+#[derive(Debug, Serialize)]
+pub struct ComparedReport {
+    /// Its name.
+    pub algorithm: &'static str,
+    /// Pixels whose item is not that of the z-buffer.
+    pub differing_pixels: u64,
+    /// Seconds for all of its picture.
+    pub seconds: f64,
 }
 
 /// Counts of triangles.

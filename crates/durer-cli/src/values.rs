@@ -1,8 +1,11 @@
 //! Numbers and vectors as options take them; every message says what would be right.
 
+use crate::output::Kind;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::SurfaceMethod;
+use durer::visibility::wireframe;
+use durer_formats::drawing::DrawingFormat;
 
 /// Width and height of a picture, in pixels, each at least 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,11 +26,37 @@ pub fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 
-/// The name of an algorithm that finds visible surfaces; all names are told in the help.
-pub fn algorithm() -> impl TypedValueParser<Value = SurfaceMethod> {
-    let names =
+/// What `--algorithm` names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Algorithm {
+    /// One that finds visible surfaces.
+    Surfaces(SurfaceMethod),
+    /// All edges, hidden or not.
+    Wireframe,
+    /// A contact sheet of all that find visible surfaces.
+    All,
+}
+
+/// The name of an algorithm; all names are told in the help.
+pub fn algorithm() -> impl TypedValueParser<Value = Algorithm> {
+    let methods =
         SurfaceMethod::ALL.iter().map(|m| PossibleValue::new(m.name()).help(m.info().title));
-    PossibleValuesParser::new(names).try_map(|name| name.parse::<SurfaceMethod>())
+    let wireframe = PossibleValue::new(wireframe::INFO.name).help("All edges, hidden ones too");
+    let all = PossibleValue::new("all").help(
+        "A contact sheet of all but wireframe, with the pixels whose item is not the z-buffer's",
+    );
+    PossibleValuesParser::new(methods.chain([wireframe, all])).try_map(|name| match &*name {
+        "all" => Ok(Algorithm::All),
+        name if name == wireframe::INFO.name => Ok(Algorithm::Wireframe),
+        name => name.parse().map(Algorithm::Surfaces),
+    })
+}
+
+/// The name of an output format.
+pub fn kind() -> impl TypedValueParser<Value = Kind> {
+    let names = DrawingFormat::ALL.iter().map(|f| f.name());
+    PossibleValuesParser::new(std::iter::once("png").chain(names))
+        .map(|name| name.parse::<DrawingFormat>().map_or(Kind::Png, Kind::Drawing))
 }
 
 /// A finite number.
@@ -104,6 +133,12 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         _ => return Err("a size in bytes may end in k, M or G".to_owned()),
     };
     count(digits)?.checked_mul(factor).ok_or_else(|| "the number is too large".to_owned())
+}
+
+/// `FROM,TO`, finite, the first the smaller.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "a range is FROM,TO, the first the smaller, e.g. -4,4".to_owned();
+    numbers(text).filter(|[from, to]| from < to).ok_or_else(wrong)
 }
 
 /// `x,y,z`, all finite.

@@ -87,6 +87,14 @@ fn check_size(size: (u32, u32), holds: u64, name: &str, limits: &Limits) -> Resu
     Ok(())
 }
 
+/// Refuses a PNG whose bytes cannot hold its pixels, or whose pixels take more than `limit` bytes.
+pub(crate) fn check_png_holds(length: usize, info: &png::Info, limit: u64) -> Result<()> {
+    let limits = Limits { image_side: u32::MAX, decoded_bytes: limit, ..Limits::default() };
+    let bits = info.bits_per_pixel().max(1) as u64;
+    let holds = (length as u64).saturating_mul(DEFLATE_RATIO * 8) / bits;
+    check_size((info.width, info.height), holds, "height map", &limits)
+}
+
 fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
     let wrong = |e: png::DecodingError| broken(name, e);
     let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);

@@ -6,9 +6,12 @@
 #![forbid(unsafe_code)]
 
 mod color;
+pub mod drawing;
 mod error;
+pub mod formula;
 pub mod geo;
 pub mod gltf;
+pub mod height_map;
 pub mod image;
 mod model;
 mod mtl;
@@ -19,6 +22,7 @@ pub mod ply;
 pub mod png;
 mod sniff;
 pub mod stl;
+pub mod svg;
 mod text;
 pub mod threemf;
 

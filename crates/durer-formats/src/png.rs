@@ -3,7 +3,7 @@
 //! All writers take row 0 as the top row, write no time stamp and give the same bytes for the same
 //! pixels. Memory: one row, and what the compressor keeps (some 100 kB); cost: one pass.
 
-use crate::{Error, Result};
+use crate::{Error, Limits, Result};
 use durer::target::{NO_ITEM, Pixels};
 use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, SrgbRenderingIntent};
 use std::io::Write;
@@ -73,6 +73,37 @@ pub fn write_depth<W: Write>(out: W, pixels: &Pixels<f32>, compression: Compress
         };
         grey.to_be_bytes()
     })
+}
+
+/// Reads window depths as [`write_depth`] writes them: a 16-bit grey PNG, 65535 for depth 1.
+///
+/// # Errors
+/// [`Error::Limit`] for more pixels than `limits.decoded_bytes` hold at 4 bytes each or a side above
+/// `limits.image_side`, [`Error::Decode`] for what is broken or no 16-bit grey PNG.
+pub fn read_depth(bytes: &[u8], limits: &Limits) -> Result<Pixels<f32>> {
+    let wrong = |e: png::DecodingError| Error::whole(format!("the depth picture {e}"));
+    let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
+    let input = std::io::Cursor::new(bytes);
+    let mut decoder = png::Decoder::new_with_limits(input, png::Limits { bytes: memory });
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let info = decoder.read_header_info().map_err(wrong)?;
+    let (width, height) = (info.width, info.height);
+    if (info.color_type, info.bit_depth) != (ColorType::Grayscale, BitDepth::Sixteen) {
+        let message = "the depth picture is no 16-bit grey PNG, as `durer render --depth` writes";
+        return Err(Error::whole(message.to_owned()));
+    }
+    let needed = u64::from(width) * u64::from(height) * 4;
+    if width.max(height) > limits.image_side || needed > limits.decoded_bytes {
+        let (what, value, limit) = ("size of a depth picture", needed, limits.decoded_bytes);
+        return Err(Error::Limit { place: crate::Place::Whole, what, value, limit });
+    }
+    let mut reader = decoder.read_info().map_err(wrong)?;
+    let length = reader.output_buffer_size().unwrap_or(0);
+    let mut samples = vec![0; length];
+    reader.next_frame(&mut samples).map_err(wrong)?;
+    let depths = samples.as_chunks().0.iter().map(|&s| f32::from(u16::from_be_bytes(s)) / 65535.0);
+    Ok(Pixels::from_data(width, height, depths.collect())?)
 }
 
 /// Writes unit normals as 8-bit colours: each component n as (n · 0.5 + 0.5) · 255, rounded. Where
@@ -180,6 +211,21 @@ mod tests {
         let info = reader.next_frame(&mut data).unwrap();
         data.truncate(info.buffer_size());
         (info, data, reader.info().srgb.is_some())
+    }
+
+    #[test]
+    fn depths_come_back_as_they_were_written() {
+        let pixels = noise(13, 9, |h| (h >> 16) as f32 / 65535.0);
+        let mut bytes = Vec::new();
+        write_depth(&mut bytes, &pixels, Compression::Fast).unwrap();
+        assert_eq!(read_depth(&bytes, &Limits::default()).unwrap(), pixels);
+        let small = Limits { decoded_bytes: 100, ..Limits::default() };
+        assert!(read_depth(&bytes, &small).is_err());
+        assert!(read_depth(&bytes[..60], &Limits::default()).is_err());
+        let mut colors = Vec::new();
+        write_color(&mut colors, &Pixels::new(2, 2, [9; 4]), Compression::Fast).unwrap();
+        let error = read_depth(&colors, &Limits::default()).unwrap_err().to_string();
+        assert!(error.contains("16-bit"), "{error}");
     }
 
     /// Pixels that differ, so that a wrong order shows.

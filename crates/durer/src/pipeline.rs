@@ -1,5 +1,9 @@
 //! The order of the stages; nothing else knows it.
 
+mod draw;
+
+pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes};
+
 use crate::math::Vec4;
 use crate::scene::{Camera, Light, Scene};
 use crate::shade::PreparedLights;
@@ -8,12 +12,12 @@ use crate::simd::Level;
 use crate::target::Framebuffer;
 use crate::trace::NoTrace;
 use crate::view::View;
-use crate::visibility::surface::a_buffer::Mask;
+pub use crate::visibility::surface::a_buffer::Mask;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::method::{self, render_with};
 use crate::visibility::surface::setup::Filter;
-use crate::visibility::surface::z_buffer;
 pub use crate::visibility::surface::{Background, Cull, Samples, SurfaceMethod};
+use crate::visibility::surface::{shadow_map, z_buffer};
 use crate::{Error, Result};
 
 /// Where light comes from.
@@ -25,6 +29,18 @@ pub enum Lighting {
     Auto,
     /// These, in world space.
     Given(Vec<Light>),
+}
+
+/// How shadows are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Shadows {
+    /// There are none.
+    #[default]
+    None,
+    /// By shadow maps, for all algorithms: [`crate::shade::shadow`].
+    Map,
+    /// By rays to the lights, for [`SurfaceMethod::Ray`].
+    Rays,
 }
 
 /// Everything about a picture but the scene.
@@ -48,6 +64,15 @@ pub struct RenderOptions {
     pub cull: Cull,
     /// Samples per pixel of the colour plane, where the algorithm takes several; the other planes always have one, at the centre.
     pub samples: Samples,
+    /// How fine the A-buffer's masks are; it takes no samples.
+    pub mask: Mask,
+    /// Whether surfaces keep light from others.
+    pub shadows: Shadows,
+    /// Texels along the side of shadow maps.
+    pub shadow_map_side: u32,
+    /// How often rays may be reflected by mirrors and refracted by what blends; above 0 for
+    /// [`SurfaceMethod::Ray`] only.
+    pub bounces: u32,
     /// Whether the framebuffer gets a depth plane.
     pub depth: bool,
     /// Whether the framebuffer gets an item plane.
@@ -73,6 +98,10 @@ impl RenderOptions {
             background: Background::Color(Vec4::ONE),
             cull: Cull::None,
             samples: Samples::Four,
+            mask: Mask::M16,
+            shadows: Shadows::None,
+            shadow_map_side: shadow_map::Options::default().side,
+            bounces: 0,
             depth: false,
             item: false,
             normal: false,
@@ -82,7 +111,8 @@ impl RenderOptions {
     }
 
     /// # Errors
-    /// [`Error::Parameter`] for a size of zero, [`Error::Limit`] for one above `max_pixels`.
+    /// [`Error::Parameter`] for a size of zero, [`Error::Limit`] for one above `max_pixels`,
+    /// [`Error::Unsupported`] for secondary rays with an algorithm that casts none.
     pub fn check(&self) -> Result<()> {
         if self.width == 0 || self.height == 0 {
             let size = format!("{}x{}", self.width, self.height);
@@ -91,6 +121,15 @@ impl RenderOptions {
         let pixels = u64::from(self.width) * u64::from(self.height);
         if pixels > self.max_pixels {
             return Err(Error::Limit { what: "pixels", value: pixels, limit: self.max_pixels });
+        }
+        if self.algorithm != SurfaceMethod::Ray {
+            let instead = "the algorithm `ray` does that";
+            if self.bounces > 0 {
+                return Err(Error::Unsupported { what: "following reflected rays", instead });
+            }
+            if self.shadows == Shadows::Rays {
+                return Err(Error::Unsupported { what: "casting rays to the lights", instead });
+            }
         }
         self.camera.check()
     }
@@ -109,7 +148,7 @@ pub struct Report {
     pub culled: u64,
     /// Triangles handed to the rasterizer.
     pub drawn: u64,
-    /// Seconds for vertices, clipping and set-up.
+    /// Seconds for vertices, clipping, set-up and shadow maps.
     pub geometry_seconds: f64,
     /// Seconds for rasterization, shading and resolve.
     pub raster_seconds: f64,
@@ -139,12 +178,18 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
     if options.normal {
         framebuffer = framebuffer.with_normals();
     }
-    let lights = match &options.lighting {
+    let mut lights = match &options.lighting {
         Lighting::Auto => PreparedLights::of(scene, &options.camera),
         Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
     };
     let smoothed = with_needed_normals(scene, options.shading);
     let scene = smoothed.as_ref().unwrap_or(scene);
+    let start = std::time::Instant::now();
+    if options.shadows == Shadows::Map {
+        let map = shadow_map::Options { side: options.shadow_map_side };
+        shadow_map::cast(scene, &mut lights, &map)?;
+    }
+    let shadow_seconds = start.elapsed().as_secs_f64();
     let report = match options.algorithm {
         SurfaceMethod::ZBuffer => {
             let z_options = z_buffer::Options {
@@ -164,10 +209,48 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
         clipped: report.counts.clipped,
         culled: report.counts.culled,
         drawn: report.counts.drawn,
-        geometry_seconds: report.geometry_seconds,
+        geometry_seconds: report.geometry_seconds + shadow_seconds,
         raster_seconds: report.raster_seconds,
     };
     Ok((framebuffer, report))
+}
+
+/// One method's picture beside the z-buffer's.
+#[derive(Debug, Clone)]
+pub struct Compared {
+    /// The method.
+    pub method: SurfaceMethod,
+    /// Its picture, with an item plane.
+    pub picture: Framebuffer,
+    /// What happened on the way.
+    pub report: Report,
+    /// Pixels whose item is not that of the z-buffer; 0 is what all methods here promise.
+    pub differing: u64,
+}
+
+/// Renders a scene by all methods and compares their item planes, in the order of
+/// [`SurfaceMethod::ALL`]; `options.algorithm` does not matter.
+///
+/// # Errors
+/// As [`render`].
+pub fn compare(scene: &Scene, options: &RenderOptions) -> Result<Vec<Compared>> {
+    let mut compared: Vec<Compared> = Vec::new();
+    for &method in SurfaceMethod::ALL {
+        let options = RenderOptions { algorithm: method, item: true, ..options.clone() };
+        let (picture, report) = render(scene, &options)?;
+        let first = compared.first().map_or(&picture, |z_buffer| &z_buffer.picture);
+        let differing = differing_items(&picture, first);
+        compared.push(Compared { method, picture, report, differing });
+    }
+    Ok(compared)
+}
+
+/// How many pixels show different items; those without an item plane show none.
+fn differing_items(a: &Framebuffer, b: &Framebuffer) -> u64 {
+    match (&a.item, &b.item) {
+        (Some(a), Some(b)) => a.data().iter().zip(b.data()).filter(|(a, b)| a != b).count() as u64,
+        _ => 0,
+    }
 }
 
 /// All methods but the production path: first the list of triangles on the screen, then the method.
@@ -186,7 +269,9 @@ fn from_screen_triangles(
     let start = std::time::Instant::now();
     let method_options = method::Options {
         samples: options.samples,
-        mask: Mask::M16,
+        mask: options.mask,
+        shadow_rays: options.shadows == Shadows::Rays,
+        bounces: options.bounces,
         shading: options.shading,
         background: options.background,
         level: options.level,

@@ -1,60 +1,63 @@
 //! Where a stream of bytes goes: it is in its place when it is whole, and not before.
 
+use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
-use crate::output::{create_beside, is_special};
+use crate::output::is_special;
 use durer_formats::Error;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Takes bytes as they come.
 pub struct Sink {
-    out: BufWriter<Box<dyn Write>>,
+    out: Out,
     /// What messages call it.
     name: PathBuf,
-    /// The file being written, and the one that it replaces in the end.
-    files: Option<(PathBuf, PathBuf)>,
 }
+
+enum Out {
+    Stdout(BufWriter<io::Stdout>),
+    Special(BufWriter<File>),
+    Beside(BufWriter<Beside>),
+}
+
+const CAPACITY: usize = 1 << 16;
 
 impl Sink {
     /// Standard output.
     pub fn stdout() -> Self {
-        Self::new(Box::new(io::stdout()), Path::new("standard output"), None)
+        let out = Out::Stdout(BufWriter::with_capacity(CAPACITY, io::stdout()));
+        Self { out, name: PathBuf::from("standard output") }
     }
 
     /// A file, replaced by [`Sink::commit`]; a device or pipe is written to directly.
     pub fn file(path: &Path) -> Result<Self, Failure> {
-        let fail = |e: &io::Error| Failure::of_file(path, in_words(e));
-        if is_special(path) {
-            let file = OpenOptions::new().write(true).open(path).map_err(|e| fail(&e))?;
-            return Ok(Self::new(Box::new(file), path, None));
-        }
-        let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
-            return Err(Failure::of_file(path, "the file is read-only"));
-        }
-        let (beside, file) = create_beside(&place).map_err(|e| fail(&e))?;
-        Ok(Self::new(Box::new(file), path, Some((beside, place))))
-    }
-
-    fn new(out: Box<dyn Write>, name: &Path, files: Option<(PathBuf, PathBuf)>) -> Self {
-        Self { out: BufWriter::with_capacity(1 << 16, out), name: name.to_owned(), files }
+        let out = if is_special(path) {
+            let file = OpenOptions::new().write(true).open(path);
+            file.map(|f| Out::Special(BufWriter::with_capacity(CAPACITY, f)))
+        } else {
+            Beside::create(path).map(|f| Out::Beside(BufWriter::with_capacity(CAPACITY, f)))
+        };
+        let out = out.map_err(|e| Failure::of_file(path, in_words(&e)))?;
+        Ok(Self { out, name: path.to_owned() })
     }
 
     /// Puts the file in its place.
     pub fn commit(mut self) -> Result<(), Failure> {
-        let moved = self.out.flush().and_then(|()| match &self.files {
-            Some((beside, place)) => {
-                if let Ok(old) = fs::metadata(place) {
-                    File::open(beside)?.set_permissions(old.permissions())?;
-                }
-                fs::rename(beside, place)
-            }
-            None => Ok(()),
+        let flushed = self.flush();
+        let moved = flushed.and_then(|()| match self.out {
+            Out::Beside(out) => out.into_inner().map_err(io::IntoInnerError::into_error)?.commit(),
+            _ => Ok(()),
         });
-        moved.map_err(|e| failure(&self.name, &Error::Io(e)))?;
-        self.files = None;
-        Ok(())
+        moved.map_err(|e| failure(&self.name, &Error::Io(e)))
+    }
+
+    fn writer(&mut self) -> &mut dyn Write {
+        match &mut self.out {
+            Out::Stdout(out) => out,
+            Out::Special(out) => out,
+            Out::Beside(out) => out,
+        }
     }
 }
 
@@ -69,19 +72,10 @@ pub fn failure(name: &Path, error: &Error) -> Failure {
 
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.out.write(bytes)
+        self.writer().write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
-}
-
-impl Drop for Sink {
-    fn drop(&mut self) {
-        if let Some((beside, _)) = &self.files {
-            // What was written of it is of no use; one that cannot be removed stays.
-            let _ = fs::remove_file(beside);
-        }
+        self.writer().flush()
     }
 }

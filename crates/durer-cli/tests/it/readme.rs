@@ -36,7 +36,7 @@ fn arguments(line: &str) -> Option<Vec<String>> {
 
 /// The same command for a small picture.
 fn made_small(mut arguments: Vec<String>) -> Vec<String> {
-    if arguments[0] != "render" {
+    if !["render", "draw"].contains(&arguments[0].as_str()) {
         return arguments;
     }
     if let Some(at) = arguments.iter().position(|a| a == "--size") {
@@ -135,6 +135,8 @@ fn links_lead_to_files() {
         "CHANGELOG.md",
         "docs/performance.md",
         "docs/clip.md",
+        "docs/draw.md",
+        "docs/plot.md",
         "samples/README.md",
         "peers/render/README.md",
     ];

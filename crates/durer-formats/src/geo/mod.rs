@@ -20,7 +20,7 @@
 mod feature;
 mod format;
 mod geojson;
-mod number;
+pub(crate) mod number;
 mod reader;
 mod svg;
 mod svg_shapes;

@@ -1,11 +1,14 @@
-//! Where in the pipeline triangles are clipped: before the camera transform, in clip space, or after
-//! the division. All three give the same picture.
+//! Where in the pipeline triangles are clipped: before the camera transform, in clip space, after the
+//! division, in the viewport, or per pixel. All five give the same picture.
 //!
 //! In the world each border is a plane, one dot product a vertex, and what is rejected is never
 //! transformed. In clip space the borders are the same for all cameras, additions suffice, and w may
 //! have any sign. After the division borders are constants, but a triangle through the eye plane has
 //! no image: what lies in and behind that plane must be cut off first, and attributes are no longer
-//! linear.
+//! linear. In the viewport the near and the far plane have done their work, and four borders of a
+//! rectangle in the plane are left. Per pixel nothing is cut but at the eye plane: each pixel is asked
+//! whether it lies within the scissor rectangle ([`crate::raster`] walks no others), within any mask
+//! ([`crate::fragment::PixelMask`]), and whether its depth lies in the volume.
 
 use super::outcode::{DepthRange, Outcode};
 use super::volume::{self, Blend, ClipVertex, Step, cut_ring, planes_in_source};
@@ -49,6 +52,30 @@ pub const AFTER_DIVISION: Info = Info {
     limits: "convex polygons; loses digits for triangles that reach behind the eye",
 };
 
+/// The facts of clipping in the viewport.
+pub const VIEWPORT: Info = Info {
+    name: "viewport",
+    title: "In the viewport, in two dimensions",
+    authors: "Ivan Sutherland, Gary Hodgman",
+    year: 1974,
+    source: "Reentrant Polygon Clipping, Communications of the ACM",
+    class: Class::ObjectSpace,
+    cost: "O(vertices × 4 borders) after two borders in clip space",
+    limits: "convex polygons; near and far plane must have been cut before",
+};
+
+/// The facts of clipping per pixel.
+pub const PER_PIXEL: Info = Info {
+    name: "per-pixel",
+    title: "Per pixel: scissor, masks and depth range",
+    authors: "Mark Segal, Kurt Akeley",
+    year: 1992,
+    source: "The OpenGL Graphics System: A Specification",
+    class: Class::ImageSpace,
+    cost: "O(pixels covered), in the window or not, unless the rasterizer walks the window only",
+    limits: "coordinates must fit the rasterizer's guard band",
+};
+
 crate::info::family! {
     /// Where to clip.
     pub enum ClipPlace {
@@ -58,6 +85,10 @@ crate::info::family! {
         ClipSpace => CLIP_SPACE,
         /// After the division; points in and behind the eye plane are removed before it.
         AfterDivision => AFTER_DIVISION,
+        /// In the viewport: near and far in clip space, the other four borders in two dimensions.
+        Viewport => VIEWPORT,
+        /// Per pixel: nothing is cut but at the eye plane, so the ring may reach beyond all borders.
+        PerPixel => PER_PIXEL,
     }
 }
 
@@ -78,6 +109,8 @@ pub const EYE: Outcode = Outcode(64);
 /// Clips a convex polygon of world-space points with attributes and takes it to normalized device
 /// coordinates; winding is kept. Returns at least three vertices, or none.
 ///
+/// What [`ClipPlace::PerPixel`] gives is yet to be clipped, by whoever asks for its pixels.
+///
 /// ```
 /// use durer::clip::outcode::DepthRange;
 /// use durer::clip::place::{ClipPlace, clip};
@@ -86,7 +119,8 @@ pub const EYE: Outcode = Outcode(64);
 /// let triangle = [DVec3::ZERO, DVec3::X * 3.0, DVec3::Y].map(|p| (p, ()));
 /// for &place in ClipPlace::ALL {
 ///     let depth = DepthRange::NegativeOneToOne;
-///     assert_eq!(clip(place, &triangle, &DMat4::IDENTITY, depth, &mut NoTrace).len(), 4);
+///     let vertices = clip(place, &triangle, &DMat4::IDENTITY, depth, &mut NoTrace).len();
+///     assert_eq!(vertices, if place == ClipPlace::PerPixel { 3 } else { 4 });
 /// }
 /// ```
 pub fn clip<A: Blend>(
@@ -113,9 +147,50 @@ pub fn clip<A: Blend>(
         ClipPlace::AfterDivision => {
             let ring: Vec<_> = polygon.iter().map(transformed).collect();
             let before = before_eye(&ring, nearest_w(clip_from_world, depth) * 0.5, t);
-            in_ndc(divided(before.into_iter()), depth, t)
+            in_ndc(divided(before.into_iter()), depth, ALL_BORDERS, t)
+        }
+        ClipPlace::Viewport => {
+            let ring: Vec<_> = polygon.iter().map(transformed).collect();
+            let between = between_near_and_far(&ring, depth, t);
+            in_ndc(divided(between.into_iter()), depth, SIDES, t)
+        }
+        ClipPlace::PerPixel => {
+            let ring: Vec<_> = polygon.iter().map(transformed).collect();
+            let before = before_eye(&ring, nearest_w(clip_from_world, depth) * 0.5, t);
+            divided(before.into_iter())
         }
     }
+}
+
+/// Indices into [`Outcode::BORDERS`]: left, right, bottom and top, the borders of the viewport.
+const SIDES: std::ops::Range<usize> = 0..4;
+/// Near and far.
+const DEPTHS: std::ops::Range<usize> = 4..6;
+const ALL_BORDERS: std::ops::Range<usize> = 0..6;
+
+/// What lies between the near and the far plane, in clip space.
+fn between_near_and_far<A: Blend>(
+    ring: &[ClipVertex<A>],
+    depth: DepthRange,
+    t: &mut impl Tracer<Step>,
+) -> Vec<ClipVertex<A>> {
+    if ring.iter().any(|v| !v.position.is_finite()) {
+        t.step(|| Step::Rejected);
+        return Vec::new();
+    }
+    let mut ring = ring.to_vec();
+    for k in DEPTHS {
+        let distance = |v: &ClipVertex<A>| volume::boundary_coordinates(v.position, depth)[k];
+        let cut = |[i, o]: [&ClipVertex<A>; 2], [d_in, d_out]: [f64; 2]| {
+            let total = d_in - d_out;
+            ClipVertex {
+                position: Blend::blend(&i.position, -d_out, &o.position, d_in, total),
+                attributes: A::blend(&i.attributes, -d_out, &o.attributes, d_in, total),
+            }
+        };
+        ring = cut_ring(&ring, Outcode::BORDERS[k], distance, cut, |v| v.position, t);
+    }
+    ring
 }
 
 /// Divides by w; a ring with a vertex that has no place is left out.
@@ -188,9 +263,11 @@ fn before_eye<A: Blend>(
 fn in_ndc<A: Blend>(
     mut ring: Vec<NdcVertex<A>>,
     depth: DepthRange,
+    borders: std::ops::Range<usize>,
     t: &mut impl Tracer<Step>,
 ) -> Vec<NdcVertex<A>> {
-    for (k, border) in Outcode::BORDERS.into_iter().enumerate() {
+    for k in borders {
+        let border = Outcode::BORDERS[k];
         let distance =
             |v: &NdcVertex<A>| volume::boundary_coordinates(v.position.extend(1.0), depth)[k];
         ring = cut_ring(&ring, border, distance, cut_ndc, |v| v.position.extend(1.0), t);

@@ -4,6 +4,7 @@ pub mod b_spline;
 pub mod bezier;
 mod flatten;
 mod path;
+pub mod stroke_font;
 pub mod text;
 
 pub use flatten::{Contours, flatten, segments_for};

@@ -1,5 +1,5 @@
 //! What happens to a fragment between the rasterizer and the framebuffer, in this order:
-//! scissor → alpha test → stencil → depth → blending → dithering → logic operation → write masks.
+//! scissor and mask → alpha test → stencil → depth → blending → dithering → logic operation → write masks.
 //!
 //! Definitions: *The OpenGL Graphics System* 4.6 (2017), chapter 17, and 2.1 for the alpha test. Only
 //! [`apply`] knows the order.
@@ -10,6 +10,7 @@ mod compare;
 mod depth;
 mod dither;
 mod logic_op;
+mod pixel_mask;
 mod scissor;
 mod stencil;
 mod write_mask;
@@ -20,6 +21,7 @@ pub use compare::Compare;
 pub use depth::{DepthRange, PolygonOffset};
 pub use dither::{BAYER8, Dither};
 pub use logic_op::LogicOp;
+pub use pixel_mask::PixelMask;
 pub use scissor::Scissor;
 pub use stencil::{Stencil, StencilFace, StencilOp};
 pub use write_mask::WriteMask;
@@ -89,7 +91,7 @@ impl Default for FragmentState {
 /// Where a fragment's way ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Outcome {
-    /// Outside the framebuffer or the scissor rectangle.
+    /// Outside the framebuffer, the scissor rectangle or the mask.
     Scissor,
     /// Dropped by the alpha test.
     AlphaTest,
@@ -131,6 +133,20 @@ pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer
     };
     target.color.set(x, y, state.write_mask.color(code, stored));
     Outcome::Drawn
+}
+
+/// [`apply`] within a mask, which is asked right after the scissor rectangle.
+pub fn apply_within(
+    mask: &PixelMask,
+    state: &FragmentState,
+    fragment: Fragment,
+    target: &mut Framebuffer,
+) -> Outcome {
+    if mask.contains(fragment.x, fragment.y) {
+        apply(state, fragment, target)
+    } else {
+        Outcome::Scissor
+    }
 }
 
 fn passes_depth(state: &FragmentState, fragment: &Fragment, target: &Framebuffer) -> bool {

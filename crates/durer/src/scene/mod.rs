@@ -2,6 +2,7 @@
 
 mod bounds;
 mod camera;
+mod height_field;
 mod light;
 mod material;
 mod mesh;
@@ -10,6 +11,7 @@ mod texture;
 
 pub use bounds::{Aabb, BoundingSphere};
 pub use camera::{Camera, NamedCamera, Projection};
+pub use height_field::{Diagonal, HeightField};
 pub use light::{Light, LightKind};
 pub use material::{AlphaMode, Material, ShadingModel, TextureRef};
 pub use mesh::{Mesh, Part, Topology};

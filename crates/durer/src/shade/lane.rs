@@ -32,6 +32,8 @@ pub trait Lane:
     fn exp2_whole(self) -> Self;
     /// The nearest whole number below or equal.
     fn floor(self) -> Self;
+    /// A function of one number per value, lane by lane: for what has no formula, such as looking up.
+    fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self;
 
     /// `self` where it is above `limit`, else `limit`; NaN becomes `limit`.
     #[inline(always)]
@@ -130,6 +132,10 @@ impl Lane for f32 {
     fn floor(self) -> Self {
         f32::floor(self)
     }
+    #[inline(always)]
+    fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self {
+        f(values)
+    }
 }
 
 impl<S: Simd> Lane for f32x8<S> {
@@ -163,6 +169,13 @@ impl<S: Simd> Lane for f32x8<S> {
     #[inline(always)]
     fn floor(self) -> Self {
         self.simd.floor_f32x8(self)
+    }
+    #[inline(always)]
+    fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self {
+        let lanes = values.map(<[f32; 8]>::from);
+        let result: [f32; 8] = std::array::from_fn(|i| f(std::array::from_fn(|k| lanes[k][i])));
+        // Without values there is nothing to compute; nobody asks for that.
+        f32x8::from_slice(values[0].simd, &result)
     }
 }
 

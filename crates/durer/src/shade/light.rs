@@ -5,6 +5,7 @@
 
 use super::environment::Environment;
 use super::lane::{Lane, Vec3Lane};
+use super::shadow::ShadowMaps;
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Camera, Light, LightKind, Scene};
 
@@ -48,6 +49,8 @@ pub struct PreparedLights {
     pub directional: Vec<DirectionalLight>,
     /// Point and spot lights.
     pub points: Vec<PointLight>,
+    /// What the lights see; empty where none throws shadows.
+    pub shadows: ShadowMaps,
 }
 
 /// Squared distance below which a point light gets no brighter; keeps its strength finite.
@@ -66,6 +69,7 @@ impl PreparedLights {
             environment: Environment { up, ..Environment::uniform(Vec3::ZERO) },
             directional: Vec::new(),
             points: Vec::new(),
+            shadows: ShadowMaps::default(),
         };
         let ambient: Option<Vec3> = lights
             .iter()
@@ -135,6 +139,12 @@ impl PreparedLights {
 }
 
 impl PointLight {
+    /// The unit vector along the axis of a spot light and the cosine of the angle at which its light is
+    /// gone; `None` for a light that shines everywhere.
+    pub fn cone(&self) -> Option<(Vec3, f32)> {
+        (self.axis != Vec3::ZERO).then(|| (self.axis, -self.offset / self.scale))
+    }
+
     /// Unit vector from `position` to the light, and the light's strength there.
     #[inline(always)]
     pub fn seen_from<L: Lane>(&self, position: Vec3Lane<L>) -> (Vec3Lane<L>, L) {

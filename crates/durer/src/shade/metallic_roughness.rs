@@ -12,6 +12,7 @@
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::normal::Frame;
+use super::shadow;
 use crate::info::{Class, Info};
 
 /// The facts.
@@ -98,13 +99,15 @@ pub(super) fn reflect<L: Lane>(
 
     let mut sum = surroundings(frame, &point, substance.base, (metallic, roughness), lights);
     sum = sum.scale(substance.occlusion);
-    for light in &lights.directional {
+    for (i, light) in lights.directional.iter().enumerate() {
         let l = Vec3Lane::splat(one, light.to_light);
-        sum = sum.plus(lit(frame, &point, l).times_all(light.color));
+        let reach = shadow::reach(lights.shadows.directional.get(i), position, frame.face, l);
+        sum = sum.plus(lit(frame, &point, l).scale(reach).times_all(light.color));
     }
-    for light in &lights.points {
+    for (i, light) in lights.points.iter().enumerate() {
         let (l, strength) = light.seen_from(position);
-        sum = sum.plus(lit(frame, &point, l).scale(strength).times_all(light.color));
+        let reach = shadow::reach(lights.shadows.points.get(i), position, frame.face, l);
+        sum = sum.plus(lit(frame, &point, l).scale(strength * reach).times_all(light.color));
     }
     sum
 }
@@ -190,7 +193,13 @@ mod tests {
     use crate::shade::normal::face_viewer;
 
     fn lights(environment: Environment, directional: Vec<DirectionalLight>) -> PreparedLights {
-        PreparedLights { origin: DVec3::ZERO, environment, directional, points: Vec::new() }
+        PreparedLights {
+            origin: DVec3::ZERO,
+            environment,
+            directional,
+            points: Vec::new(),
+            shadows: Default::default(),
+        }
     }
 
     fn leaving(

@@ -20,6 +20,7 @@ mod mip;
 mod normal;
 pub mod phong;
 mod plain;
+pub mod shadow;
 pub mod texture;
 mod tone;
 pub mod unlit;

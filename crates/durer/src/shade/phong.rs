@@ -12,6 +12,7 @@ use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::normal::Frame;
+use super::shadow;
 use crate::info::{Class, Info};
 use crate::math::Vec3;
 
@@ -98,13 +99,15 @@ pub(super) fn reflect<L: Lane>(
         diffuse: lights.environment.diffuse(frame.normal).scale(occlusion),
         specular: Vec3Lane::splat(one, Vec3::ZERO),
     };
-    for light in &lights.directional {
+    for (i, light) in lights.directional.iter().enumerate() {
         let l = Vec3Lane::splat(one, light.to_light);
-        sums.add(frame, l, light.color, one, shininess);
+        let reach = shadow::reach(lights.shadows.directional.get(i), position, frame.face, l);
+        sums.add(frame, l, light.color, reach, shininess);
     }
-    for light in &lights.points {
+    for (i, light) in lights.points.iter().enumerate() {
         let (l, strength) = light.seen_from(position);
-        sums.add(frame, l, light.color, strength, shininess);
+        let reach = shadow::reach(lights.shadows.points.get(i), position, frame.face, l);
+        sums.add(frame, l, light.color, strength * reach, shininess);
     }
     (sums.diffuse, sums.specular)
 }
@@ -158,6 +161,7 @@ mod tests {
             environment: Environment::uniform(Vec3::splat(0.125)),
             directional: vec![DirectionalLight { to_light, color: Vec3::ONE }],
             points: Vec::new(),
+            shadows: Default::default(),
         }
     }
 

@@ -12,7 +12,8 @@ pub struct Pen {
     /// sRGB with straight alpha.
     pub color: [u8; 4],
     /// Lengths of dashes and gaps in turn, millimetres; empty for a solid line. An even number of
-    /// values, all > 0.
+    /// values, all > 0. They are nominal: each stroke stretches them a little, so that it begins and
+    /// ends with a whole dash ([`crate::paper::dashes`]).
     pub dashes: Vec<f64>,
 }
 
@@ -62,6 +63,8 @@ pub struct SheetLayer {
 /// A piece of paper. Coordinates are millimetres from the upper left corner, y down.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
+    /// What is drawn, for the file's title; may be empty.
+    pub title: String,
     /// Width and height, millimetres.
     pub size: DVec2,
     /// What the paper is filled with; `None` leaves it blank.

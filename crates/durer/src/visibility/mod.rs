@@ -4,3 +4,4 @@ pub mod line;
 pub mod object;
 pub mod region;
 pub mod surface;
+pub mod wireframe;

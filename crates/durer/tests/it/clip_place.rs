@@ -1,9 +1,10 @@
-//! Three places to clip, one picture.
+//! Five places to clip, one picture.
 
 use durer::clip::outcode::{DepthRange, Outcode};
 use durer::clip::place::{ClipPlace, EYE, NdcVertex, clip};
 use durer::clip::volume::Step;
 use durer::math::{DMat4, DVec2, DVec3, DVec4};
+use durer::raster::interpolate::{ScreenPlane, doubled_area};
 use durer::raster::triangle::{Options, SnappedTriangle, TriangleRasterizer};
 use durer::scene::{Camera, Projection};
 use durer::trace::{NoTrace, Recorder};
@@ -48,6 +49,24 @@ fn pixels(polygon: &[DVec2]) -> BTreeSet<(i32, i32)> {
     lit
 }
 
+/// The pixels of a convex polygon whose depth there lies in the volume; the rasterizer's window is the
+/// scissor rectangle.
+fn pixels_by_depth(ring: &[NdcVertex<DVec3>]) -> BTreeSet<(i32, i32)> {
+    let corners: Vec<DVec2> = ring.iter().map(on_screen).collect();
+    let mut lit = pixels(&corners);
+    // The largest triangle of the fan has the plane with the least rounding.
+    let fan = |k: usize| [0, k - 1, k];
+    let area = |k: usize| doubled_area(fan(k).map(|i| corners[i])).abs();
+    let Some(k) = (2..ring.len()).max_by(|&a, &b| area(a).total_cmp(&area(b))) else { return lit };
+    let (points, z) = (fan(k).map(|i| corners[i]), fan(k).map(|i| ring[i].position.z));
+    let Some(depth) = ScreenPlane::through(points, z) else { return lit };
+    lit.retain(|&(x, y)| {
+        let z = depth.at(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+        (-1.0..=1.0).contains(&z)
+    });
+    lit
+}
+
 /// Distance of a point from the outline, in pixels.
 fn from_outline(polygon: &[DVec2], p: DVec2) -> f64 {
     (0..polygon.len())
@@ -81,19 +100,27 @@ proptest! {
             .iter()
             .map(|&place| clip(place, &polygon, &matrix, depth, &mut NoTrace))
             .collect();
-        for ring in &clipped {
+        for (place, ring) in ClipPlace::ALL.iter().zip(&clipped) {
             for v in ring {
-                prop_assert!(v.position.abs().max_element() <= 1.0 + 1e-9, "{:?}", v);
+                let inside = v.position.abs().max_element() <= 1.0 + 1e-9;
+                prop_assert!(inside || *place == ClipPlace::PerPixel, "{:?}", v);
                 // Attributes are linear in space: the vertex knows the world point it shows.
                 let seen = matrix * v.attributes.extend(1.0);
                 prop_assert!((seen.truncate() / seen.w - v.position).length() < 1e-6, "{:?}", v);
                 prop_assert!((1.0 / seen.w - v.inv_w).abs() < 1e-6 * v.inv_w);
             }
         }
-        let outlines: Vec<Vec<DVec2>> =
+        let mut outlines: Vec<Vec<DVec2>> =
             clipped.iter().map(|r| r.iter().map(on_screen).collect()).collect();
-        let pictures: Vec<_> = outlines.iter().map(|o| pixels(o)).collect();
-        for k in 1..3 {
+        let mut pictures: Vec<_> = outlines.iter().map(|o| pixels(o)).collect();
+        if let Some(k) = ClipPlace::ALL.iter().position(|p| *p == ClipPlace::PerPixel) {
+            pictures[k] = pixels_by_depth(&clipped[k]);
+            // What is seen of it has the outline of what the others cut.
+            if !outlines[0].is_empty() {
+                outlines[k] = outlines[0].clone();
+            }
+        }
+        for k in 1..ClipPlace::ALL.len() {
             for &(x, y) in pictures[0].symmetric_difference(&pictures[k]) {
                 let center = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
                 let owner = if pictures[0].contains(&(x, y)) { 0 } else { k };

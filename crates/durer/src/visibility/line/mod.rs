@@ -3,6 +3,7 @@
 mod arrange;
 mod chain;
 pub mod edge_lines;
+pub mod floating_horizon;
 pub mod hidden_line;
 mod intersection;
 mod method;

@@ -1,1 +1,99 @@
 //! Visible regions: what of the faces of a scene can be seen, as exact polygons.
+//!
+//! [`draw`] gives a finished [`Drawing`]: filled regions, flat-shaded, disjoint or trapped, with exact
+//! shadows where they are asked for. [`weiler_atherton::solve`] gives the planar map behind it, whose
+//! faces know the triangle that they show; [`hatch`] replaces tones by lines.
+
+pub mod hatch;
+mod paint;
+mod shadow;
+mod trap;
+pub mod weiler_atherton;
+
+use crate::Result;
+use crate::math::Rect;
+use crate::scene::Scene;
+use crate::shade::PreparedLights;
+use crate::target::drawing::Drawing;
+use crate::trace::NoTrace;
+use crate::view::View;
+use crate::visibility::surface::Cull;
+use paint::Paint;
+use shadow::{Lamps, World};
+use weiler_atherton::faces::{Face, Frame};
+use weiler_atherton::merge;
+
+/// Which neighbours become one region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Merge {
+    /// None: each region shows one triangle, and [`crate::target::drawing::Region::item`] tells which.
+    Face,
+    /// Those that show one material in one colour (8-bit sRGB).
+    #[default]
+    Shade,
+    /// Those of one material, in the colour of most of their area.
+    Material,
+    /// Those of one instance of a mesh, likewise.
+    Part,
+}
+
+/// How far a filled shape reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Fill {
+    /// Shapes share their borders and do not overlap: for cutters, plotters and hatching.
+    #[default]
+    Disjoint,
+    /// Shapes reach under the neighbours that are painted after them, so that viewers, which blend each
+    /// shape's border by itself, show no hairline cracks.
+    Trapped {
+        /// How far, plane units; half a pixel or dot of the finest output is enough. Silhouettes
+        /// against the background do not grow.
+        reach: f64,
+    },
+}
+
+/// What to draw.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Options {
+    /// Which faces are left out.
+    pub cull: Cull,
+    /// Which neighbours become one region.
+    pub merge: Merge,
+    /// How far shapes reach.
+    pub fill: Fill,
+    /// Whether faces cast shadows: light that another face keeps off is left out, and
+    /// [`crate::target::drawing::LineClass::Shadow`] lines are given.
+    pub shadows: bool,
+    /// The material of the caps of a section ([`crate::view::section::Section::cap_material`]).
+    pub cap_material: Option<usize>,
+}
+
+/// What of a scene is visible from a view, as filled regions.
+///
+/// Every face has one colour, by [`crate::shade::flat`] at its centroid. The drawing has regions, and
+/// with [`Options::shadows`] the borders of shadows as lines. For hatching see [`hatch::hatch`].
+///
+/// # Errors
+/// What [`Scene::check`] finds, and [`crate::Error::Limit`] for too many triangles.
+pub fn draw(
+    scene: &Scene,
+    view: &View,
+    lights: &PreparedLights,
+    options: &Options,
+) -> Result<Drawing> {
+    scene.check()?;
+    let world = World::new(scene)?;
+    let lamps = Lamps::new(&world, view, lights, options.shadows)?;
+    let how = weiler_atherton::Options { cull: options.cull };
+    let more = |frame: &Frame, faces: &[Face]| lamps.edges(frame, faces);
+    let map = weiler_atherton::divide(scene, view, &how, more, &mut NoTrace)?;
+    let paint = Paint::new(scene, view, lights, options, &world, &lamps, &map);
+    let patches = merge::patches(&map.map, &paint.labels);
+    let half = map.frame.half() * map.frame.unit;
+    Ok(Drawing {
+        window: Rect::new(-half, half).ok(),
+        regions: paint.regions(&map, &patches, options),
+        lines: paint.shadow_lines(&map),
+        labels: Vec::new(),
+    })
+}

@@ -2,6 +2,7 @@
 
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
+use crate::scene::{AlphaMode, Material, Scene};
 use crate::shade::{PreparedLights, Shading};
 use crate::simd::Level;
 use crate::target::Framebuffer;
@@ -35,6 +36,18 @@ crate::info::family! {
 }
 
 impl SurfaceMethod {
+    /// The method that shows a scene best where nobody asks for another: the A-buffer where surfaces
+    /// blend, for it needs no order of them and smooths edges too, else the z-buffer.
+    pub fn for_scene(scene: &Scene) -> Self {
+        let blends = |m: &Material| m.alpha_mode == AlphaMode::Blend;
+        if scene.materials.iter().any(blends) { Self::ABuffer } else { Self::ZBuffer }
+    }
+
+    /// Whether colours show what is behind blended surfaces; else these count as opaque.
+    pub fn composes(self) -> bool {
+        !matches!(self, Self::Warnock | Self::Ray)
+    }
+
     /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
         match self {
@@ -51,6 +64,10 @@ pub struct Options {
     pub samples: Samples,
     /// Sub-pixels of the A-buffer's masks.
     pub mask: Mask,
+    /// Whether rays to the lights find shadows; for the ray method.
+    pub shadow_rays: bool,
+    /// How often a ray may be reflected or refracted; for the ray method.
+    pub bounces: u32,
     /// `None` = by material.
     pub shading: Option<Shading>,
     /// What is behind everything.
@@ -65,6 +82,8 @@ impl Default for Options {
         Self {
             samples: Samples::One,
             mask: Mask::M16,
+            shadow_rays: false,
+            bounces: 0,
             shading: None,
             background: Background::Color(Vec4::ONE),
             level: Level::new(),
@@ -77,6 +96,18 @@ impl Options {
     fn picture(&self) -> picture::Options {
         let Self { shading, background, level, .. } = *self;
         picture::Options { shading, background, level }
+    }
+
+    fn ray(&self) -> ray::Options {
+        ray::Options {
+            look: self.picture(),
+            shadows: self.shadow_rays,
+            reflections: self.bounces > 0,
+            // Without mirrors rays still go on through what blends.
+            depth: if self.bounces > 0 { self.bounces } else { ray::Options::default().depth },
+            samples: self.samples,
+            ..Default::default()
+        }
     }
 
     /// As many samples, in rows and columns.
@@ -163,9 +194,7 @@ pub fn render_with(
         }
         SurfaceMethod::Ray => {
             let t = &mut Wrapped(t, Step::Ray);
-            let (look, samples) = (options.picture(), options.samples);
-            let options = ray::Options { look, samples, ..Default::default() };
-            ray::render(input, lights, &options, framebuffer, t);
+            ray::render(input, lights, &options.ray(), framebuffer, t);
         }
         SurfaceMethod::SpanningScanLine => {
             let t = &mut Wrapped(t, Step::SpanningScanLine);

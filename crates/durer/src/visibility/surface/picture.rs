@@ -2,7 +2,7 @@
 //! surface per pixel end with.
 //!
 //! Blended surfaces count as opaque here, as they do in the z-buffer's depth, item and normal
-//! planes; their colour is shown without its alpha.
+//! planes; their colour is shown without its alpha. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, encode_srgb8};
@@ -64,6 +64,7 @@ impl<'a> Picture<'a> {
             materials,
             lights,
             shading: options.shading,
+            level: options.level,
         };
         Self::with_lighting(lighting, options, framebuffer)
     }
@@ -88,6 +89,11 @@ impl<'a> Picture<'a> {
     /// [`NO_ITEM`] where nothing is.
     pub fn write(&mut self, x: u32, y: u32, items: &[u32], depths: &[f32]) {
         self.write_planes(x, y, items, depths);
+        self.write_color(x, y, items);
+    }
+
+    /// Writes the colours of the pixels of row `y` from column `x`, and no other plane.
+    pub fn write_color(&mut self, x: u32, y: u32, items: &[u32]) {
         let behind = self.behind(y as i32);
         let row = self.framebuffer.color.row_mut(y);
         let out = row.get_mut(x as usize..).unwrap_or_default();
@@ -104,6 +110,11 @@ impl<'a> Picture<'a> {
     pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
         let row = self.framebuffer.color.row_mut(y);
         row.iter_mut().zip(sums).for_each(|(to, &sum)| *to = encode(sum));
+    }
+
+    /// Writes one pixel of the colour plane from a linear, premultiplied colour.
+    pub fn set_color(&mut self, x: u32, y: u32, sum: Vec4) {
+        self.framebuffer.color.set(x, y, encode(sum));
     }
 
     /// Writes depth, item and normal, as far as the framebuffer has them; no colour.

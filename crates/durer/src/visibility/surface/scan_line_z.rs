@@ -8,7 +8,8 @@
 //!
 //! Cost: O(n log n) for the order by first row, then O(rows crossed + covered pixels). Memory: the
 //! triangles, the active list and one row; nothing grows with the picture's height but the
-//! framebuffer itself. Limits: one surface per pixel; blended surfaces count as opaque.
+//! framebuffer itself. Coherence used: edges, from row to row. Limits: one opaque surface per pixel,
+//! one sample; blended surfaces are kept in a list per pixel of the row and laid over by depth.
 
 use crate::info::{Class, Info};
 use crate::shade::{PreparedLights, PreparedMaterials};
@@ -16,6 +17,7 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::active::ActiveList;
 use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::layers::Layers;
 use crate::visibility::surface::nearest::{DepthRow, Masked};
 pub use crate::visibility::surface::picture::Options;
 use crate::visibility::surface::picture::Picture;
@@ -29,7 +31,7 @@ pub const INFO: Info = Info {
     source: "Half-Tone Perspective Drawings by Computer, AFIPS Fall Joint Computer Conference",
     class: Class::ImageSpace,
     cost: "O(n log n + rows crossed + covered pixels) time, O(n + width) memory, n triangles",
-    limits: "one surface per pixel; blended surfaces count as opaque",
+    limits: "one sample per pixel",
 };
 
 /// What there is to see.
@@ -79,6 +81,7 @@ pub fn render(
     let masked = Masked::new(input);
     let mut list = ActiveList::new(&input.triangles, width, height);
     let mut row = DepthRow::new(width);
+    let mut layers = Layers::of(input);
     for y in 0..height as i32 {
         t.step(|| Step::Row { y });
         row.clear();
@@ -91,6 +94,11 @@ pub fn render(
             let wrote = |x, depth| t.step(|| Step::Write { item, x, depth });
             masked.enter(&mut row, triangle, [x0, x1], y, &mut picture.lit, wrote);
         }
-        picture.write(0, y as u32, &row.item, &row.depth);
+        let Some(layers) = &mut layers else {
+            picture.write(0, y as u32, &row.item, &row.depth);
+            continue;
+        };
+        picture.write_planes(0, y as u32, &row.item, &row.depth);
+        layers.write(y, active, input, &masked, &mut picture);
     }
 }

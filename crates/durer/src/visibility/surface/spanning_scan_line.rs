@@ -11,7 +11,8 @@
 //! Deviations: the picture must be the z-buffer's bit for bit, whose depths are rounded to f32. So
 //! an end decides only by more than rounding can turn over; where planes come closer than that —
 //! around crossings, and where faces lie in each other — the span's pixels are compared one by one,
-//! as they are in spans too short to gain anything, and under masked surfaces.
+//! as they are in spans too short to gain anything, and under masked surfaces. Blended surfaces are
+//! kept in a list per pixel of the row and laid over by depth.
 //!
 //! Cost: O(n log n) for the order by first row, then per row O(e log e + spans · depth complexity + w)
 //! for e edges and w pixels. Memory: the triangles, the active list and one row; nothing grows with
@@ -23,6 +24,7 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::active::{Active, ActiveList};
 use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::layers::Layers;
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
 pub use crate::visibility::surface::picture::Options;
@@ -39,7 +41,7 @@ pub const INFO: Info = Info {
     class: Class::ImageSpace,
     cost: "O(n log n + rows · (e log e + spans · d)) time for n triangles, e edges of a row, d deep; \
            O(n + width) memory",
-    limits: "one surface per pixel; blended surfaces count as opaque",
+    limits: "one sample per pixel",
 };
 
 /// What there is to see.
@@ -118,13 +120,20 @@ pub fn render(
         inside: Vec::new(),
         parts: Vec::new(),
     };
+    let mut layers = Layers::of(input);
     for y in 0..height as i32 {
         t.step(|| Step::Row { y });
         line.y = y;
         line.row.clear();
-        edges.replace(list.advance(y, |_| ()));
+        let active = list.advance(y, |_| ());
+        edges.replace(active);
         line.sweep(&edges, &mut picture.lit, t);
-        picture.write(0, y as u32, &line.row.item, &line.row.depth);
+        let Some(layers) = &mut layers else {
+            picture.write(0, y as u32, &line.row.item, &line.row.depth);
+            continue;
+        };
+        picture.write_planes(0, y as u32, &line.row.item, &line.row.depth);
+        layers.write(y, active, input, &line.masked, &mut picture);
     }
 }
 

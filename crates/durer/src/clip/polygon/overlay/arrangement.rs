@@ -59,6 +59,19 @@ pub struct Arrangement<'a, C> {
 impl<'a, C: Coord> Arrangement<'a, C> {
     /// Builds the graph; `step` gives the change of winding across a segment, right to left.
     pub fn new(noding: &'a Noding<C>, step: impl Fn(usize) -> Winding) -> Self {
+        Self::build(noding, step, |edge| edge.step != Winding::default())
+    }
+
+    /// Builds the graph of segments that bound nothing; it keeps them all.
+    pub fn of_lines(noding: &'a Noding<C>) -> Self {
+        Self::build(noding, |_| Winding::default(), |_| true)
+    }
+
+    fn build(
+        noding: &'a Noding<C>,
+        step: impl Fn(usize) -> Winding,
+        keeps: impl Fn(&Edge) -> bool,
+    ) -> Self {
         let nodes = &noding.nodes[..];
         let mut graph = Self {
             nodes,
@@ -68,7 +81,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
             ins: Vec::new(),
         };
         graph.collect(noding, step);
-        graph.merge();
+        graph.merge(keeps);
         graph.index_ins();
         graph
     }
@@ -113,8 +126,8 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         self.out_starts = starts;
     }
 
-    /// Makes one edge of all that coincide, and drops those that cancel.
-    fn merge(&mut self) {
+    /// Makes one edge of all that coincide, and drops those that are not to be kept: that cancel.
+    fn merge(&mut self, keeps: impl Fn(&Edge) -> bool) {
         let nodes = self.nodes;
         let mut kept = 0;
         for n in 0..nodes.len() {
@@ -135,7 +148,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
                     edge.step = edge.step.plus(self.edges[i].step);
                     i += 1;
                 }
-                if edge.step != Winding::default() {
+                if keeps(&edge) {
                     self.edges[kept] = edge;
                     kept += 1;
                 }

@@ -7,10 +7,10 @@
 //! these edges winding numbers decide, by connected parts, and the border of the result is cut into
 //! simple rings. All decisions are made with integers.
 
-mod arrangement;
-mod grid;
-mod lattice;
-mod noding;
+pub(crate) mod arrangement;
+pub(crate) mod grid;
+pub(crate) mod lattice;
+pub(crate) mod noding;
 mod parallel;
 mod rings;
 mod strips;
@@ -24,7 +24,7 @@ use crate::{Error, Result};
 use arrangement::{Arrangement, Search, Winding};
 use grid::{Block, Grid};
 use lattice::{Coord, Lattice, Segment};
-use noding::{Cause, Noding};
+use noding::{Cause, Ends, Noding};
 use rings::Rings;
 
 /// The facts.
@@ -307,7 +307,8 @@ impl Job<'_> {
         let segments: Vec<Segment<C>> = order.iter().map(|&i| segments[i as usize]).collect();
         let sources: Vec<Source> = order.iter().map(|&i| sources[i as usize]).collect();
         let grid = Grid::new(&segments, block, occupied);
-        let noding = noding::node(&segments, &grid, |i| sources[i as usize].reversed());
+        let ends = |i: u32| if sources[i as usize].reversed() { Ends::Second } else { Ends::First };
+        let noding = noding::node(&segments, &grid, ends);
         let mut graph = Arrangement::new(&noding, |i| sources[i].step());
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         match self.winder {

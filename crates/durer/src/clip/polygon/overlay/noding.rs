@@ -52,13 +52,24 @@ struct Workbench<C> {
     strips: Strips<C>,
 }
 
-/// Nodes all segments, the edges of closed rings; `reversed` tells which run against their edge.
+/// Which ends of a segment have to be made nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// The first: the second is the first of the next edge of its ring.
+    First,
+    /// The second: the segment runs against its edge of a ring.
+    Second,
+    /// Both: the segment belongs to no ring.
+    Both,
+}
+
+/// Nodes all segments; `ends` tells which ends of each no other segment accounts for.
 pub fn node<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
-    reversed: impl Fn(u32) -> bool + Sync + Send,
+    ends: impl Fn(u32) -> Ends + Sync + Send,
 ) -> Noding<C> {
-    let parts = work(segments, grid, reversed);
+    let parts = work(segments, grid, ends);
     let mut noding =
         Noding { nodes: Vec::new(), causes: Vec::new(), starts: Vec::new(), hits: Vec::new() };
     noding.nodes.reserve_exact(parts.iter().map(|p| p.nodes.len()).sum());
@@ -96,14 +107,14 @@ fn tasks(grid: &Grid) -> Vec<&[Leaf]> {
 fn work<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
-    reversed: impl Fn(u32) -> bool + Sync + Send,
+    ends: impl Fn(u32) -> Ends + Sync + Send,
 ) -> Vec<Part<C>> {
     let run = |leaves: &[Leaf]| {
         let mut part = Part { nodes: Vec::new(), causes: Vec::new(), hits: Vec::new() };
         let mut bench =
             Workbench { segments: Vec::new(), pixels: Vec::new(), strips: Strips::default() };
         for leaf in leaves {
-            bench.leaf(segments, grid.items(leaf), leaf, &reversed, &mut part);
+            bench.leaf(segments, grid.items(leaf), leaf, &ends, &mut part);
         }
         part
     };
@@ -116,7 +127,7 @@ impl<C: Coord> Workbench<C> {
         all: &[Segment<C>],
         items: &[u32],
         leaf: &Leaf,
-        reversed: &impl Fn(u32) -> bool,
+        ends: &impl Fn(u32) -> Ends,
         part: &mut Part<C>,
     ) {
         if items.is_empty() {
@@ -125,7 +136,7 @@ impl<C: Coord> Workbench<C> {
         self.segments.clear();
         self.segments.extend(items.iter().map(|&i| all[i as usize]));
         self.pixels.clear();
-        self.ends(items, leaf, reversed);
+        self.ends(items, leaf, ends);
         if items.len() > CROWD {
             self.strips.build(&self.segments, leaf.block.min.0, leaf.block.max.0);
             let pixels = &mut self.pixels;
@@ -148,12 +159,15 @@ impl<C: Coord> Workbench<C> {
         }
     }
 
-    /// Every point of a ring is the start of one edge, so only starts are looked at.
-    fn ends(&mut self, items: &[u32], leaf: &Leaf, reversed: &impl Fn(u32) -> bool) {
+    /// Every point of a ring is the start of one edge, so only starts are looked at there.
+    fn ends(&mut self, items: &[u32], leaf: &Leaf, ends: &impl Fn(u32) -> Ends) {
         for (s, &i) in self.segments.iter().zip(items) {
-            let (p, end) = if reversed(i) { (s.b, 2 * i + 1) } else { (s.a, 2 * i) };
-            if leaf.block.contains(p) {
-                self.pixels.push((p, Cause::End(end)));
+            let which = ends(i);
+            if which != Ends::Second && leaf.block.contains(s.a) {
+                self.pixels.push((s.a, Cause::End(2 * i)));
+            }
+            if which != Ends::First && leaf.block.contains(s.b) {
+                self.pixels.push((s.b, Cause::End(2 * i + 1)));
             }
         }
     }

@@ -10,8 +10,9 @@
 //! centres that both polygons cover, with the z-buffer's depths, and pieces of split polygons share
 //! out the centres of the whole. So the painted picture is that of the z-buffer, equal depths
 //! included. Where a plane does not separate cyclically overlapping polygons, an edge does. Blended
-//! surfaces count as opaque.
+//! surfaces are painted over what is behind them, which the order gives for nothing.
 
+mod glazed;
 mod piece;
 mod relation;
 mod tiles;
@@ -27,9 +28,13 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Cover, SampleGrid};
 use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::layers::any_blended;
 use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::ScreenTriangle;
-use crate::visibility::surface::visible::{Masks, Visible, pixels_of, with_lighting, write};
+use crate::visibility::surface::visible::{
+    Masks, Visible, pixels_of, with_lighting, write, write_planes,
+};
+use glazed::Glazed;
 use piece::{Key, Pieces};
 use relation::Verdict;
 use std::collections::BinaryHeap;
@@ -44,7 +49,7 @@ pub const INFO: Info = Info {
     source: "A Solution to the Hidden Surface Problem, ACM Annual Conference",
     class: Class::ListPriority,
     cost: "O(n log n + n · polygons near by and at like depths), O(n²) where all faces cross",
-    limits: "blended surfaces count as opaque",
+    limits: "one sample per pixel",
 };
 
 /// What the picture is to have.
@@ -183,13 +188,27 @@ pub fn render(
 ) {
     let polygons = order(input, t);
     with_lighting(input, lights, &options.look, |lighting| {
-        let visible = paint(input, &polygons, &mut Masks::new(input, lighting));
-        write(&visible, lighting, &options.look, framebuffer);
+        let masks = &mut Masks::new(input, lighting);
+        if any_blended(input) {
+            let mut glazed = Glazed::new(input, lighting, &options.look);
+            let visible =
+                paint(input, &polygons, masks, |at, item, depth| glazed.put(at, item, depth));
+            write_planes(&visible, lighting, &options.look, framebuffer);
+            glazed.write(framebuffer);
+        } else {
+            let visible = paint(input, &polygons, masks, |_, _, _| ());
+            write(&visible, lighting, &options.look, framebuffer);
+        }
     });
 }
 
-/// Paints polygons over each other.
-fn paint(input: &SurfaceInput<'_>, polygons: &[ScreenPolygon], masks: &mut Masks<'_>) -> Visible {
+/// Paints polygons over each other; `painted` hears of pixel, item and depth.
+fn paint(
+    input: &SurfaceInput<'_>,
+    polygons: &[ScreenPolygon],
+    masks: &mut Masks<'_>,
+    mut painted: impl FnMut([i32; 2], u32, f32),
+) -> Visible {
     let mut visible = Visible::new(pixels_of(input.view));
     for polygon in polygons {
         let index = polygon.triangle as usize;
@@ -199,6 +218,7 @@ fn paint(input: &SurfaceInput<'_>, polygons: &[ScreenPolygon], masks: &mut Masks
                 if masks.passes(index, triangle.item, x, y) {
                     let depth = SampleGrid::PIXELS.depth(triangle, x, y);
                     visible.put(x, y, depth, triangle.item);
+                    painted([x, y], triangle.item, depth);
                 }
             }
         });

@@ -1,0 +1,95 @@
+//! Files that are written beside the place where they shall be, so that at any moment there is the
+//! old file or the whole new one.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The files that are being written now, for whoever interrupts the process.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// The exit code of a process that was interrupted: 128 and the number of the signal SIGINT.
+const INTERRUPTED: i32 = 130;
+
+/// A new file in the folder of another one, which it replaces when it is whole. Dropped before that,
+/// it is removed.
+pub struct Beside {
+    file: File,
+    path: PathBuf,
+    place: PathBuf,
+    committed: bool,
+}
+
+impl Beside {
+    /// A file that shall replace `place`, or be there first; a link stays a link.
+    pub fn create(place: &Path) -> io::Result<Self> {
+        let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
+        if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
+            return Err(io::Error::other("the file is read-only"));
+        }
+        for attempt in 0u32.. {
+            let name = format!(".durer-{}-{attempt}.tmp", std::process::id());
+            let path = place.with_file_name(name);
+            let mut unfinished = unfinished();
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
+                Err(e) => return Err(e),
+                Ok(file) => {
+                    unfinished.insert(path.clone());
+                    return Ok(Self { file, path, place, committed: false });
+                }
+            }
+        }
+        Err(io::ErrorKind::AlreadyExists.into())
+    }
+
+    /// Puts the file in its place; permissions of the old one stay.
+    pub fn commit(mut self) -> io::Result<()> {
+        if let Ok(old) = fs::metadata(&self.place) {
+            self.file.set_permissions(old.permissions())?;
+        }
+        let mut unfinished = unfinished();
+        fs::rename(&self.path, &self.place)?;
+        unfinished.remove(&self.path);
+        self.committed = true;
+        Ok(())
+    }
+}
+
+impl Write for Beside {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Beside {
+    fn drop(&mut self) {
+        if !self.committed {
+            // What was written is of no use; one that cannot be removed stays.
+            let _ = fs::remove_file(&self.path);
+            unfinished().remove(&self.path);
+        }
+    }
+}
+
+fn unfinished() -> std::sync::MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// On Ctrl-C and termination: removes what is unfinished and ends the process.
+pub fn clean_up_when_interrupted() {
+    // Without a handler the process ends all the same, and may leave a file with a leading dot.
+    let _ = ctrlc::set_handler(|| {
+        let unfinished = unfinished();
+        for path in unfinished.iter() {
+            let _ = fs::remove_file(path);
+        }
+        std::process::exit(INTERRUPTED);
+    });
+}

@@ -1,0 +1,63 @@
+//! `--section`: models cut by planes.
+
+use crate::color;
+use crate::failure::Failure;
+use crate::messages::Messages;
+use crate::values;
+use clap::Args;
+use durer::math::{DVec3, Plane, Vec4};
+use durer::scene::Scene;
+use durer::view::section::{self, Options};
+
+/// The planes that models are cut by.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Section")]
+pub struct SectionArgs {
+    /// Cut the model by a plane: what lies where NX·x + NY·y + NZ·z + D > 0 stays
+    ///
+    /// In the model's own units and axes, as `durer info` tells its box. Given several times, what
+    /// lies on the right side of all planes stays. Bodies that were closed are closed again by a
+    /// cap; of open ones the inside is seen, and a warning says so. The view is fitted to what is
+    /// left. E.g. --section 0,0,1,-5 keeps what is above z = 5.
+    #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true, value_parser = plane)]
+    pub section: Vec<Plane>,
+    /// The colour of caps
+    #[arg(long, value_name = "COLOR", default_value = "#c83c32", value_parser = color::color, requires = "section")]
+    pub cap_color: Vec4,
+    /// Leave cut bodies open
+    #[arg(long, requires = "section")]
+    pub no_caps: bool,
+}
+
+fn plane(text: &str) -> Result<Plane, String> {
+    let parts: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
+    let wrong = "a plane is NX,NY,NZ,D, e.g. 0,0,1,-5, with a normal other than zero";
+    let &[x, y, z, distance] = &parts[..] else { return Err(wrong.to_owned()) };
+    let plane = Plane { normal: DVec3::new(x, y, z), distance };
+    plane.normalized().map(|_| plane).ok_or_else(|| wrong.to_owned())
+}
+
+/// Cuts a scene as asked for, and tells what is to be known about it; gives the material of the caps.
+pub fn apply(
+    args: &SectionArgs,
+    scene: &mut Scene,
+    name: &str,
+    messages: &Messages,
+) -> Result<Option<usize>, Failure> {
+    if args.section.is_empty() {
+        return Ok(None);
+    }
+    let options = Options { caps: !args.no_caps, cap_color: args.cap_color.truncate() };
+    let cut =
+        section::cut(scene, &args.section, &options).map_err(|e| Failure::Data(e.to_string()))?;
+    if cut.scene.triangle_count() == 0 && scene.triangle_count() > 0 {
+        messages.warning(name, "--section leaves nothing of the model");
+    }
+    if cut.open_cuts > 0 {
+        let count = cut.open_cuts;
+        messages.warning(name, format!("{count} cuts through open meshes have no cap"));
+    }
+    messages.detail(|| format!("{name}: caps of {} square units", cut.cap_area));
+    *scene = cut.scene;
+    Ok(Some(cut.cap_material))
+}

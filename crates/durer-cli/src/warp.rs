@@ -1,0 +1,198 @@
+//! `durer warp`.
+
+use crate::args::{Compression, RunningArgs};
+use crate::failure::Failure;
+use crate::messages::Messages;
+use crate::output::{self, Name};
+use crate::values::{self, Size};
+use crate::{color, input, report};
+use clap::{Args, ValueHint};
+use durer::math::DVec3;
+use durer::scene::{Camera, Projection};
+use durer::shade::color::encode_rgba8;
+use durer::target::Pixels;
+use durer::trace::NoTrace;
+use durer::view::warp::{self, Source, Warped};
+use durer_formats::{Limits, image, png};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// The help's examples.
+pub const EXAMPLES: &str = "\
+Examples:
+  durer render part.stl -o a.png --depth a_depth.png --eye 8,3,9 --target 0,0,0 --near 4 --far 20
+  durer warp a.png a_depth.png -o b.png --eye 8,3,9 --target 0,0,0 --fov 30 --near 4 --far 20 \\
+    --to-eye 8.5,3,8.6
+  `durer render --json` tells the camera of each picture. Holes are what the picture does not show;
+  --fill names a second picture that may.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer warp`.
+#[derive(Debug, Args)]
+pub struct WarpArgs {
+    /// A picture: PNG or JPEG
+    #[arg(value_name = "COLOR", value_hint = ValueHint::FilePath)]
+    pub color: PathBuf,
+    /// Its depths, as `durer render --depth` writes them
+    #[arg(value_name = "DEPTH", value_hint = ValueHint::FilePath)]
+    pub depth: PathBuf,
+    /// Where the new picture goes: a .png file, or `-` for standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub output: PathBuf,
+    /// Where the eye of the picture was
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
+    pub eye: DVec3,
+    /// What it looked at
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
+    pub target: DVec3,
+    /// What was up in the picture
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,1,0", value_parser = values::direction)]
+    pub up: DVec3,
+    /// Its vertical angle of view in degrees
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::angle_of_view, required_unless_present = "ortho", conflicts_with = "ortho")]
+    pub fov: Option<f64>,
+    /// For a parallel projection: the height of the view in world units
+    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = values::positive)]
+    pub ortho: Option<f64>,
+    /// Distance of the near plane, where depth is 0
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
+    pub near: f64,
+    /// Distance of the far plane, where depth is 1
+    #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
+    pub far: f64,
+    /// Where the new eye is
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
+    pub to_eye: DVec3,
+    /// What it looks at [default: as before]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector)]
+    pub to_target: Option<DVec3>,
+    /// What is up in the new picture [default: as before]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
+    pub to_up: Option<DVec3>,
+    /// Width and height of the new picture [default: as before]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = values::size)]
+    pub size: Option<Size>,
+    /// The colour of holes: what no picture shows
+    #[arg(long, value_name = "COLOR", default_value = "#ff00ff", value_parser = color::color)]
+    pub holes: durer::math::Vec4,
+    /// A second picture and its depths, which fill holes; same lens and planes
+    #[arg(long, num_args = 2, value_names = ["COLOR", "DEPTH"], value_hint = ValueHint::FilePath, requires = "fill_eye")]
+    pub fill: Vec<PathBuf>,
+    /// Where the eye of the second picture was
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
+    pub fill_eye: Option<DVec3>,
+    /// What it looked at [default: the same]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
+    pub fill_target: Option<DVec3>,
+    /// How small the PNG is to be: `fast` or `small`
+    #[arg(long, value_name = "HOW", default_value = "fast")]
+    pub compression: Compression,
+    /// Write a report on standard output, in JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    file: String,
+    width: u32,
+    height: u32,
+    /// Pixels that come from the second picture.
+    filled: u64,
+    /// Pixels that no picture shows.
+    holes: u64,
+}
+
+/// A picture in memory.
+struct Loaded {
+    color: Pixels<[u8; 4]>,
+    depth: Pixels<f32>,
+}
+
+/// Makes the new view and writes it.
+pub fn run(args: &WarpArgs) -> Result<(), Failure> {
+    let name = Name { stem: "warped".to_owned(), frame: None };
+    let targets =
+        output::plan("--output", &args.output, std::slice::from_ref(&name), output::Kind::Png)?;
+    let Some(target) = targets.first() else { return Ok(()) };
+    if args.json && *target == output::Target::Stdout {
+        let message = "--json: the report goes to standard output, where the picture goes too";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let messages = Messages::new(&args.running, 1);
+    let camera = camera(args);
+    check("--near, --far, --eye, --target, --up", &camera)?;
+    let (target_point, up) = (args.to_target.unwrap_or(args.target), args.to_up.unwrap_or(args.up));
+    let new = Camera { eye: args.to_eye, target: target_point, up, ..camera };
+    check("--to-eye, --to-target, --to-up", &new)?;
+    let first = load(&args.color, &args.depth)?;
+    let second = match &args.fill[..] {
+        [color, depth] => Some(load(color, depth)?),
+        _ => None,
+    };
+    let (width, height) = (first.color.width(), first.color.height());
+    let size = args.size.unwrap_or(Size { width, height });
+    let mut sources = vec![Source { color: &first.color, depth: &first.depth, camera }];
+    if let Some(second) = &second {
+        let eye = args.fill_eye.unwrap_or(args.eye);
+        let camera = Camera { eye, target: args.fill_target.unwrap_or(args.target), ..camera };
+        check("--fill-eye, --fill-target", &camera)?;
+        sources.push(Source { color: &second.color, depth: &second.depth, camera });
+    }
+    let options = warp::Options { hole: encode_rgba8(args.holes) };
+    let warped = warp::warp(&sources, &new, [size.width, size.height], &options, &mut NoTrace)
+        .map_err(|e| Failure::Data(format!("{}: {e}", args.depth.display())))?;
+    let compression = args.compression.into();
+    let colors = &warped.framebuffer.color;
+    output::deliver(target, |out| png::write_color(out, colors, compression))?;
+    tell(args, target, &warped, &messages)
+}
+
+fn tell(
+    args: &WarpArgs,
+    target: &output::Target,
+    warped: &Warped,
+    messages: &Messages,
+) -> Result<(), Failure> {
+    let filled = warped.source.data().iter().filter(|s| **s == 1).count() as u64;
+    let (width, height) = (warped.source.width(), warped.source.height());
+    let report = Report { file: target.to_string(), width, height, filled, holes: warped.holes };
+    messages.detail(|| {
+        format!("{}: {width}x{height}, {} holes, {filled} filled", report.file, report.holes)
+    });
+    if args.json { report::print(&report) } else { Ok(()) }
+}
+
+fn camera(args: &WarpArgs) -> Camera {
+    let projection = match args.ortho {
+        Some(height) => Projection::Orthographic { height },
+        None => Projection::Perspective { fov_y: args.fov.unwrap_or(30.0).to_radians() },
+    };
+    let WarpArgs { eye, target, up, near, far, .. } = *args;
+    Camera { eye, target, up, projection, near, far }
+}
+
+fn check(options: &str, camera: &Camera) -> Result<(), Failure> {
+    camera.check().map_err(|e| Failure::Usage(format!("{options}: {e}")))
+}
+
+fn load(color: &Path, depth: &Path) -> Result<Loaded, Failure> {
+    let limits = Limits::default();
+    let name = color.display().to_string();
+    let image = image::decode(&input::bytes(color, limits.decoded_bytes)?, &name, &limits)
+        .map_err(|e| Failure::of_file(color, e))?;
+    let colors = Pixels::from_data(image.width, image.height, image.data)
+        .map_err(|e| Failure::of_file(color, e))?;
+    let depths = png::read_depth(&input::bytes(depth, limits.decoded_bytes)?, &limits)
+        .map_err(|e| Failure::of_file(depth, e))?;
+    if (depths.width(), depths.height()) != (colors.width(), colors.height()) {
+        let sizes = [(depths.width(), depths.height()), (colors.width(), colors.height())];
+        let [d, c] = sizes.map(|(w, h)| format!("{w}x{h}"));
+        return Err(Failure::of_file(depth, format!("it is {d}; it must be {c}, as its picture")));
+    }
+    Ok(Loaded { color: colors, depth: depths })
+}

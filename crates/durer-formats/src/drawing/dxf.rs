@@ -1,0 +1,397 @@
+//! Sheets as DXF for CAD: AutoCAD 2004 (AC1018), the first version with colours beyond the palette;
+//! what reads DXF 2000 reads it.
+//!
+//! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the
+//! sheet is one with a colour, a line weight and a line type, CONTINUOUS or HIDDEN; strokes are
+//! LWPOLYLINE, text is TEXT, areas are HATCH with solid fill.
+//!
+//! Written from Autodesk's *DXF Reference* (2004).
+
+use super::number::push;
+use crate::Result;
+use durer::math::DVec2;
+use durer::target::drawing::Anchor;
+use durer::target::sheet::{Mark, Pen, Sheet};
+use std::io::Write;
+
+/// The line weights that the format has, in hundredths of a millimetre.
+const WEIGHTS: &[i64] = &[
+    0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200,
+    211,
+];
+
+/// Handles of objects that others refer to.
+const BLOCK_RECORDS: u32 = 0x1;
+const LAYERS: u32 = 0x2;
+const STYLES: u32 = 0x3;
+const LTYPES: u32 = 0x5;
+const VIEWS: u32 = 0x6;
+const UCSS: u32 = 0x7;
+const VPORTS: u32 = 0x8;
+const APPIDS: u32 = 0x9;
+const DIMSTYLES: u32 = 0xa;
+const ROOT: u32 = 0xc;
+const GROUPS: u32 = 0xd;
+const MODEL: u32 = 0x1f;
+const PAPER: u32 = 0x1b;
+/// From here on handles are given out in order.
+const FIRST: u32 = 0x30;
+
+/// Writes a sheet as an ASCII DXF file, encoded in the ANSI code page with `\U+XXXX` for what is not ASCII.
+///
+/// # Errors
+/// [`crate::Error::Io`] where writing fails.
+pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
+    let mut body = Tags { text: String::new(), next: FIRST };
+    tables(&mut body, sheet);
+    blocks(&mut body);
+    body.section("ENTITIES");
+    for layer in &sheet.layers {
+        let name = symbol(&layer.name);
+        for mark in &layer.marks {
+            entity(&mut body, sheet, &name, mark);
+        }
+    }
+    body.tag(0, "ENDSEC");
+    objects(&mut body);
+    body.tag(0, "EOF");
+    let mut head = Tags { text: String::new(), next: 0 };
+    header(&mut head, sheet, body.next);
+    out.write_all(head.text.as_bytes())?;
+    out.write_all(body.text.as_bytes())?;
+    Ok(())
+}
+
+/// Group codes and values, a line each.
+struct Tags {
+    text: String,
+    /// The next free handle.
+    next: u32,
+}
+
+impl Tags {
+    fn tag(&mut self, code: u16, value: &str) -> &mut Self {
+        self.text += &format!("{code:>3}\n{value}\n");
+        self
+    }
+
+    fn int(&mut self, code: u16, value: i64) -> &mut Self {
+        self.tag(code, &value.to_string())
+    }
+
+    fn handle(&mut self, code: u16, value: u32) -> &mut Self {
+        self.tag(code, &format!("{value:X}"))
+    }
+
+    /// A real number; micrometres are the last digits.
+    fn real(&mut self, code: u16, value: f64) -> &mut Self {
+        let mut text = String::new();
+        push(&mut text, value, 6);
+        // Readers want the zero before the point, and some the point.
+        let text = match (text.strip_prefix('.'), text.strip_prefix("-.")) {
+            (Some(rest), _) => format!("0.{rest}"),
+            (_, Some(rest)) => format!("-0.{rest}"),
+            _ if text.contains('.') => text,
+            _ => format!("{text}.0"),
+        };
+        self.tag(code, &text)
+    }
+
+    fn point(&mut self, code: u16, p: DVec2) -> &mut Self {
+        self.real(code, p.x).real(code + 10, p.y)
+    }
+
+    fn point3(&mut self, code: u16, p: DVec2) -> &mut Self {
+        self.point(code, p).real(code + 20, 0.0)
+    }
+
+    fn class(&mut self, name: &str) -> &mut Self {
+        self.tag(100, name)
+    }
+
+    fn section(&mut self, name: &str) -> &mut Self {
+        self.tag(0, "SECTION").tag(2, name)
+    }
+
+    fn fresh(&mut self) -> u32 {
+        self.next += 1;
+        self.next - 1
+    }
+
+    fn table(&mut self, name: &str, handle: u32, count: usize) -> &mut Self {
+        self.tag(0, "TABLE").tag(2, name).handle(5, handle).handle(330, 0);
+        self.class("AcDbSymbolTable").int(70, count as i64)
+    }
+
+    /// The common start of a table's entry.
+    fn record(&mut self, kind: &str, table: u32, class: &str) -> &mut Self {
+        let handle = self.fresh();
+        self.tag(0, kind).handle(5, handle).handle(330, table);
+        self.class("AcDbSymbolTableRecord").class(class)
+    }
+}
+
+fn header(tags: &mut Tags, sheet: &Sheet, seed: u32) {
+    tags.section("HEADER");
+    tags.tag(9, "$ACADVER").tag(1, "AC1018");
+    tags.tag(9, "$DWGCODEPAGE").tag(3, "ANSI_1252");
+    tags.tag(9, "$INSBASE").point3(10, DVec2::ZERO);
+    tags.tag(9, "$EXTMIN").point3(10, DVec2::ZERO);
+    tags.tag(9, "$EXTMAX").point3(10, sheet.size);
+    tags.tag(9, "$LIMMIN").point(10, DVec2::ZERO);
+    tags.tag(9, "$LIMMAX").point(10, sheet.size);
+    tags.tag(9, "$LTSCALE").real(40, 1.0);
+    // Line weights are shown; lengths are metric, in millimetres.
+    tags.tag(9, "$LWDISPLAY").int(290, 1);
+    tags.tag(9, "$INSUNITS").int(70, 4);
+    tags.tag(9, "$MEASUREMENT").int(70, 1);
+    tags.tag(9, "$HANDSEED").handle(5, seed);
+    tags.tag(0, "ENDSEC");
+    tags.section("CLASSES").tag(0, "ENDSEC");
+}
+
+fn tables(tags: &mut Tags, sheet: &Sheet) {
+    tags.section("TABLES");
+    viewport(tags, sheet);
+    line_types(tags, sheet);
+    layers(tags, sheet);
+    tags.table("STYLE", STYLES, 1);
+    tags.record("STYLE", STYLES, "AcDbTextStyleTableRecord").tag(2, "Standard").int(70, 0);
+    tags.real(40, 0.0)
+        .real(41, 1.0)
+        .real(50, 0.0)
+        .int(71, 0)
+        .real(42, 2.5)
+        .tag(3, "txt")
+        .tag(4, "");
+    tags.tag(0, "ENDTAB");
+    tags.table("VIEW", VIEWS, 0).tag(0, "ENDTAB");
+    tags.table("UCS", UCSS, 0).tag(0, "ENDTAB");
+    tags.table("APPID", APPIDS, 1);
+    tags.record("APPID", APPIDS, "AcDbRegAppTableRecord").tag(2, "ACAD").int(70, 0);
+    tags.tag(0, "ENDTAB");
+    tags.table("DIMSTYLE", DIMSTYLES, 1).class("AcDbDimStyleTable");
+    let handle = tags.fresh();
+    tags.tag(0, "DIMSTYLE").handle(105, handle).handle(330, DIMSTYLES);
+    tags.class("AcDbSymbolTableRecord").class("AcDbDimStyleTableRecord");
+    tags.tag(2, "Standard").int(70, 0).tag(0, "ENDTAB");
+    tags.table("BLOCK_RECORD", BLOCK_RECORDS, 2);
+    for (name, handle) in [("*Model_Space", MODEL), ("*Paper_Space", PAPER)] {
+        tags.tag(0, "BLOCK_RECORD").handle(5, handle).handle(330, BLOCK_RECORDS);
+        tags.class("AcDbSymbolTableRecord").class("AcDbBlockTableRecord");
+        tags.tag(2, name).handle(340, 0);
+    }
+    tags.tag(0, "ENDTAB").tag(0, "ENDSEC");
+}
+
+/// What is seen when the file is opened: all of the sheet.
+fn viewport(tags: &mut Tags, sheet: &Sheet) {
+    tags.table("VPORT", VPORTS, 1);
+    tags.record("VPORT", VPORTS, "AcDbViewportTableRecord").tag(2, "*Active").int(70, 0);
+    tags.point(10, DVec2::ZERO).point(11, DVec2::ONE).point(12, sheet.size * 0.5);
+    tags.point(13, DVec2::ZERO).point(14, DVec2::splat(10.0)).point(15, DVec2::splat(10.0));
+    tags.point(16, DVec2::ZERO).real(36, 1.0).point3(17, DVec2::ZERO);
+    tags.real(40, sheet.size.y.max(1.0))
+        .real(41, (sheet.size.x / sheet.size.y.max(1e-9)).max(1e-9));
+    tags.real(42, 50.0).real(43, 0.0).real(44, 0.0).real(50, 0.0).real(51, 0.0);
+    for code in 71..=78 {
+        // Circle zoom and fast zoom have their usual values, the rest is off.
+        tags.int(code, if code == 72 { 1000 } else { i64::from(code == 73) });
+    }
+    tags.tag(0, "ENDTAB");
+}
+
+/// The dashes of HIDDEN are those of the sheet's first dashed pen.
+fn line_types(tags: &mut Tags, sheet: &Sheet) {
+    let dashes = sheet.pens.iter().map(|p| &p.dashes).find(|d| !d.is_empty());
+    let hidden: &[f64] = dashes.map_or(&[3.0, 1.5], |d| d.as_slice());
+    let types: [(&str, &str, &[f64]); 4] = [
+        ("ByBlock", "", &[]),
+        ("ByLayer", "", &[]),
+        ("CONTINUOUS", "Solid line", &[]),
+        ("HIDDEN", "Hidden __ __ __ __ __ __ __ __ __ __", hidden),
+    ];
+    tags.table("LTYPE", LTYPES, types.len());
+    for (name, description, dashes) in types {
+        tags.record("LTYPE", LTYPES, "AcDbLinetypeTableRecord").tag(2, name).int(70, 0);
+        tags.tag(3, description).int(72, 65).int(73, dashes.len() as i64);
+        tags.real(40, dashes.iter().sum());
+        for (i, length) in dashes.iter().enumerate() {
+            tags.real(49, if i % 2 == 0 { *length } else { -length }).int(74, 0);
+        }
+    }
+    tags.tag(0, "ENDTAB");
+}
+
+fn layers(tags: &mut Tags, sheet: &Sheet) {
+    tags.table("LAYER", LAYERS, sheet.layers.len() + 1);
+    layer(tags, "0", None);
+    for l in &sheet.layers {
+        let pen = l.marks.iter().find_map(|m| match m {
+            Mark::Stroke { pen, .. } | Mark::Text { pen, .. } => sheet.pens.get(*pen),
+            Mark::Fill { .. } => None,
+        });
+        layer(tags, &symbol(&l.name), pen);
+    }
+    tags.tag(0, "ENDTAB");
+}
+
+fn layer(tags: &mut Tags, name: &str, pen: Option<&Pen>) {
+    tags.record("LAYER", LAYERS, "AcDbLayerTableRecord").tag(2, name).int(70, 0);
+    let color = pen.map_or([0, 0, 0, 255], |p| p.color);
+    tags.int(62, palette(color));
+    true_color(tags, color);
+    tags.tag(6, line_type(pen)).int(370, pen.map_or(-3, weight));
+    // The plot style "Normal", which files without named plot styles do not have.
+    tags.handle(390, 0);
+}
+
+fn line_type(pen: Option<&Pen>) -> &'static str {
+    if pen.is_some_and(|p| !p.dashes.is_empty()) { "HIDDEN" } else { "CONTINUOUS" }
+}
+
+/// The nearest line weight of the format.
+fn weight(pen: &Pen) -> i64 {
+    let wanted = (pen.width * 100.0).round() as i64;
+    WEIGHTS.iter().copied().min_by_key(|w| (w - wanted).abs()).unwrap_or(25)
+}
+
+/// The nearest of the palette's first colours and greys; 7 is black on white and white on black.
+fn palette([r, g, b, _]: [u8; 4]) -> i64 {
+    const COLORS: [([u8; 3], i64); 12] = [
+        ([0, 0, 0], 7),
+        ([255, 0, 0], 1),
+        ([255, 255, 0], 2),
+        ([0, 255, 0], 3),
+        ([0, 255, 255], 4),
+        ([0, 0, 255], 5),
+        ([255, 0, 255], 6),
+        ([128, 128, 128], 8),
+        ([51, 51, 51], 250),
+        ([173, 173, 173], 253),
+        ([214, 214, 214], 254),
+        ([255, 255, 255], 255),
+    ];
+    let apart = |c: &[u8; 3]| -> i64 {
+        c.iter().zip([r, g, b]).map(|(a, b)| (i64::from(*a) - i64::from(b)).pow(2)).sum()
+    };
+    COLORS.iter().min_by_key(|(c, _)| apart(c)).map_or(7, |(_, index)| *index)
+}
+
+/// The exact colour, where it is not black: that follows the background.
+fn true_color(tags: &mut Tags, [r, g, b, _]: [u8; 4]) {
+    if [r, g, b] != [0; 3] {
+        tags.int(420, (i64::from(r) << 16) | (i64::from(g) << 8) | i64::from(b));
+    }
+}
+
+fn blocks(tags: &mut Tags) {
+    tags.section("BLOCKS");
+    for (name, record) in [("*Model_Space", MODEL), ("*Paper_Space", PAPER)] {
+        let (start, end) = (tags.fresh(), tags.fresh());
+        let begin = |tags: &mut Tags, kind: &str, handle: u32| {
+            tags.tag(0, kind).handle(5, handle).handle(330, record).class("AcDbEntity");
+            if record == PAPER {
+                tags.int(67, 1);
+            }
+            tags.tag(8, "0");
+        };
+        begin(tags, "BLOCK", start);
+        tags.class("AcDbBlockBegin").tag(2, name).int(70, 0).point3(10, DVec2::ZERO);
+        tags.tag(3, name).tag(1, "");
+        begin(tags, "ENDBLK", end);
+        tags.class("AcDbBlockEnd");
+    }
+    tags.tag(0, "ENDSEC");
+}
+
+fn objects(tags: &mut Tags) {
+    tags.section("OBJECTS");
+    tags.tag(0, "DICTIONARY").handle(5, ROOT).handle(330, 0).class("AcDbDictionary").int(281, 1);
+    tags.tag(3, "ACAD_GROUP").handle(350, GROUPS);
+    tags.tag(0, "DICTIONARY").handle(5, GROUPS).handle(330, ROOT);
+    tags.class("AcDbDictionary").int(281, 1).tag(0, "ENDSEC");
+}
+
+fn entity(tags: &mut Tags, sheet: &Sheet, layer: &str, mark: &Mark) {
+    let place = |p: &DVec2| DVec2::new(p.x, sheet.size.y - p.y);
+    match mark {
+        Mark::Stroke { points, closed, pen } => {
+            let points: Vec<DVec2> = points.iter().map(place).collect();
+            begin(tags, "LWPOLYLINE", layer, sheet.pens.get(*pen));
+            tags.class("AcDbPolyline").int(90, points.len() as i64);
+            // 128: the line type runs on over corners.
+            tags.int(70, if *closed { 129 } else { 128 }).real(43, 0.0);
+            points.iter().for_each(|p| {
+                tags.point(10, *p);
+            });
+        }
+        Mark::Text { at, text, height, anchor, pen } => {
+            begin(tags, "TEXT", layer, sheet.pens.get(*pen));
+            let at = place(at);
+            tags.class("AcDbText").point3(10, at).real(40, *height).tag(1, &string(text));
+            let alignment = match anchor {
+                Anchor::Start => 0,
+                Anchor::Middle => 1,
+                Anchor::End => 2,
+            };
+            if alignment != 0 {
+                tags.int(72, alignment).point3(11, at);
+            }
+            tags.class("AcDbText");
+        }
+        Mark::Fill { rings, color } => {
+            begin(tags, "HATCH", layer, None);
+            tags.int(62, palette(*color));
+            true_color(tags, *color);
+            hatch(tags, rings, place);
+        }
+    }
+}
+
+/// The common start of an entity. Colour and weight are the layer's; they stand here where a layer
+/// may have marks of several pens.
+fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
+    let handle = tags.fresh();
+    tags.tag(0, kind).handle(5, handle).handle(330, MODEL).class("AcDbEntity").tag(8, layer);
+    if let Some(pen) = pen {
+        tags.int(370, weight(pen));
+    }
+}
+
+/// A solid fill between rings.
+fn hatch(tags: &mut Tags, rings: &[Vec<DVec2>], place: impl Fn(&DVec2) -> DVec2) {
+    tags.class("AcDbHatch").point3(10, DVec2::ZERO).real(210, 0.0).real(220, 0.0).real(230, 1.0);
+    // Solid, not bound to other entities; paths are polylines, areas alternate from ring to ring.
+    tags.tag(2, "SOLID").int(70, 1).int(71, 0).int(91, rings.len() as i64);
+    for ring in rings {
+        tags.int(92, 3).int(72, 0).int(73, 1).int(93, ring.len() as i64);
+        ring.iter().for_each(|p| {
+            tags.point(10, place(p));
+        });
+        tags.int(97, 0);
+    }
+    tags.int(75, 0).int(76, 1).int(98, 0);
+}
+
+/// A name of a table's entry: the format forbids a few characters.
+fn symbol(name: &str) -> String {
+    string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
+}
+
+/// Text on one line; `^` and what is not ASCII are written as the format escapes them.
+fn string(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '°' => out += "%%d",
+            '±' => out += "%%p",
+            'Ø' | '⌀' => out += "%%c",
+            '^' => out += "^ ",
+            c if c.is_control() => out.push(' '),
+            c if c.is_ascii() => out.push(c),
+            c => c.encode_utf16(&mut [0; 2]).iter().for_each(|u| out += &format!("\\U+{u:04X}")),
+        }
+    }
+    out
+}

@@ -1,0 +1,250 @@
+//! Sheets as PDF: one page of vectors, a layer ("optional content group") for each of the sheet's.
+
+use super::number::{push, short};
+use crate::Result;
+use durer::math::DVec2;
+use durer::paper::{dashes, text_strokes};
+use durer::target::sheet::{Mark, Pen, Sheet};
+use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
+use std::collections::BTreeSet;
+use std::io::Write;
+
+/// PDF's unit: points per millimetre.
+const POINTS: f64 = 72.0 / 25.4;
+/// The longest side that viewers show, in points; larger sheets get a larger unit.
+const LONGEST: f64 = 14_400.0;
+/// Digits after the point of a millimetre.
+const DIGITS: usize = 3;
+/// The compressor's level: zlib's default.
+const LEVEL: u8 = 6;
+
+/// The document's objects, by number.
+const CATALOG: i32 = 1;
+const PAGES: i32 = 2;
+const PAGE: i32 = 3;
+const CONTENT: i32 = 4;
+const INFO: i32 = 5;
+const FIRST_LAYER: i32 = 6;
+
+/// Writes a sheet as a PDF 1.5 document of one page of the sheet's size, without dates.
+///
+/// Text is drawn by the single-stroke font; its words are with it, to be copied and searched.
+///
+/// # Errors
+/// [`crate::Error::Io`] where writing fails.
+pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
+    let longest = sheet.size.max_element() * POINTS;
+    let user_unit = (longest / LONGEST).ceil().max(1.0);
+    let scale = POINTS / user_unit;
+    let mut alphas = BTreeSet::new();
+    let content = content(sheet, scale, &mut alphas);
+    let content = miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), LEVEL);
+    let mut pdf = Pdf::new();
+    pdf.set_version(1, 5);
+    let layers: Vec<Ref> =
+        (0i32..).take(sheet.layers.len()).map(|i| Ref::new(FIRST_LAYER + i)).collect();
+    catalog(&mut pdf, &layers);
+    pdf.pages(Ref::new(PAGES)).kids([Ref::new(PAGE)]).count(1);
+    page(&mut pdf, sheet, scale, user_unit, &layers, &alphas);
+    pdf.stream(Ref::new(CONTENT), &content).filter(Filter::FlateDecode);
+    let mut info = pdf.document_info(Ref::new(INFO));
+    if !sheet.title.is_empty() {
+        info.title(TextStr(&sheet.title));
+    }
+    info.producer(TextStr("durer"));
+    info.finish();
+    for (layer, id) in sheet.layers.iter().zip(&layers) {
+        let mut group = pdf.indirect(*id).dict();
+        group.pair(Name(b"Type"), Name(b"OCG"));
+        group.pair(Name(b"Name"), TextStr(&layer.name));
+    }
+    out.write_all(&pdf.finish())?;
+    Ok(())
+}
+
+fn catalog(pdf: &mut Pdf, layers: &[Ref]) {
+    let mut catalog = pdf.catalog(Ref::new(CATALOG));
+    catalog.pages(Ref::new(PAGES));
+    if layers.is_empty() {
+        return;
+    }
+    let mut properties = catalog.insert(Name(b"OCProperties")).dict();
+    properties.insert(Name(b"OCGs")).array().items(layers.iter().copied());
+    let mut default = properties.insert(Name(b"D")).dict();
+    default.insert(Name(b"ON")).array().items(layers.iter().copied());
+    // Viewers list the topmost first.
+    default.insert(Name(b"Order")).array().items(layers.iter().rev().copied());
+}
+
+fn page(
+    pdf: &mut Pdf,
+    sheet: &Sheet,
+    scale: f64,
+    user_unit: f64,
+    layers: &[Ref],
+    alphas: &BTreeSet<u8>,
+) {
+    let [width, height] = [sheet.size.x, sheet.size.y].map(|side| (side * scale) as f32);
+    let mut page = pdf.page(Ref::new(PAGE));
+    page.media_box(Rect::new(0.0, 0.0, width, height)).parent(Ref::new(PAGES));
+    page.contents(Ref::new(CONTENT));
+    if user_unit > 1.0 {
+        page.user_unit(user_unit as f32);
+    }
+    let mut resources = page.resources();
+    let mut properties = resources.insert(Name(b"Properties")).dict();
+    for (i, id) in layers.iter().enumerate() {
+        properties.pair(Name(format!("L{i}").as_bytes()), *id);
+    }
+    properties.finish();
+    let mut states = resources.ext_g_states();
+    for alpha in alphas {
+        let mut state = states.insert(Name(format!("A{alpha}").as_bytes())).dict();
+        let value = f32::from(*alpha) / 255.0;
+        state.pair(Name(b"CA"), value).pair(Name(b"ca"), value);
+    }
+}
+
+/// What is in force, so that only changes are written.
+#[derive(Default, PartialEq)]
+struct State {
+    alpha: Option<u8>,
+    fill: Option<[u8; 3]>,
+    stroke: Option<[u8; 3]>,
+    width: Option<f64>,
+    dashed: bool,
+}
+
+/// The page's operators; collects the opacities used.
+fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>) -> String {
+    let mut text = String::new();
+    // Millimetres, y down.
+    let [k, height] = [scale, sheet.size.y * scale].map(|v| short(v, 6));
+    text += &format!("{k} 0 0 -{k} 0 {height} cm 1 J 1 j\n");
+    let mut state = State::default();
+    if let Some(color) = sheet.background {
+        set_fill(&mut text, &mut state, color, alphas);
+        text +=
+            &format!("0 0 {} {} re f\n", short(sheet.size.x, DIGITS), short(sheet.size.y, DIGITS));
+    }
+    for (i, layer) in sheet.layers.iter().enumerate() {
+        text += &format!("/OC /L{i} BDC\n");
+        for mark in &layer.marks {
+            put(&mut text, &mut state, sheet, mark, alphas);
+        }
+        text += "EMC\n";
+    }
+    text
+}
+
+fn put(
+    text: &mut String,
+    state: &mut State,
+    sheet: &Sheet,
+    mark: &Mark,
+    alphas: &mut BTreeSet<u8>,
+) {
+    match mark {
+        Mark::Fill { rings, color } => {
+            set_fill(text, state, *color, alphas);
+            rings.iter().for_each(|ring| path(text, ring, true));
+            *text += "f\n";
+        }
+        Mark::Stroke { points, closed, pen } => {
+            let Some(pen) = sheet.pens.get(*pen) else { return };
+            set_pen(text, state, pen, alphas);
+            let length = dashes::length(points, *closed);
+            set_dashes(text, state, dashes::fitted(&pen.dashes, length, *closed));
+            path(text, points, *closed);
+            *text += "S\n";
+        }
+        Mark::Text { at, text: words, height, anchor, pen } => {
+            let Some(pen) = sheet.pens.get(*pen) else { return };
+            set_pen(text, state, pen, alphas);
+            set_dashes(text, state, None);
+            *text += "/Span <</ActualText <FEFF";
+            for unit in words.encode_utf16() {
+                *text += &format!("{unit:04X}");
+            }
+            *text += ">>> BDC\n";
+            let strokes = text_strokes(*at, words, *height, *anchor);
+            strokes.iter().for_each(|stroke| path(text, stroke, false));
+            if !strokes.is_empty() {
+                *text += "S ";
+            }
+            *text += "EMC\n";
+        }
+    }
+}
+
+fn set_alpha(text: &mut String, state: &mut State, alpha: u8, alphas: &mut BTreeSet<u8>) {
+    // Opaque is what a page begins with.
+    if state.alpha.unwrap_or(255) != alpha {
+        *text += &format!("/A{alpha} gs\n");
+        alphas.insert(alpha);
+        state.alpha = Some(alpha);
+    }
+}
+
+fn set_fill(
+    text: &mut String,
+    state: &mut State,
+    [r, g, b, a]: [u8; 4],
+    alphas: &mut BTreeSet<u8>,
+) {
+    set_alpha(text, state, a, alphas);
+    if state.fill != Some([r, g, b]) {
+        color(text, [r, g, b], "rg");
+        state.fill = Some([r, g, b]);
+    }
+}
+
+fn set_pen(text: &mut String, state: &mut State, pen: &Pen, alphas: &mut BTreeSet<u8>) {
+    let [r, g, b, a] = pen.color;
+    set_alpha(text, state, a, alphas);
+    if state.stroke != Some([r, g, b]) {
+        color(text, [r, g, b], "RG");
+        state.stroke = Some([r, g, b]);
+    }
+    if state.width != Some(pen.width) {
+        push(text, pen.width, DIGITS);
+        *text += " w\n";
+        state.width = Some(pen.width);
+    }
+}
+
+fn set_dashes(text: &mut String, state: &mut State, dashes: Option<Vec<f64>>) {
+    match dashes {
+        Some(dashes) => {
+            let list: Vec<String> = dashes.iter().map(|d| short(*d, DIGITS + 1)).collect();
+            *text += &format!("[{}] 0 d\n", list.join(" "));
+            state.dashed = true;
+        }
+        None if state.dashed => {
+            *text += "[] 0 d\n";
+            state.dashed = false;
+        }
+        None => {}
+    }
+}
+
+fn color(text: &mut String, rgb: [u8; 3], operator: &str) {
+    for channel in rgb {
+        push(text, f64::from(channel) / 255.0, 4);
+        text.push(' ');
+    }
+    *text += operator;
+    text.push('\n');
+}
+
+fn path(text: &mut String, points: &[DVec2], closed: bool) {
+    for (i, p) in points.iter().enumerate() {
+        push(text, p.x, DIGITS);
+        text.push(' ');
+        push(text, p.y, DIGITS);
+        *text += if i == 0 { " m\n" } else { " l\n" };
+    }
+    if closed && !points.is_empty() {
+        *text += "h\n";
+    }
+}

@@ -1,0 +1,213 @@
+//! Sheets as SVG: millimetres, one group per layer that Inkscape and its kin show as a layer, one
+//! element per stroke, short numbers.
+
+use super::number::{push, short};
+use crate::Result;
+use durer::math::DVec2;
+use durer::paper::{dashes, text_strokes};
+use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use std::io::Write;
+
+/// Digits after the point of a millimetre: a micrometre is far below what any plotter resolves.
+const DIGITS: usize = 3;
+
+/// Writes a sheet as an SVG document of the sheet's size.
+///
+/// Layers become groups with `inkscape:groupmode="layer"` and their names as labels and ids. Text is
+/// drawn by the single-stroke font, so that it looks the same everywhere; `aria-label` has its words.
+///
+/// # Errors
+/// [`crate::Error::Io`] where writing fails.
+pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
+    let mut text = String::new();
+    let [width, height] = [sheet.size.x, sheet.size.y].map(|v| short(v, DIGITS));
+    text.push_str(concat!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" ",
+        "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"\n ",
+    ));
+    text +=
+        &format!("width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n");
+    if !sheet.title.is_empty() {
+        text += &format!("<title>{}</title>\n", escaped(&sheet.title));
+    }
+    if let Some(color) = sheet.background {
+        text += &format!("<rect width=\"{width}\" height=\"{height}\"{}/>\n", paint("fill", color));
+    }
+    out.write_all(text.as_bytes())?;
+    for layer in &sheet.layers {
+        write_layer(out, sheet, layer)?;
+    }
+    out.write_all(b"</svg>\n")?;
+    Ok(())
+}
+
+/// A layer; the pen of its first stroke is the group's style, so that most strokes need none.
+fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Result<()> {
+    let name = escaped(&layer.name);
+    let mut text = format!(
+        "<g id=\"{}\" inkscape:groupmode=\"layer\" inkscape:label=\"{name}\"",
+        identifier(&layer.name)
+    );
+    let pen_of = |m: &Mark| match m {
+        Mark::Stroke { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
+        Mark::Fill { .. } => None,
+    };
+    let common = layer.marks.iter().find_map(pen_of);
+    if let Some(pen) = common.and_then(|p| sheet.pens.get(p)) {
+        text += " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
+        text += &stroke_style(pen);
+    }
+    text += ">\n";
+    out.write_all(text.as_bytes())?;
+    for mark in &layer.marks {
+        let mut text = String::new();
+        write_mark(&mut text, sheet, mark, common);
+        out.write_all(text.as_bytes())?;
+    }
+    out.write_all(b"</g>\n")?;
+    Ok(())
+}
+
+fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usize>) {
+    let own_pen = |pen: usize| match sheet.pens.get(pen) {
+        Some(style) if common != Some(pen) => stroke_style(style),
+        _ => String::new(),
+    };
+    match mark {
+        Mark::Stroke { points, closed, pen } => {
+            *text += "<path";
+            *text += &own_pen(*pen);
+            *text += &dash_array(sheet.pens.get(*pen), points, *closed);
+            *text += " d=\"";
+            path(text, points, *closed);
+            *text += "\"/>\n";
+        }
+        Mark::Fill { rings, color } => {
+            // Without a group's pen there is no stroke to be turned off.
+            let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
+            *text += &format!("<path{}{no_stroke} d=\"", paint("fill", *color));
+            rings.iter().for_each(|ring| path(text, ring, true));
+            *text += "\"/>\n";
+        }
+        Mark::Text { at, text: words, height, anchor, pen } => {
+            let label = escaped(words);
+            *text += &format!("<path aria-label=\"{label}\"{} d=\"", own_pen(*pen));
+            for stroke in text_strokes(*at, words, *height, *anchor) {
+                path(text, &stroke, false);
+            }
+            *text += "\"/>\n";
+        }
+    }
+}
+
+fn stroke_style(pen: &Pen) -> String {
+    format!("{} stroke-width=\"{}\"", paint("stroke", pen.color), short(pen.width, DIGITS))
+}
+
+/// The dashes of one stroke, made to fit it.
+fn dash_array(pen: Option<&Pen>, points: &[DVec2], closed: bool) -> String {
+    let length = dashes::length(points, closed);
+    match pen.and_then(|pen| dashes::fitted(&pen.dashes, length, closed)) {
+        Some(dashes) => {
+            // One digit more: errors add up along the stroke.
+            let list: Vec<String> = dashes.iter().map(|d| short(*d, DIGITS + 1)).collect();
+            format!(" stroke-dasharray=\"{}\"", list.join(" "))
+        }
+        None => String::new(),
+    }
+}
+
+/// A colour attribute, and the opacity where it is not opaque.
+fn paint(name: &str, [r, g, b, a]: [u8; 4]) -> String {
+    let color = match [r, g, b].map(|c| (c >> 4, c & 15)) {
+        [(r, s), (g, t), (b, u)] if r == s && g == t && b == u => format!("#{r:x}{g:x}{b:x}"),
+        _ => format!("#{r:02x}{g:02x}{b:02x}"),
+    };
+    if a == 255 {
+        return format!(" {name}=\"{color}\"");
+    }
+    format!(" {name}=\"{color}\" {name}-opacity=\"{}\"", short(f64::from(a) / 255.0, 3))
+}
+
+/// Appends path data: differences to the last point, which are shorter than places. They are between
+/// rounded places, so that errors do not add up.
+fn path(text: &mut String, points: &[DVec2], closed: bool) {
+    let rounded = |p: DVec2| (p * 1000.0).round();
+    let Some((first, rest)) = points.split_first() else { return };
+    let mut last = rounded(*first);
+    text.push('M');
+    pair(text, last);
+    let mut drawn = false;
+    for point in rest.iter().map(|p| rounded(*p)) {
+        let step = point - last;
+        if step == DVec2::ZERO {
+            continue;
+        }
+        match (step.x == 0.0, step.y == 0.0, drawn) {
+            (_, true, _) => {
+                text.push('h');
+                push(text, step.x / 1000.0, DIGITS);
+                drawn = false;
+            }
+            (true, ..) => {
+                text.push('v');
+                push(text, step.y / 1000.0, DIGITS);
+                drawn = false;
+            }
+            _ => {
+                if drawn {
+                    separator(text, step.x);
+                } else {
+                    text.push('l');
+                }
+                pair(text, step);
+                drawn = true;
+            }
+        }
+        last = point;
+    }
+    if closed {
+        text.push('z');
+    } else if last == rounded(*first) && points.len() < 3 {
+        // A stroke shorter than the last digit still is a dot.
+        text.push_str("h0");
+    }
+}
+
+/// Two coordinates given in micrometres.
+fn pair(text: &mut String, p: DVec2) {
+    push(text, p.x / 1000.0, DIGITS);
+    separator(text, p.y);
+    push(text, p.y / 1000.0, DIGITS);
+}
+
+/// A blank, unless the sign of the next number parts it from the last.
+fn separator(text: &mut String, next: f64) {
+    if next >= 0.0 {
+        text.push(' ');
+    }
+}
+
+/// Text within an attribute or element; characters that XML forbids are left out.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\u{fffe}' | '\u{ffff}' => {}
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// A name as an identifier of XML.
+fn identifier(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let name: String = name.chars().map(plain).collect();
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("layer-{name}") }
+}

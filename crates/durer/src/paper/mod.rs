@@ -1,0 +1,385 @@
+//! From the plane of a picture to paper: page, scale, pens, line types, layers.
+//!
+//! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`third_angle`] four views of a thing with a title
+//! block; [`paint`] makes pixels of a sheet. Writers of files take sheets.
+
+pub mod dashes;
+pub mod order;
+mod page;
+mod paint;
+mod pens;
+mod third_angle;
+mod title_block;
+
+pub use page::{Page, Scale, scale_text, standard_scale};
+pub use paint::paint;
+pub use pens::Pens;
+pub use third_angle::{Views, third_angle};
+pub use title_block::TitleBlock;
+
+use crate::curve::stroke_font;
+use crate::math::{DVec2, Rect};
+use crate::target::drawing::{Anchor, Drawing, Line, LineClass};
+use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use crate::{Error, Result};
+
+/// What becomes of hidden lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Hidden {
+    /// They are left out.
+    #[default]
+    Drop,
+    /// They are drawn dashed, in layers `hidden-CLASS`.
+    Dashed,
+    /// They are drawn thin and grey, in layers `hidden-N-CLASS` by the number N of surfaces in front
+    /// of them; the last, N = [`DEEPEST`], has all that lie behind as many or more.
+    Layer,
+}
+
+/// Hidden lines behind more surfaces than this share a layer.
+pub const DEEPEST: u32 = 9;
+
+/// What is to be seen on the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Frame {
+    /// All of the drawing, and no more.
+    #[default]
+    Content,
+    /// The drawing's window, where it has one: what the camera sees.
+    Window,
+}
+
+/// How a drawing is laid onto paper.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// The paper.
+    pub page: Page,
+    /// How much of the paper is left free at each side, millimetres.
+    pub margin: f64,
+    /// How large things are.
+    pub scale: Scale,
+    /// Millimetres per unit of the model.
+    pub unit: f64,
+    /// What is to be seen.
+    pub frame: Frame,
+    /// What becomes of hidden lines.
+    pub hidden: Hidden,
+    /// Which pen draws what.
+    pub pens: Pens,
+    /// What the paper is filled with.
+    pub background: Option<[u8; 4]>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            page: Page::Fit,
+            margin: 5.0,
+            scale: Scale::Fit,
+            unit: 1.0,
+            frame: Frame::Content,
+            hidden: Hidden::Drop,
+            pens: Pens::default(),
+            background: None,
+        }
+    }
+}
+
+/// The longer side of a drawing for which neither page nor scale is given, millimetres: it fits the
+/// width of A4 with its margins.
+const FITTED_SIDE: f64 = 180.0;
+
+/// The largest sheet, in millimetres.
+const LARGEST: f64 = 1e6;
+
+impl Options {
+    /// # Errors
+    /// [`Error::Parameter`] for a margin below 0, or a unit or scale that is not above 0.
+    pub fn check(&self) -> Result<()> {
+        if !(self.margin >= 0.0 && self.margin <= LARGEST) {
+            return Err(Error::parameter("margin", self.margin, "at least 0 mm"));
+        }
+        if !(self.unit > 0.0 && self.unit.is_finite()) {
+            return Err(Error::parameter("unit", self.unit, "a length above 0 mm"));
+        }
+        match self.scale {
+            Scale::Given(s) if !(s > 0.0 && s.is_finite()) => {
+                Err(Error::parameter("scale", s, "finite and above 0"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The page and the scale (paper over truth) for something of a size in model units, where `taken`
+    /// millimetres of the page are not to be had.
+    fn page_and_scale(&self, size: DVec2, taken: DVec2) -> Result<(DVec2, f64)> {
+        let size = size * self.unit;
+        match self.page {
+            Page::Fit => {
+                let scale = match self.scale {
+                    Scale::Given(scale) => scale,
+                    Scale::Fit => largest_scale(size, DVec2::splat(FITTED_SIDE)),
+                    Scale::Standard => {
+                        standard_scale(largest_scale(size, DVec2::splat(FITTED_SIDE)))
+                    }
+                };
+                let page = size * scale + taken;
+                if page.max_element() > LARGEST {
+                    let value = format!("{:.0} × {:.0} mm", page.x, page.y);
+                    return Err(Error::parameter("the sheet", value, "at most 1000 m long"));
+                }
+                Ok((page, scale))
+            }
+            Page::Exact(page) => self.scale_on(page, size, taken).map(|scale| (page, scale)),
+            Page::Either(page) => {
+                let turned = DVec2::new(page.y, page.x);
+                let wide = size.x > size.y;
+                let (first, second) = if wide { (turned, page) } else { (page, turned) };
+                match (self.scale_on(first, size, taken), self.scale_on(second, size, taken)) {
+                    (Ok(a), Ok(b)) if b > a => Ok((second, b)),
+                    (Err(_), Ok(b)) => Ok((second, b)),
+                    (a, _) => a.map(|a| (first, a)),
+                }
+            }
+        }
+    }
+
+    /// The scale for something of a true size in millimetres on a page.
+    fn scale_on(&self, page: DVec2, size: DVec2, taken: DVec2) -> Result<f64> {
+        let room = page - taken;
+        if room.min_element() < 1.0 {
+            let value = format!("{} × {} mm", page.x, page.y);
+            return Err(Error::parameter("page", value, "larger than its margins"));
+        }
+        let largest = largest_scale(size, room);
+        match self.scale {
+            Scale::Fit => Ok(largest),
+            Scale::Standard => Ok(standard_scale(largest)),
+            Scale::Given(scale) if scale <= largest * (1.0 + 1e-9) => Ok(scale),
+            Scale::Given(scale) => {
+                let value = format!(
+                    "{}, and the page has room for {} ({})",
+                    scale_text(scale),
+                    scale_text(largest),
+                    scale_text(standard_scale(largest))
+                );
+                Err(Error::parameter("scale", value, "small enough for the page, or `auto`"))
+            }
+        }
+    }
+}
+
+/// The largest scale at which `size` has room.
+fn largest_scale(size: DVec2, room: DVec2) -> f64 {
+    let ratio = |room: f64, size: f64| if size > 0.0 { room / size } else { f64::INFINITY };
+    let scale = ratio(room.x, size.x).min(ratio(room.y, size.y));
+    if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
+}
+
+/// A drawing on paper.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LaidOut {
+    /// The paper.
+    pub sheet: Sheet,
+    /// Length on paper over true length.
+    pub scale: f64,
+}
+
+/// Lays a drawing onto a sheet, in its middle.
+///
+/// Layers, the lowest first: `regions`, `hidden-…`, `visible-CLASS` with silhouettes on top, `text`;
+/// empty ones are left out.
+///
+/// ```
+/// use durer::math::DVec2;
+/// use durer::paper::{Options, lay_out};
+/// use durer::target::drawing::{Drawing, Line, LineClass};
+/// let points = vec![DVec2::ZERO, DVec2::new(40.0, 0.0), DVec2::new(40.0, 20.0)];
+/// let line = Line { class: LineClass::Crease, invisibility: 0, points, closed: true };
+/// let drawing = Drawing { lines: vec![line], ..Drawing::default() };
+/// let options = Options { page: "A4".parse()?, scale: "2:1".parse()?, ..Options::default() };
+/// let laid = lay_out(&drawing, "triangle", &options)?;
+/// assert_eq!(laid.sheet.size, DVec2::new(297.0, 210.0)); // turned: the drawing is wider than high
+/// assert_eq!(laid.sheet.layers[0].name, "visible-crease");
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// What [`Options::check`] finds; [`Error::Parameter`] for a scale at which the page is too small.
+pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<LaidOut> {
+    options.check()?;
+    let frame = frame_of(drawing, options.frame);
+    // Half of the widest pen reaches beyond the points.
+    let pen = LineClass::ALL.iter().map(|c| options.pens.width(*c)).fold(0.0, f64::max);
+    let taken = DVec2::splat(2.0 * options.margin + pen);
+    let (size, scale) = options.page_and_scale(frame.size(), taken)?;
+    let factor = scale * options.unit;
+    let middle = (frame.min() + frame.max()) * 0.5;
+    let origin = size * 0.5 - DVec2::new(middle.x, -middle.y) * factor;
+    let mut sheet =
+        Sheet { title: title.to_owned(), size, background: options.background, ..Sheet::default() };
+    put(&mut sheet, &[Placed { drawing, origin }], factor, options);
+    Ok(LaidOut { sheet, scale })
+}
+
+/// What is to be seen of a drawing; never without a place.
+fn frame_of(drawing: &Drawing, frame: Frame) -> Rect {
+    let window = drawing.window.filter(|_| frame == Frame::Window);
+    let found = window.or_else(|| drawing.bounds()).or(drawing.window);
+    found.or_else(|| Rect::around([DVec2::ZERO])).unwrap_or_else(unit_square)
+}
+
+fn unit_square() -> Rect {
+    // `around` of a finite point is never `None`; this keeps the promise without a panic.
+    Rect::new(DVec2::ZERO, DVec2::ONE).unwrap_or_else(|_| unit_square())
+}
+
+/// A drawing whose plane's origin lies at a place of the sheet.
+struct Placed<'a> {
+    drawing: &'a Drawing,
+    /// Millimetres.
+    origin: DVec2,
+}
+
+/// Puts drawings onto a sheet at one scale: `factor` is millimetres per plane unit.
+fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
+    put_regions(sheet, views, factor);
+    let deepest = match options.hidden {
+        Hidden::Drop => 0,
+        Hidden::Dashed => 1,
+        Hidden::Layer => DEEPEST,
+    };
+    for depth in (0..=deepest).rev() {
+        for &class in LineClass::ALL.iter().rev() {
+            let (name, pen) = layer_and_pen(class, depth, options);
+            let here = |l: &&Line| {
+                l.class == class
+                    && l.invisibility.min(deepest) == depth
+                    && (deepest > 0 || l.is_visible())
+            };
+            let mut marks = Vec::new();
+            let pen_index = sheet.pens.iter().position(|p| *p == pen).unwrap_or(sheet.pens.len());
+            for view in views {
+                for line in view.drawing.lines.iter().filter(here) {
+                    stroke(
+                        &mut marks,
+                        line,
+                        view.origin,
+                        factor,
+                        pen_index,
+                        !pen.dashes.is_empty(),
+                    );
+                }
+            }
+            if !marks.is_empty() {
+                if pen_index == sheet.pens.len() {
+                    sheet.pens.push(pen);
+                }
+                sheet.layers.push(SheetLayer { name, marks });
+            }
+        }
+    }
+    put_labels(sheet, views, factor, options);
+}
+
+fn layer_and_pen(class: LineClass, depth: u32, options: &Options) -> (String, Pen) {
+    match (depth, options.hidden) {
+        (0, _) => (format!("visible-{class}"), options.pens.visible(class)),
+        (_, Hidden::Layer) => {
+            (format!("hidden-{depth}-{class}"), options.pens.hidden(class, false))
+        }
+        _ => (format!("hidden-{class}"), options.pens.hidden(class, true)),
+    }
+}
+
+/// Plane units, y up, to millimetres, y down.
+fn onto_paper(p: DVec2, origin: DVec2, factor: f64) -> DVec2 {
+    origin + DVec2::new(p.x, -p.y) * factor
+}
+
+fn stroke(
+    marks: &mut Vec<Mark>,
+    line: &Line,
+    origin: DVec2,
+    factor: f64,
+    pen: usize,
+    dashed: bool,
+) {
+    let points: Vec<DVec2> = line.points.iter().map(|p| onto_paper(*p, origin, factor)).collect();
+    if points.len() < 2 || !points.iter().all(|p| p.is_finite()) {
+        return;
+    }
+    let closed = line.closed;
+    if dashed {
+        let parts = dashes::at_corners(&points, closed);
+        marks.extend(parts.into_iter().map(|(points, closed)| Mark::Stroke {
+            points,
+            closed,
+            pen,
+        }));
+    } else {
+        marks.push(Mark::Stroke { points, closed, pen });
+    }
+}
+
+fn put_regions(sheet: &mut Sheet, views: &[Placed], factor: f64) {
+    let mut marks = Vec::new();
+    for view in views {
+        for region in &view.drawing.regions {
+            let ring = |r: &Vec<DVec2>| -> Vec<DVec2> {
+                r.iter().map(|p| onto_paper(*p, view.origin, factor)).collect()
+            };
+            let rings: Vec<Vec<DVec2>> = region.rings.iter().map(ring).collect();
+            if rings.iter().flatten().all(|p| p.is_finite()) && !rings.is_empty() {
+                marks.push(Mark::Fill { rings, color: region.color });
+            }
+        }
+    }
+    if !marks.is_empty() {
+        sheet.layers.push(SheetLayer { name: "regions".to_owned(), marks });
+    }
+}
+
+fn put_labels(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
+    let mut marks = Vec::new();
+    for view in views {
+        for label in view.drawing.labels.iter().filter(|l| l.at.is_finite() && l.height > 0.0) {
+            let pen = text_pen(sheet, label.height, options);
+            let at = onto_paper(label.at, view.origin, factor);
+            let (text, height, anchor) = (label.text.clone(), label.height, label.anchor);
+            marks.push(Mark::Text { at, text, height, anchor, pen });
+        }
+    }
+    if !marks.is_empty() {
+        sheet.layers.push(SheetLayer { name: "text".to_owned(), marks });
+    }
+}
+
+/// The pen for letters of a height: a tenth of it (ISO 3098, type B). Its index in the sheet.
+fn text_pen(sheet: &mut Sheet, height: f64, options: &Options) -> usize {
+    pen_index(sheet, Pen { width: height * 0.1, color: options.pens.color, dashes: Vec::new() })
+}
+
+/// The index of a pen, which the sheet gets where it does not have it.
+fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
+    match sheet.pens.iter().position(|p| *p == pen) {
+        Some(index) => index,
+        None => {
+            sheet.pens.push(pen);
+            sheet.pens.len() - 1
+        }
+    }
+}
+
+/// The strokes of a [`Mark::Text`], in the sheet's millimetres: letters of the
+/// [single-stroke font](stroke_font).
+pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<Vec<DVec2>> {
+    let line = stroke_font::line(text, height);
+    let back = match anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => 0.5,
+        Anchor::End => 1.0,
+    };
+    let start = at - DVec2::new(line.advance * back, 0.0);
+    line.strokes.into_iter().map(|s| s.into_iter().map(|p| p + start).collect()).collect()
+}

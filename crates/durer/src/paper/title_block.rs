@@ -1,0 +1,131 @@
+//! The frame of a sheet and the block in its lower right corner that says what is drawn.
+
+use super::{Options, pen_index, scale_text, text_pen};
+use crate::curve::stroke_font;
+use crate::math::DVec2;
+use crate::target::drawing::Anchor;
+use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+
+/// What stands in the title block.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct TitleBlock {
+    /// What is drawn.
+    pub name: String,
+    /// The unit of the model, e.g. `mm`.
+    pub unit: String,
+    /// A date; left out where it is not given, so that the same model gives the same sheet.
+    pub date: Option<String>,
+}
+
+/// Height of the block, millimetres.
+pub const HEIGHT: f64 = 16.0;
+/// Its width, where the paper is wide enough.
+const WIDTH: f64 = 150.0;
+/// Widths of the cells for scale, unit, date, and the symbol of the projection.
+const SCALE: f64 = 24.0;
+const UNIT: f64 = 18.0;
+const DATE: f64 = 28.0;
+const SYMBOL: f64 = 26.0;
+/// Height of the letters that say what a cell has, and of what it has.
+const CAPTION: f64 = 1.8;
+const TEXT: f64 = 3.5;
+/// Space between a cell's border and its text.
+const PAD: f64 = 1.6;
+/// Widths of the frame and of lines within the block.
+const FRAME: f64 = 0.5;
+const THIN: f64 = 0.25;
+
+/// Adds the layers `frame` and `title-block`.
+pub fn put(sheet: &mut Sheet, title: &TitleBlock, scale: f64, options: &Options) {
+    let color = options.pens.color;
+    let line = |width: f64| Pen { width, color, dashes: Vec::new() };
+    let (frame, thin) = (pen_index(sheet, line(FRAME)), pen_index(sheet, line(THIN)));
+    let (min, max) = (DVec2::splat(options.margin), sheet.size - options.margin);
+    let marks = vec![rectangle(min, max, frame)];
+    sheet.layers.push(SheetLayer { name: "frame".to_owned(), marks });
+
+    let corner = DVec2::new(min.x.max(max.x - WIDTH), max.y - HEIGHT);
+    let mut marks = vec![rectangle(corner, max, frame)];
+    let mut block = Block { marks: &mut marks, corner, right: max.x, thin };
+    symbol(block.cell(SYMBOL), &mut block, thin);
+    let scale = scale_text(scale);
+    let date = title.date.as_deref().unwrap_or_default();
+    let cells = [("DATE", date, DATE), ("UNIT", &title.unit, UNIT), ("SCALE", &scale, SCALE)];
+    for (caption, text, width) in cells.into_iter().filter(|c| !c.1.is_empty()) {
+        let at = block.cell(width);
+        write(sheet, &mut block, caption, text, at, width, options);
+    }
+    let width = block.right - corner.x;
+    write(sheet, &mut block, "TITLE", &title.name, corner, width, options);
+    sheet.layers.push(SheetLayer { name: "title-block".to_owned(), marks });
+}
+
+struct Block<'a> {
+    marks: &'a mut Vec<Mark>,
+    /// Its upper left corner.
+    corner: DVec2,
+    /// Where the cells placed so far begin.
+    right: f64,
+    thin: usize,
+}
+
+impl Block<'_> {
+    /// Cuts a cell off the right end; its upper left corner.
+    fn cell(&mut self, width: f64) -> DVec2 {
+        self.right = (self.right - width).max(self.corner.x);
+        let top = DVec2::new(self.right, self.corner.y);
+        let points = vec![top, top + DVec2::new(0.0, HEIGHT)];
+        self.marks.push(Mark::Stroke { points, closed: false, pen: self.thin });
+        top
+    }
+}
+
+/// A caption and a text, small enough for the cell.
+fn write(
+    sheet: &mut Sheet,
+    block: &mut Block,
+    caption: &str,
+    text: &str,
+    at: DVec2,
+    width: f64,
+    options: &Options,
+) {
+    let room = (width - 2.0 * PAD).max(0.0);
+    let natural = stroke_font::line(text, TEXT).advance;
+    let height = if natural > room { TEXT * room / natural } else { TEXT };
+    let lines = [(caption, CAPTION, PAD + CAPTION), (text, height, HEIGHT - PAD - 2.0)];
+    for (text, height, y) in lines.into_iter().filter(|l| l.1 > 0.05) {
+        let pen = text_pen(sheet, height, options);
+        let at = at + DVec2::new(PAD, y);
+        block.marks.push(Mark::Text {
+            at,
+            text: text.to_owned(),
+            height,
+            anchor: Anchor::Start,
+            pen,
+        });
+    }
+}
+
+/// The symbol of third-angle projection: a truncated cone from the side, and its narrow end, which is
+/// on the left, as seen from the left.
+fn symbol(at: DVec2, block: &mut Block, pen: usize) {
+    let middle = at + DVec2::new(SYMBOL, HEIGHT) * 0.5;
+    let (small, large) = (2.0, 4.0);
+    let (circles, cone) = (middle - DVec2::new(5.5, 0.0), middle + DVec2::new(5.5, 0.0));
+    for radius in [small, large] {
+        let points = (0..48).map(|i| {
+            let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / 48.0);
+            circles + DVec2::new(cos, sin) * radius
+        });
+        block.marks.push(Mark::Stroke { points: points.collect(), closed: true, pen });
+    }
+    let corners = [(-4.0, -small), (4.0, -large), (4.0, large), (-4.0, small)];
+    let points = corners.map(|(x, y)| cone + DVec2::new(x, y)).to_vec();
+    block.marks.push(Mark::Stroke { points, closed: true, pen });
+}
+
+fn rectangle(min: DVec2, max: DVec2, pen: usize) -> Mark {
+    let points = vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+    Mark::Stroke { points, closed: true, pen }
+}

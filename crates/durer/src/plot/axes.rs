@@ -1,0 +1,161 @@
+//! Axes on the outer edges of the box around a surface, with ticks and labels.
+
+use super::{Axes, Marks, Options, ticks::ticks};
+use crate::math::{DVec2, DVec3};
+use crate::scene::{Aabb, HeightField};
+use crate::target::drawing::{Anchor, Label, Line, LineClass};
+use crate::view::picture_plane::PicturePlane;
+
+/// Length of a tick, in heights of a letter.
+const TICK: f64 = 0.6;
+/// From a tick to its label, in heights of a letter.
+const GAP: f64 = 0.5;
+/// Width of a letter, in heights: to keep texts apart.
+const LETTER: f64 = 0.85;
+/// Room that a label needs along its axis, in heights of a letter.
+const SPACE: f64 = 5.0;
+
+/// An edge of the box along axis `k`, as seen.
+#[derive(Clone, Copy)]
+struct Edge {
+    k: usize,
+    /// Its lower and its upper end.
+    ends: [DVec3; 2],
+    seen: [DVec2; 2],
+}
+
+/// Draws the axes; `scale` is millimetres per plane unit.
+pub fn draw(
+    field: &HeightField,
+    bounds: &Aabb,
+    plane: &PicturePlane,
+    axes: &Axes,
+    options: &Options,
+    scale: f64,
+) -> Marks {
+    let mut marks = Marks::default();
+    let seen: Vec<DVec2> = bounds.corners().into_iter().filter_map(|c| plane.project(c)).collect();
+    // The camera is fitted around the box, so its corners are all in front.
+    if seen.len() != 8 {
+        return marks;
+    }
+    let center = seen.iter().sum::<DVec2>() / 8.0;
+    let edge = |k: usize, corner: usize| {
+        let ends = [corner, corner | 1 << k].map(|c| bounds.corners()[c]);
+        Edge { k, ends, seen: [seen[corner], seen[corner | 1 << k]] }
+    };
+    // Along the ground the edges that are lowest in the picture, upwards the leftmost one.
+    let lowest = |k: usize, other: usize| {
+        let (near, far) = (edge(k, 1 << other), edge(k, 0));
+        let height = |e: &Edge| e.seen[0].y + e.seen[1].y;
+        let slack = (near.seen[0] - far.seen[0]).length() * 1e-9;
+        if height(&near) <= height(&far) + slack { near } else { far }
+    };
+    let (x, z) = (lowest(0, 2), lowest(2, 0));
+    let upright = [0, 1, 4, 5].map(|corner| edge(1, corner));
+    let leftmost = upright.into_iter().min_by(|a, b| a.seen[0].x.total_cmp(&b.seen[0].x));
+    for e in [Some(x), Some(z), leftmost].into_iter().flatten() {
+        let true_range = match e.k {
+            0 => field.x_range(),
+            1 => field.range().unwrap_or_default(),
+            _ if axes.z_is_south => field.z_range().map(|z| -z),
+            _ => field.z_range(),
+        };
+        axis(&mut marks, &e, true_range, center, &axes.names[e.k], plane, options, scale);
+    }
+    corners(&mut marks, field, &[x, z], plane, options);
+    marks
+}
+
+/// Upright lines from the ends of the ground's axes up to the surface's own corners.
+fn corners(
+    marks: &mut Marks,
+    field: &HeightField,
+    edges: &[Edge; 2],
+    plane: &PicturePlane,
+    options: &Options,
+) {
+    let (columns, rows) = (field.columns(), field.rows());
+    for (column, row) in [(0, 0), (columns - 1, 0), (0, rows - 1), (columns - 1, rows - 1)] {
+        let Some(top) = field.point(column, row) else { continue };
+        let top = DVec3::new(top.x, top.y * options.exaggeration, top.z);
+        let at_corner = |p: &&DVec3| p.x == top.x && p.z == top.z;
+        let ground = edges.iter().flat_map(|e| &e.ends).find(at_corner);
+        if let Some(points) = ground.and_then(|g| plane.project_segment(*g, top)) {
+            push(marks, points);
+        }
+    }
+}
+
+fn push(marks: &mut Marks, [a, b]: [DVec2; 2]) {
+    if a != b {
+        let class = LineClass::Axis;
+        marks.lines.push(Line { class, invisibility: 0, points: vec![a, b], closed: false });
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "one axis needs all that the plot knows")]
+fn axis(
+    marks: &mut Marks,
+    edge: &Edge,
+    range: [f64; 2],
+    center: DVec2,
+    name: &str,
+    plane: &PicturePlane,
+    options: &Options,
+    scale: f64,
+) {
+    let along = edge.seen[1] - edge.seen[0];
+    let length = along.length() * scale;
+    let letter = options.text / scale;
+    push(marks, edge.seen);
+    // Seen end on, an axis has no room for labels.
+    if length < 3.0 * options.text {
+        return;
+    }
+    let middle = (edge.seen[0] + edge.seen[1]) * 0.5;
+    let across = along.perp().normalize_or_zero();
+    let out = if across.dot(middle - center) >= 0.0 { across } else { -across };
+    let wanted = ((length / (SPACE * options.text)) as usize).clamp(2, 10);
+    let (low, high) = (range[0].min(range[1]), range[0].max(range[1]));
+    let mut widest: f64 = 0.0;
+    let flat = low == high;
+    for (value, text) in ticks([low, high], wanted) {
+        let part = if flat { 0.5 } else { (value - range[0]) / (range[1] - range[0]) };
+        let Some(at) = plane.project(edge.ends[0].lerp(edge.ends[1], part.clamp(0.0, 1.0))) else {
+            continue;
+        };
+        push(marks, [at, at + out * (TICK * letter)]);
+        let width = text.chars().count() as f64 * LETTER;
+        widest = widest.max(reach(out, width));
+        marks.labels.push(label(
+            at + out * ((TICK + GAP) * letter),
+            out,
+            text,
+            letter,
+            options.text,
+        ));
+    }
+    if !name.is_empty() {
+        let height = options.text;
+        let at = middle + out * ((TICK + 2.2 * GAP + widest) * letter);
+        marks.labels.push(label(at, out, name.to_owned(), letter, height));
+    }
+}
+
+/// How far a text of this width reaches in a direction, in heights of a letter.
+fn reach(out: DVec2, width: f64) -> f64 {
+    (width * out.x.abs()).max(out.y.abs())
+}
+
+/// A text that begins at a point and goes in a direction.
+fn label(at: DVec2, out: DVec2, text: String, letter: f64, height: f64) -> Label {
+    let anchor = match out.x {
+        x if x < -0.35 => Anchor::End,
+        x if x > 0.35 => Anchor::Start,
+        _ => Anchor::Middle,
+    };
+    // The letter's middle at the point for sideways, its top or foot for up and down.
+    let at = at + DVec2::new(0.0, (out.y - 1.0) * 0.5 * letter);
+    Label { at, text, height, anchor }
+}

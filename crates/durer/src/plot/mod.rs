@@ -1,0 +1,367 @@
+//! Plots of surfaces y = f(x, z): visible lines, filled cells, axes, laid out on paper.
+//!
+//! [`surface`] gives the plot's lines, regions and labels as a [`Drawing`] and the same as a [`Sheet`];
+//! the lines come from [`floating_horizon`].
+
+mod axes;
+mod cells;
+pub mod color_map;
+pub mod ticks;
+
+pub use color_map::ColorMap;
+
+use crate::math::{DVec2, DVec3, Rect};
+use crate::scene::{Aabb, Camera, HeightField};
+use crate::target::drawing::{Drawing, Label, Line, LineClass};
+use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use crate::trace::NoTrace;
+use crate::view::picture_plane::PicturePlane;
+use crate::view::projection::{FitOptions, Lens, ViewDirection, fit_box};
+use crate::visibility::line::floating_horizon::{self, Curve, Family};
+use crate::{Error, Result};
+
+/// How a surface is plotted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// From where.
+    pub direction: ViewDirection,
+    /// Perspective or parallel.
+    pub lens: Lens,
+    /// Which rows and columns become lines, and whether hidden parts do.
+    pub lines: floating_horizon::Options,
+    /// What heights are multiplied with before they are seen; labels tell the true ones.
+    pub exaggeration: f64,
+    /// Colours by height; `None` draws all lines with `ink`, and fills with `paper`.
+    pub color_map: Option<ColorMap>,
+    /// Whether cells are filled, too: with the colours of the map, lines then are `ink`.
+    pub fill: bool,
+    /// Colour of axes, labels, and lines without a colour of their own; sRGB with straight alpha.
+    pub ink: [u8; 4],
+    /// Colour of lines on the surface's lower side; `None` takes no notice of sides.
+    pub underside: Option<[u8; 4]>,
+    /// Axes with ticks and labels; `None` draws none.
+    pub axes: Option<Axes>,
+    /// Written above the plot; may be empty.
+    pub title: String,
+    /// Width and height of the paper, millimetres.
+    pub page: DVec2,
+    /// What the paper is filled with; `None` leaves it blank.
+    pub background: Option<[u8; 4]>,
+    /// Width of the surface's lines, millimetres.
+    pub pen: f64,
+    /// Height of capitals in labels, millimetres.
+    pub text: f64,
+}
+
+/// What the axes are called, and which way they count.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axes {
+    /// Names of x, y and z; empty ones are not written.
+    pub names: [String; 3],
+    /// Whether labels along z tell −z: the northing of a map.
+    pub z_is_south: bool,
+}
+
+/// A plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Its geometry in the plane of the picture.
+    pub drawing: Drawing,
+    /// The same on paper, with pens and colours.
+    pub sheet: Sheet,
+    /// The camera, in coordinates with exaggerated heights.
+    pub camera: Camera,
+}
+
+/// A margin around everything, millimetres.
+const MARGIN: f64 = 4.0;
+/// Steps of colour along a line: finer ones are not told apart.
+const SHADES: usize = 32;
+/// Dashes and gaps of hidden lines, in widths of the pen.
+const DASHES: [f64; 2] = [6.0, 4.0];
+/// Hidden lines are this much thinner.
+const HIDDEN_PEN: f64 = 0.6;
+/// Visible pieces shorter than this, in millimetres, are dots that a pen would only blot.
+const SHORTEST: f64 = 0.02;
+
+/// A line with what it is drawn in.
+struct Colored {
+    line: Line,
+    layer: &'static str,
+    color: [u8; 4],
+}
+
+/// Plots a surface.
+///
+/// ```
+/// use durer::math::DVec2;
+/// use durer::plot::{Options, surface};
+/// use durer::scene::HeightField;
+/// let field = HeightField::from_fn([30, 30], [-2.0, 2.0], [-2.0, 2.0], |x, z| x * x - z * z)?;
+/// let plot = surface(&field, &Options::default())?;
+/// assert_eq!(plot.sheet.size, DVec2::new(180.0, 135.0));
+/// assert!(plot.sheet.layers.iter().any(|l| l.name == "axes"));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Parameter`] for a number out of its range, or a field without heights; what the camera
+/// and the projection find.
+pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
+    options.check()?;
+    let seen = field.map(|y| y * options.exaggeration);
+    let bounds = seen.bounds().ok_or_else(|| {
+        Error::parameter("height field", "without any height", "a surface with heights")
+    })?;
+    let room = (options.page - DVec2::splat(2.0 * MARGIN)).max(DVec2::ONE);
+    let fit = FitOptions { lens: options.lens, aspect: room.x / room.y, margin: 0.0 };
+    let camera = fit_box(Some(&bounds), &options.direction, &fit)?;
+    let plane = PicturePlane::new(&camera)?;
+    let layout = Layout::new(&bounds, &plane, options);
+    let mut drawing = Drawing { window: None, ..Drawing::default() };
+    if options.fill {
+        drawing.regions = cells::regions(&seen, &camera, &plane, options)?;
+    }
+    let curves = floating_horizon::curves(&seen, &camera, &options.lines, &mut NoTrace)?;
+    let mut lines = Vec::new();
+    for curve in &curves {
+        colored(curve, &seen, &plane, options, &mut lines);
+    }
+    let least = SHORTEST / layout.scale;
+    lines.retain(|l| l.line.length() >= least);
+    if let Some(axes) = &options.axes {
+        let marks = axes::draw(field, &bounds, &plane, axes, options, layout.scale);
+        let line = |line| Colored { line, layer: "axes", color: options.ink };
+        lines.extend(marks.lines.into_iter().map(line));
+        drawing.labels = marks.labels;
+    }
+    drawing.lines = lines.iter().map(|l| l.line.clone()).collect();
+    if drawing.lines.iter().flat_map(|l| &l.points).any(|p| !p.is_finite()) {
+        return Err(Error::NonFinite { what: "projected line", index: 0 });
+    }
+    let sheet = layout.sheet(&drawing, &lines, options);
+    Ok(Plot { drawing, sheet, camera })
+}
+
+impl Default for Options {
+    /// All lines, black, in parallel projection from azimuth 30° and elevation 30°, on 180 × 135 mm, with
+    /// axes; true heights.
+    fn default() -> Self {
+        let direction = crate::view::projection::NamedView::Iso.direction(crate::scene::UpAxis::Y);
+        Self {
+            direction,
+            lens: Lens::Orthographic,
+            lines: floating_horizon::Options::default(),
+            exaggeration: 1.0,
+            color_map: None,
+            fill: false,
+            ink: [0, 0, 0, 255],
+            underside: None,
+            axes: Some(Axes::default()),
+            title: String::new(),
+            page: DVec2::new(180.0, 135.0),
+            background: Some([255; 4]),
+            pen: 0.18,
+            text: 2.5,
+        }
+    }
+}
+
+impl Default for Axes {
+    fn default() -> Self {
+        Self { names: ["x", "y", "z"].map(str::to_owned), z_is_south: false }
+    }
+}
+
+impl Options {
+    fn check(&self) -> Result<()> {
+        let positive = |name, value: f64, most: f64, expected| {
+            if value > 0.0 && value <= most {
+                Ok(())
+            } else {
+                Err(Error::parameter(name, value, expected))
+            }
+        };
+        positive("exaggeration", self.exaggeration, 1e50, "above 0, at most 1e50")?;
+        positive("pen", self.pen, 100.0, "above 0, at most 100 mm")?;
+        positive("text height", self.text, 100.0, "above 0, at most 100 mm")?;
+        positive("page", self.page.x.min(self.page.y), 1e5, "20 mm to 100 m")?;
+        if !(self.page.min_element() >= 20.0 && self.page.max_element() <= 1e5) {
+            let value = format!("{} × {} mm", self.page.x, self.page.y);
+            return Err(Error::parameter("page", value, "20 mm to 100 m"));
+        }
+        Ok(())
+    }
+
+    /// The colour of a height, 0 the lowest and 1 the highest.
+    fn color_at(&self, part: f64) -> Option<[u8; 4]> {
+        self.color_map.map(|map| map.at(part))
+    }
+}
+
+/// Splits a curve where its colour changes, and projects its parts.
+fn colored(
+    curve: &Curve,
+    field: &HeightField,
+    plane: &PicturePlane,
+    options: &Options,
+    out: &mut Vec<Colored>,
+) {
+    let layer = match (curve.visible, curve.family) {
+        (true, Family::AlongX) => "lines-along-x",
+        (true, Family::AlongZ) => "lines-along-z",
+        (false, Family::AlongX) => "hidden-along-x",
+        (false, Family::AlongZ) => "hidden-along-z",
+    };
+    let plain = if curve.underside { options.underside } else { None };
+    let mut add = |points: &[DVec3], color: [u8; 4]| {
+        for points in floating_horizon::projected(points, plane) {
+            let invisibility = u32::from(!curve.visible);
+            let line = Line { class: LineClass::Grid, invisibility, points, closed: false };
+            out.push(Colored { line, layer, color });
+        }
+    };
+    let (Some(map), None, false) = (options.color_map, plain, options.fill) else {
+        return add(&curve.points, plain.unwrap_or(options.ink));
+    };
+    let Some([low, high]) = field.range() else { return };
+    let shade = |y: f64| part(y, low, high) * SHADES as f64;
+    let color = |shade: usize| map.at((shade.min(SHADES - 1) as f64 + 0.5) / SHADES as f64);
+    let mut chain = vec![curve.points[0]];
+    let mut now = (shade(curve.points[0].y) as usize).min(SHADES - 1);
+    for pair in curve.points.windows(2) {
+        let (from, to) = (shade(pair[0].y), shade(pair[1].y));
+        loop {
+            // The next border between two shades on the way, if there is one.
+            let up = to > from;
+            let border = if up { now as f64 + 1.0 } else { now as f64 };
+            let beyond = if up { to > border && now + 1 < SHADES } else { to < border && now > 0 };
+            if !beyond {
+                break;
+            }
+            let t = ((border - from) / (to - from)).clamp(0.0, 1.0);
+            let cut = pair[0].lerp(pair[1], t);
+            chain.push(cut);
+            add(&chain, color(now));
+            chain = vec![cut];
+            now = if up { now + 1 } else { now - 1 };
+        }
+        chain.push(pair[1]);
+    }
+    add(&chain, color(now));
+}
+
+/// Where a height lies between the lowest and the highest, 0 … 1; a half where all are one.
+fn part(y: f64, low: f64, high: f64) -> f64 {
+    let part = (y - low) / (high - low);
+    if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.5 }
+}
+
+/// Where the plot lies on the paper.
+struct Layout {
+    /// Millimetres per plane unit.
+    scale: f64,
+    /// Where the plane's origin lies on the paper.
+    origin: DVec2,
+}
+
+impl Layout {
+    fn new(bounds: &Aabb, plane: &PicturePlane, options: &Options) -> Self {
+        let corners = bounds.corners().into_iter().filter_map(|c| plane.project(c));
+        let frame = Rect::around(corners);
+        let (min, max) = frame.map_or((DVec2::ZERO, DVec2::ZERO), |r| (r.min(), r.max()));
+        // Room for the labels at the left, the right, and below; for the title above.
+        let labels = if options.axes.is_some() { options.text } else { 0.0 };
+        let title = if options.title.is_empty() { 0.0 } else { options.text * 3.5 };
+        let (side, below) = (MARGIN + labels * 5.0, MARGIN + labels * 4.0);
+        let above = MARGIN + labels * 0.8 + title;
+        let room = options.page - DVec2::new(2.0 * side, below + above);
+        let room = room.max(options.page * 0.2);
+        let size = max - min;
+        let ratio = |room: f64, size: f64| if size > 0.0 { room / size } else { f64::INFINITY };
+        let scale = ratio(room.x, size.x).min(ratio(room.y, size.y));
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        let middle = DVec2::new(options.page.x * 0.5, above + room.y * 0.5);
+        let center = (min + max) * 0.5;
+        Self { scale, origin: middle - DVec2::new(center.x, -center.y) * scale }
+    }
+
+    fn place(&self, p: DVec2) -> DVec2 {
+        self.origin + DVec2::new(p.x, -p.y) * self.scale
+    }
+
+    fn sheet(&self, drawing: &Drawing, lines: &[Colored], options: &Options) -> Sheet {
+        let mut sheet = Sheet {
+            title: options.title.clone(),
+            size: options.page,
+            background: options.background,
+            ..Sheet::default()
+        };
+        let fills = drawing.regions.iter().map(|region| {
+            let ring = |r: &Vec<DVec2>| r.iter().map(|&p| self.place(p)).collect();
+            Mark::Fill { rings: region.rings.iter().map(ring).collect(), color: region.color }
+        });
+        let fills: Vec<Mark> = fills.collect();
+        let mut layers = vec![SheetLayer { name: "surface".to_owned(), marks: fills }];
+        for name in ["hidden-along-x", "hidden-along-z", "lines-along-x", "lines-along-z", "axes"] {
+            let mut marks = Vec::new();
+            for colored in lines.iter().filter(|l| l.layer == name) {
+                let pen = pen_for(&mut sheet.pens, colored, options);
+                let points = colored.line.points.iter().map(|&p| self.place(p)).collect();
+                marks.push(Mark::Stroke { points, closed: false, pen });
+            }
+            layers.push(SheetLayer { name: name.to_owned(), marks });
+        }
+        layers.push(SheetLayer {
+            name: "labels".to_owned(),
+            marks: self.texts(&mut sheet, drawing, options),
+        });
+        sheet.layers = layers.into_iter().filter(|l| !l.marks.is_empty()).collect();
+        sheet
+    }
+
+    fn texts(&self, sheet: &mut Sheet, drawing: &Drawing, options: &Options) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        let mut pen = |height: f64| {
+            let pen = Pen { width: height * 0.1, color: options.ink, dashes: Vec::new() };
+            index_of(&mut sheet.pens, pen)
+        };
+        for label in &drawing.labels {
+            let (at, text) = (self.place(label.at), label.text.clone());
+            let (height, anchor) = (label.height, label.anchor);
+            marks.push(Mark::Text { at, text, height, anchor, pen: pen(height) });
+        }
+        if !options.title.is_empty() {
+            let height = options.text * 1.4;
+            marks.push(Mark::Text {
+                at: DVec2::new(options.page.x * 0.5, MARGIN + height),
+                text: options.title.clone(),
+                height,
+                anchor: crate::target::drawing::Anchor::Middle,
+                pen: pen(height),
+            });
+        }
+        marks
+    }
+}
+
+fn pen_for(pens: &mut Vec<Pen>, colored: &Colored, options: &Options) -> usize {
+    let hidden = !colored.line.is_visible();
+    let width = options.pen * if hidden { HIDDEN_PEN } else { 1.0 };
+    let dashes = if hidden { DASHES.map(|d| d * options.pen).to_vec() } else { Vec::new() };
+    index_of(pens, Pen { width, color: colored.color, dashes })
+}
+
+fn index_of(pens: &mut Vec<Pen>, pen: Pen) -> usize {
+    pens.iter().position(|p| *p == pen).unwrap_or_else(|| {
+        pens.push(pen);
+        pens.len() - 1
+    })
+}
+
+/// Lines and texts of a part of the plot.
+#[derive(Default)]
+struct Marks {
+    lines: Vec<Line>,
+    labels: Vec<Label>,
+}

@@ -1,0 +1,260 @@
+//! Surfaces y = f(x, z), given by their heights over a grid.
+
+use super::{Aabb, Instance, Mesh, Scene};
+use crate::math::{DMat4, DVec3};
+use crate::{Error, Result};
+
+/// Heights beyond ±this are taken for poles of a function and are missing; squares of what is kept
+/// do not overflow.
+const LARGEST: f64 = 1e100;
+
+/// A surface y = f(x, z) over a grid of points with equal distances along x and along z.
+///
+/// Rows run along x, the first row has the smallest z; seen from the front (from +z, y up) it is the
+/// farthest. The heights of some points may be missing: a cell of the grid is part of the surface
+/// where all four of its corners are there. A cell is two triangles, parted by the diagonal whose
+/// ends differ less in height.
+///
+/// # Guarantees
+/// At least one column and one row, at most [`HeightField::MAX_POINTS`] points; finite ranges that
+/// increase, except that the range of a single column or row may be one number; heights that are
+/// there are finite.
+///
+/// ```
+/// use durer::scene::HeightField;
+/// let bowl = HeightField::from_fn([3, 2], [-1.0, 1.0], [0.0, 1.0], |x, z| x * x + z)?;
+/// assert_eq!(bowl.height(2, 1), Some(2.0));
+/// assert_eq!(bowl.range(), Some([0.0, 2.0]));
+/// assert_eq!(bowl.to_scene().triangle_count(), 4);
+/// # Ok::<(), durer::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightField {
+    columns: usize,
+    rows: usize,
+    x: [f64; 2],
+    z: [f64; 2],
+    /// Row by row; NaN where missing.
+    heights: Vec<f64>,
+}
+
+/// How a cell of a height field is cut into its two triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Diagonal {
+    /// From the corner with the smallest x and z to the one with the largest.
+    Rising,
+    /// From the corner with the largest x and the smallest z to its opposite.
+    Falling,
+}
+
+impl Diagonal {
+    /// The corners of the two triangles, counter-clockwise seen from above; bit 0 of a corner is
+    /// its column, bit 1 its row, relative to the cell's first point.
+    pub const fn triangles(self) -> [[usize; 3]; 2] {
+        match self {
+            Self::Rising => [[0, 2, 3], [0, 3, 1]],
+            Self::Falling => [[2, 3, 1], [2, 1, 0]],
+        }
+    }
+}
+
+impl HeightField {
+    /// The most points a field may have.
+    pub const MAX_POINTS: u64 = 1 << 27;
+
+    /// The field of `size` = columns × rows points, given row by row, over the ranges of x and z.
+    ///
+    /// What is not finite, or beyond ±1e100, is missing.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for more than [`Self::MAX_POINTS`] points, [`Error::Parameter`] for no
+    /// points, a range that is not finite or does not increase, or another number of heights.
+    pub fn new(size: [usize; 2], x: [f64; 2], z: [f64; 2], mut heights: Vec<f64>) -> Result<Self> {
+        let count = check(size, x, z)?;
+        if heights.len() != count {
+            return Err(Error::parameter("number of heights", heights.len(), "columns × rows"));
+        }
+        for height in &mut heights {
+            if height.is_nan() || height.abs() > LARGEST {
+                *height = f64::NAN;
+            }
+        }
+        Ok(Self { columns: size[0], rows: size[1], x, z, heights })
+    }
+
+    /// The field of a function, called with x and z of each point; what [`Self::new`] says of
+    /// heights holds for its values.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn from_fn(
+        size: [usize; 2],
+        x: [f64; 2],
+        z: [f64; 2],
+        mut f: impl FnMut(f64, f64) -> f64,
+    ) -> Result<Self> {
+        let count = check(size, x, z)?;
+        let mut heights = Vec::with_capacity(count);
+        for row in 0..size[1] {
+            let z = between(z, row, size[1]);
+            heights.extend((0..size[0]).map(|column| f(between(x, column, size[0]), z)));
+        }
+        Self::new(size, x, z, heights)
+    }
+
+    /// Points along x.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Points along z.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// x of the first and the last column.
+    pub fn x_range(&self) -> [f64; 2] {
+        self.x
+    }
+
+    /// z of the first and the last row.
+    pub fn z_range(&self) -> [f64; 2] {
+        self.z
+    }
+
+    /// x of a column.
+    pub fn x(&self, column: usize) -> f64 {
+        between(self.x, column, self.columns)
+    }
+
+    /// z of a row.
+    pub fn z(&self, row: usize) -> f64 {
+        between(self.z, row, self.rows)
+    }
+
+    /// The height of a point; `None` where it is missing or outside the grid.
+    pub fn height(&self, column: usize, row: usize) -> Option<f64> {
+        if column >= self.columns {
+            return None;
+        }
+        self.heights.get(row * self.columns + column).copied().filter(|h| !h.is_nan())
+    }
+
+    /// A point of the surface; `None` where its height is missing.
+    pub fn point(&self, column: usize, row: usize) -> Option<DVec3> {
+        self.height(column, row).map(|y| DVec3::new(self.x(column), y, self.z(row)))
+    }
+
+    /// How many points have no height.
+    pub fn missing(&self) -> usize {
+        self.heights.iter().filter(|h| h.is_nan()).count()
+    }
+
+    /// The lowest and the highest height; `None` where all are missing.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let start = [f64::INFINITY, f64::NEG_INFINITY];
+        // `min` and `max` pass over NaN.
+        let [lo, hi] = self.heights.iter().fold(start, |[lo, hi], &h| [lo.min(h), hi.max(h)]);
+        (lo <= hi).then_some([lo, hi])
+    }
+
+    /// The box around the grid and all heights; `None` where all heights are missing.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let [lo, hi] = self.range()?;
+        let corner = |x, y, z| DVec3::new(x, y, z);
+        Some(Aabb { min: corner(self.x[0], lo, self.z[0]), max: corner(self.x[1], hi, self.z[1]) })
+    }
+
+    /// The same surface with each height taken through `f`.
+    pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
+        let heights = self.heights.iter().map(|&h| f(h));
+        let heights = heights.map(|h| if h.abs() <= LARGEST { h } else { f64::NAN }).collect();
+        Self { heights, ..*self }
+    }
+
+    /// The same surface over other ranges.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a range that is not finite or does not increase.
+    pub fn with_ranges(self, x: [f64; 2], z: [f64; 2]) -> Result<Self> {
+        check([self.columns, self.rows], x, z)?;
+        Ok(Self { x, z, ..self })
+    }
+
+    /// How the cell between this point and the next column and row is cut; `None` where a corner is
+    /// missing or there is no such cell.
+    pub fn cell(&self, column: usize, row: usize) -> Option<Diagonal> {
+        let first = self.height(column, row)?;
+        let rising = (self.height(column + 1, row + 1)? - first).abs();
+        let falling = (self.height(column + 1, row)? - self.height(column, row + 1)?).abs();
+        Some(if falling < rising { Diagonal::Falling } else { Diagonal::Rising })
+    }
+
+    /// The triangles of the surface, in single precision, relative to `origin`; front faces look up.
+    ///
+    /// A face of the mesh is a cell. Cost: one pass.
+    pub fn to_mesh(&self, origin: DVec3) -> Mesh {
+        let (mut positions, mut numbers) = (Vec::new(), Vec::with_capacity(self.heights.len()));
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                numbers.push(positions.len() as u32);
+                positions.extend(self.point(column, row).map(|p| (p - origin).as_vec3()));
+            }
+        }
+        let (mut indices, mut faces) = (Vec::new(), Vec::new());
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                let Some(diagonal) = self.cell(column, row) else { continue };
+                faces.push((indices.len() / 3) as u32);
+                let corner = |k: usize| (row + (k >> 1)) * self.columns + column + (k & 1);
+                let corners = diagonal.triangles().into_iter().flatten().map(corner);
+                indices.extend(corners.filter_map(|v| numbers.get(v)));
+            }
+        }
+        Mesh { positions, indices: Some(indices), faces, ..Mesh::default() }
+    }
+
+    /// A scene of the surface alone, in its place.
+    pub fn to_scene(&self) -> Scene {
+        let origin = self.bounds().map_or(DVec3::ZERO, |b| b.center());
+        let world_from_mesh = DMat4::from_translation(origin);
+        let instance = Instance { mesh: 0, world_from_mesh, name: String::new() };
+        Scene { meshes: vec![self.to_mesh(origin)], instances: vec![instance], ..Scene::default() }
+    }
+}
+
+/// Where point `i` of `count` lies; the ends are exact.
+fn between([first, last]: [f64; 2], i: usize, count: usize) -> f64 {
+    if i + 1 >= count && count > 1 {
+        return last;
+    }
+    let part = i as f64 / count.saturating_sub(1).max(1) as f64;
+    first + (last - first) * part
+}
+
+/// The number of points, where the size and the ranges are right.
+fn check(size: [usize; 2], x: [f64; 2], z: [f64; 2]) -> Result<usize> {
+    let count = (size[0] as u64).saturating_mul(size[1] as u64);
+    if count == 0 {
+        let size = format!("{}x{}", size[0], size[1]);
+        return Err(Error::parameter("size of the grid", size, "at least 1x1 points"));
+    }
+    if count > HeightField::MAX_POINTS {
+        let limit = HeightField::MAX_POINTS;
+        return Err(Error::Limit { what: "points of a height field", value: count, limit });
+    }
+    for (name, [first, last], n) in [("x range", x, size[0]), ("z range", z, size[1])] {
+        let extent = last - first;
+        let grows = extent > 0.0 || (n == 1 && extent == 0.0);
+        if !grows || first.abs().max(last.abs()) > LARGEST {
+            let value = format!("{first} … {last}");
+            return Err(Error::parameter(name, value, "two finite numbers, the first the smaller"));
+        }
+        // Neighbours that are the same number would be no grid.
+        if n > 1 && between([first, last], 1, n) <= first {
+            let value = format!("{first} … {last}");
+            return Err(Error::parameter(name, value, "wide enough to tell its points apart"));
+        }
+    }
+    Ok(count as usize)
+}

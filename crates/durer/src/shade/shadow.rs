@@ -1,0 +1,207 @@
+//! Shadow maps: how far each light sees.
+//!
+//! L. Williams, *Casting Curved Shadows on Curved Surfaces*, SIGGRAPH 1978; four comparisons weighted
+//! by distance: W. Reeves, D. Salesin, R. Cook, *Rendering Antialiased Shadows with Depth Maps*,
+//! SIGGRAPH 1987. Image space. A map holds the depth of what a light meets first in each of its texels;
+//! a point farther than that is in shadow. Cost: one picture per map, then O(1) per point and light.
+//!
+//! Limits: shadows are as sharp as the map is fine, steps of a texel along their edges; what is thinner
+//! than a texel may throw none. So that a surface does not shadow itself, points are moved off it along
+//! its normal by what its slope makes of a texel; a shadow begins so much away from the body's foot.
+
+use super::lane::{Lane, Vec3Lane};
+use crate::info::{Class, Info};
+use crate::math::{DMat4, Mat4, Vec3};
+use crate::target::Pixels;
+use crate::{Error, Result};
+use std::sync::Arc;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "shadow-map",
+    title: "Shadow maps",
+    authors: "L. Williams; W. Reeves, D. Salesin, R. Cook",
+    year: 1978,
+    source: "Casting Curved Shadows on Curved Surfaces, SIGGRAPH",
+    class: Class::ImageSpace,
+    cost: "one depth picture per map, then O(1) per point and light; 4 bytes a texel",
+    limits: "as sharp as the map is fine; blended surfaces, lines and points throw no shadow",
+};
+
+/// How much of the slope's depth over a texel a point is moved by: four texels around it are asked,
+/// whose centres are up to √2 texels away. Less makes surfaces speckled.
+const SLOPE_BIAS: f32 = 1.6;
+
+/// How much of a texel a point is moved by in any case, for the rounding of depths and vertices.
+const BIAS: f32 = 0.1;
+
+/// What one light sees: depth by texel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShadowMap {
+    /// From points relative to [`super::PreparedLights::origin`] to texels times w and depth times w.
+    map_from_position: Mat4,
+    /// Size of a texel in world units, at w = 1 where the map is seen in perspective.
+    texel: f32,
+    perspective: bool,
+    depths: Arc<Pixels<f32>>,
+}
+
+impl ShadowMap {
+    /// A map from its depths: window depths, 1 where nothing is.
+    ///
+    /// `map_from_position` takes points relative to the lights' origin to homogeneous screen space of the
+    /// map, as [`crate::view::View::screen_from_world`] does; `texel` is the size of a texel in world
+    /// units, for a map in perspective that at distance 1.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a map without texels and for numbers that are not finite.
+    pub fn new(
+        map_from_position: &DMat4,
+        texel: f64,
+        perspective: bool,
+        depths: Pixels<f32>,
+    ) -> Result<Self> {
+        if depths.data().is_empty() {
+            return Err(Error::parameter("shadow map", "empty", "at least one texel"));
+        }
+        let map_from_position = map_from_position.as_mat4();
+        if !map_from_position.is_finite() || !texel.is_finite() {
+            return Err(Error::parameter("shadow map's matrix", texel, "finite"));
+        }
+        let texel = texel as f32;
+        Ok(Self { map_from_position, texel, perspective, depths: Arc::new(depths) })
+    }
+
+    /// How much of the light reaches a point, 0 … 1; `None` where the map does not look.
+    ///
+    /// `face` and `to_light` are unit vectors, `face` turned to the light's side.
+    pub fn reach(&self, position: Vec3, face: Vec3, to_light: Vec3) -> Option<f32> {
+        let seen = self.map_from_position * position.extend(1.0);
+        if seen.w <= 0.0 {
+            return None;
+        }
+        let texel = if self.perspective { self.texel * seen.w } else { self.texel };
+        let cosine = face.dot(to_light).clamp(0.0, 1.0);
+        let sine = (1.0 - cosine * cosine).sqrt();
+        let moved = position + face * (texel * (SLOPE_BIAS * sine + BIAS));
+        let p = self.map_from_position * moved.extend(1.0);
+        let (x, y, depth) = (p.x / p.w, p.y / p.w, p.z / p.w);
+        let (width, height) = (self.depths.width() as f32, self.depths.height() as f32);
+        let inside = x >= 0.0 && y >= 0.0 && x < width && y < height && depth >= 0.0;
+        if !inside {
+            return None;
+        }
+        Some(self.filtered(x - 0.5, y - 0.5, depth))
+    }
+
+    /// The share of the four texels around a place that are not nearer to the light.
+    fn filtered(&self, x: f32, y: f32, depth: f32) -> f32 {
+        let (left, top) = (x.floor(), y.floor());
+        let (fx, fy) = (x - left, y - top);
+        let lit = |dx: f32, dy: f32| {
+            let (i, j) = ((left + dx).max(0.0) as u32, (top + dy).max(0.0) as u32);
+            let (i, j) = (i.min(self.depths.width() - 1), j.min(self.depths.height() - 1));
+            let nearest = self.depths.get(i, j).unwrap_or(1.0);
+            if nearest >= 1.0 || depth <= nearest { 1.0 } else { 0.0 }
+        };
+        let upper = lit(0.0, 0.0) * (1.0 - fx) + lit(1.0, 0.0) * fx;
+        let lower = lit(0.0, 1.0) * (1.0 - fx) + lit(1.0, 1.0) * fx;
+        upper * (1.0 - fy) + lower * fy
+    }
+}
+
+/// The maps of all lights of a picture; by default there are none, and no shadows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ShadowMaps {
+    /// By the index in [`super::PreparedLights::directional`].
+    pub directional: Vec<Vec<ShadowMap>>,
+    /// By the index in [`super::PreparedLights::points`]; several maps look in several directions.
+    pub points: Vec<Vec<ShadowMap>>,
+}
+
+impl ShadowMaps {
+    /// Whether there are no maps.
+    pub fn is_empty(&self) -> bool {
+        self.directional.is_empty() && self.points.is_empty()
+    }
+}
+
+/// How much of a light reaches points, by its maps; all of it without maps and outside of them.
+///
+/// What faces away from the light is dark without a map, so all reaches it here.
+#[inline(always)]
+pub(super) fn reach<L: Lane>(
+    maps: Option<&Vec<ShadowMap>>,
+    position: Vec3Lane<L>,
+    face: Vec3Lane<L>,
+    to_light: Vec3Lane<L>,
+) -> L {
+    let one = position.x.splat(1.0);
+    match maps {
+        Some(maps) if !maps.is_empty() => {
+            let (p, n, l) = (position, face, to_light);
+            L::lanewise([p.x, p.y, p.z, n.x, n.y, n.z, l.x, l.y, l.z], |v| reach_one(maps, v))
+        }
+        _ => one,
+    }
+}
+
+#[inline(never)]
+fn reach_one(maps: &[ShadowMap], [px, py, pz, nx, ny, nz, lx, ly, lz]: [f32; 9]) -> f32 {
+    let (position, l) = (Vec3::new(px, py, pz), Vec3::new(lx, ly, lz));
+    let face = Vec3::new(nx, ny, nz).normalize_or_zero();
+    if face.dot(l) <= 0.0 {
+        return 1.0;
+    }
+    maps.iter().find_map(|map| map.reach(position, face, l)).unwrap_or(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DVec3;
+
+    /// A light above the plane z = 0 that looks down −z; texels of one unit, depth 0 at z = 10.
+    fn map(depths: Vec<f32>) -> ShadowMap {
+        let matrix = DMat4::from_cols_array_2d(&[
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, -0.1, 0.0],
+            [0.0, 0.0, 1.0, 1.0],
+        ]);
+        let side = depths.len() as u32 / 2;
+        let depths = Pixels::from_data(side, 2, depths).expect("size");
+        ShadowMap::new(&matrix, 1.0, false, depths).expect("map")
+    }
+
+    #[test]
+    fn what_is_behind_the_nearest_is_dark_and_edges_are_weighted() {
+        let map = map(vec![1.0, 0.5, 0.5, 1.0, 0.5, 0.5]);
+        let at = |x: f32, z: f32| map.reach(Vec3::new(x, 1.0, z), Vec3::Z, Vec3::Z);
+        assert_eq!((at(2.5, 1.0), at(2.5, 6.0)), (Some(0.0), Some(1.0)));
+        assert_eq!((at(0.5, 1.0), at(1.25, 1.0)), (Some(1.0), Some(0.25)));
+        assert_eq!((at(-0.1, 1.0), at(3.0, 1.0)), (None, None));
+    }
+
+    #[test]
+    fn a_slope_does_not_shadow_itself() {
+        // The plane z = x, with its depth at the texels' centres.
+        let depths = |x: f32| 1.0 - 0.1 * (x + 0.5);
+        let row: Vec<f32> = (0..4).map(|x| depths(x as f32)).collect();
+        let map = map([row.clone(), row].concat());
+        let normal = Vec3::new(-1.0, 0.0, 1.0).normalize();
+        for i in 0..30 {
+            let x = 0.1 + i as f32 * 0.1;
+            assert_eq!(map.reach(Vec3::new(x, 1.0, x), normal, Vec3::Z), Some(1.0), "{x}");
+        }
+    }
+
+    #[test]
+    fn maps_without_texels_or_sense_are_refused() {
+        let pixels = || Pixels::new(2, 2, 1.0);
+        assert!(ShadowMap::new(&DMat4::IDENTITY, 1.0, true, Pixels::new(0, 2, 1.0)).is_err());
+        assert!(ShadowMap::new(&DMat4::IDENTITY, f64::NAN, true, pixels()).is_err());
+        let wild = DMat4::from_translation(DVec3::splat(f64::INFINITY));
+        assert!(ShadowMap::new(&wild, 1.0, true, pixels()).is_err());
+    }
+}

@@ -1,0 +1,260 @@
+//! New views from given ones: forward warping of pictures with depth.
+//!
+//! L. McMillan, G. Bishop, *Plenoptic Modeling: An Image-Based Rendering System*, SIGGRAPH 1995, move
+//! every pixel to where a near camera sees its point; S. Chen, L. Williams, *View Interpolation for
+//! Image Synthesis*, SIGGRAPH 1993, keep the nearest by a z-buffer and speak of the holes. Image space.
+//! Each pixel is taken as a small square on its surface, whose slope comes from its neighbours' depths;
+//! window depth is linear on the screen, so squares of one plane join without a gap. Cost: O(pixels of
+//! all pictures + pixels lit); memory O(pixels of the new picture).
+//!
+//! Limits: what no picture shows is a hole; colours are those seen from the old eye; pixels that become
+//! larger than [`LARGEST`] are left out. What lies at depth 1 is background and moves with the far plane.
+
+use crate::info::{Class, Info};
+use crate::math::{DMat4, DVec2, DVec3, DVec4};
+use crate::scene::Camera;
+use crate::target::{Framebuffer, Pixels};
+use crate::trace::Tracer;
+use crate::view::View;
+use crate::{Error, Result};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "forward-warp",
+    title: "Forward warping with a z-buffer",
+    authors: "S. Chen, L. Williams; L. McMillan, G. Bishop",
+    year: 1993,
+    source: "View Interpolation for Image Synthesis, SIGGRAPH",
+    class: Class::ImageSpace,
+    cost: "O(pixels of the pictures + pixels lit) time, O(pixels of the new picture) memory",
+    limits: "what no picture shows is a hole; pixels that become very large are left out",
+};
+
+/// Pixels on a side that a pixel may cover in the new picture. A near camera does not need more, and
+/// wrong depths cannot make the work grow without bound.
+pub const LARGEST: f64 = 64.0;
+
+/// Half the side of a pixel's square, in pixels: a little more than half, so that squares with different
+/// slopes leave no gap.
+const HALF_SIDE: f64 = 0.5 + 1.0 / 16.0;
+
+/// A picture with depth and the camera it was made with.
+#[derive(Debug, Clone, Copy)]
+pub struct Source<'a> {
+    /// 8-bit sRGB with straight alpha.
+    pub color: &'a Pixels<[u8; 4]>,
+    /// Window depth 0 (near) … 1 (far), 1 where nothing is; of the same size.
+    pub depth: &'a Pixels<f32>,
+    /// The eye it was seen from.
+    pub camera: Camera,
+}
+
+/// How holes look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// The colour of pixels that no picture shows.
+    pub hole: [u8; 4],
+}
+
+impl Default for Options {
+    /// Magenta, which marks them.
+    fn default() -> Self {
+        Self { hole: [255, 0, 255, 255] }
+    }
+}
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A pixel of a picture finds its place.
+    Move {
+        /// Index of the picture.
+        source: usize,
+        /// Its column and row there.
+        from: [u32; 2],
+        /// Where its middle lies in the new picture, in pixels.
+        to: DVec2,
+        /// Its depth there.
+        depth: f64,
+    },
+    /// The pixel moved last is the nearest so far at a pixel of the new picture.
+    Write {
+        /// Column and row.
+        at: [u32; 2],
+    },
+}
+
+/// A new view.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warped {
+    /// Colour and depth; holes have depth 1.
+    pub framebuffer: Framebuffer,
+    /// Which picture a pixel comes from; [`HOLE`] where none shows it.
+    pub source: Pixels<u32>,
+    /// Pixels that no picture shows.
+    pub holes: u64,
+}
+
+/// The source of a pixel that no picture shows.
+pub const HOLE: u32 = u32::MAX;
+
+/// Makes the view of a camera from pictures: the first where it shows something, holes from the second,
+/// and so on.
+///
+/// # Errors
+/// [`Error::Parameter`] where a picture's depth has another size than its colours, or a camera cannot
+/// see ([`Camera::check`]).
+pub fn warp(
+    sources: &[Source<'_>],
+    camera: &Camera,
+    [width, height]: [u32; 2],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Warped> {
+    let view = View::new(*camera, width, height)?;
+    let mut framebuffer = Framebuffer::new(width, height).with_depth();
+    framebuffer.color.data_mut().fill(options.hole);
+    let mut chosen = Pixels::new(width, height, HOLE);
+    for (index, source) in sources.iter().enumerate() {
+        let mut layer = Layer::new(width, height);
+        layer.splat_all(index, source, &view, t)?;
+        let depths = framebuffer.depth.iter_mut().flat_map(|d| d.data_mut());
+        let colors = framebuffer.color.data_mut().iter_mut();
+        let planes = chosen.data_mut().iter_mut().zip(depths).zip(colors);
+        for (((chosen, depth), color), found) in planes.zip(&layer.nearest) {
+            if let (HOLE, Some((z, rgba))) = (*chosen, found) {
+                (*chosen, *depth, *color) = (index as u32, *z as f32, *rgba);
+            }
+        }
+    }
+    let holes = chosen.data().iter().filter(|s| **s == HOLE).count() as u64;
+    Ok(Warped { framebuffer, source: chosen, holes })
+}
+
+/// What one picture shows in the new view.
+struct Layer {
+    width: u32,
+    height: u32,
+    /// Depth and colour of the nearest so far.
+    nearest: Vec<Option<(f64, [u8; 4])>>,
+}
+
+impl Layer {
+    fn new(width: u32, height: u32) -> Self {
+        Self { width, height, nearest: vec![None; width as usize * height as usize] }
+    }
+
+    fn splat_all(
+        &mut self,
+        index: usize,
+        source: &Source<'_>,
+        view: &View,
+        t: &mut impl Tracer<Step>,
+    ) -> Result<()> {
+        let (w, h) = (source.color.width(), source.color.height());
+        if (source.depth.width(), source.depth.height()) != (w, h) {
+            let size = format!("{}x{}", source.depth.width(), source.depth.height());
+            return Err(Error::parameter("depth picture", size, "as large as its colour picture"));
+        }
+        let old = View::new(source.camera, w, h)?;
+        let new_from_old = view.screen_from_world() * old.screen_from_world().inverse();
+        if !new_from_old.is_finite() {
+            return Err(Error::parameter("camera", "one of the pictures'", "able to be inverted"));
+        }
+        for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+            let depth = f64::from(source.depth.get(x, y).unwrap_or(1.0));
+            let Some(rgba) = source.color.get(x, y).filter(|_| (0.0..=1.0).contains(&depth)) else {
+                continue;
+            };
+            let slope = slope(source.depth, x, y);
+            let center = DVec3::new(f64::from(x) + 0.5, f64::from(y) + 0.5, depth);
+            let Some(to) = moved(&new_from_old, center) else { continue };
+            t.step(|| {
+                let (to, depth) = (to.truncate(), to.z);
+                Step::Move { source: index, from: [x, y], to, depth }
+            });
+            if let Some(mut corners) = corners(&new_from_old, center, slope) {
+                if depth >= 1.0 {
+                    // Background stays background, wherever the new far plane is.
+                    corners.iter_mut().for_each(|c| c.z = 1.0);
+                }
+                self.splat(&corners, rgba, t);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lights the pixels whose centres lie in a square, where it is nearer than what is there.
+    fn splat(&mut self, corners: &[DVec3; 4], rgba: [u8; 4], t: &mut impl Tracer<Step>) {
+        let flat = corners.map(|c| c.truncate());
+        let (lo, hi) = flat.iter().fold((flat[0], flat[0]), |(l, h), &p| (l.min(p), h.max(p)));
+        let size = DVec2::new(f64::from(self.width), f64::from(self.height));
+        if (hi - lo).max_element() > LARGEST || lo.cmpge(size).any() || hi.cmple(DVec2::ZERO).any()
+        {
+            return;
+        }
+        let first = (lo - 0.5).ceil().max(DVec2::ZERO).as_uvec2();
+        let last = (hi - 0.5).floor().min(size - 1.0);
+        if last.cmplt(DVec2::ZERO).any() {
+            return;
+        }
+        let last = last.as_uvec2();
+        for (x, y) in (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| (x, y))) {
+            let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let [a, b, c, d] = *corners;
+            let Some(z) = depth_in([a, b, c], p).or_else(|| depth_in([a, c, d], p)) else {
+                continue;
+            };
+            let Some(place) = self.nearest.get_mut(y as usize * self.width as usize + x as usize)
+            else {
+                continue;
+            };
+            if (0.0..=1.0).contains(&z) && place.is_none_or(|(kept, _)| z < kept) {
+                *place = Some((z, rgba));
+                t.step(|| Step::Write { at: [x, y] });
+            }
+        }
+    }
+}
+
+/// A point of the old screen on the new one; `None` behind the eye.
+fn moved(new_from_old: &DMat4, p: DVec3) -> Option<DVec3> {
+    let q: DVec4 = *new_from_old * p.extend(1.0);
+    let place = q.truncate() / q.w;
+    (q.w > 0.0 && place.is_finite()).then_some(place)
+}
+
+/// The corners of a pixel's square in the new picture.
+fn corners(new_from_old: &DMat4, center: DVec3, slope: DVec2) -> Option<[DVec3; 4]> {
+    let corner = |x: f64, y: f64| {
+        let z = center.z + slope.x * x + slope.y * y;
+        moved(new_from_old, DVec3::new(center.x + x, center.y + y, z.clamp(0.0, 1.0)))
+    };
+    let h = HALF_SIDE;
+    Some([corner(-h, -h)?, corner(h, -h)?, corner(h, h)?, corner(-h, h)?])
+}
+
+/// Change of depth per pixel to the right and downwards: towards that neighbour whose depth is nearer,
+/// for the other may belong to another surface.
+fn slope(depth: &Pixels<f32>, x: u32, y: u32) -> DVec2 {
+    let here = depth.get(x, y).unwrap_or(1.0);
+    let along = |before: Option<f32>, after: Option<f32>| {
+        let differences = [before.map(|b| here - b), after.map(|a| a - here)];
+        let known = differences.into_iter().flatten().filter(|d| d.is_finite());
+        known.reduce(|a, b| if b.abs() < a.abs() { b } else { a }).map_or(0.0, f64::from)
+    };
+    let at = |x: Option<u32>, y: Option<u32>| depth.get(x?, y?);
+    DVec2::new(
+        along(at(x.checked_sub(1), Some(y)), at(x.checked_add(1), Some(y))),
+        along(at(Some(x), y.checked_sub(1)), at(Some(x), y.checked_add(1))),
+    )
+}
+
+/// The depth of a triangle at a point of the screen, if it covers it; its border belongs to it.
+fn depth_in([a, b, c]: [DVec3; 3], p: DVec2) -> Option<f64> {
+    let edge = |u: DVec3, v: DVec3| (v - u).truncate().perp_dot(p - u.truncate());
+    let e = [edge(b, c), edge(c, a), edge(a, b)];
+    let sum = e[0] + e[1] + e[2];
+    let inside = e.iter().all(|&e| e >= 0.0) || e.iter().all(|&e| e <= 0.0);
+    (inside && sum != 0.0).then(|| (e[0] * a.z + e[1] * b.z + e[2] * c.z) / sum)
+}

@@ -1,0 +1,65 @@
+//! Blended surfaces on their way over what was painted before: painter's order does the sorting.
+
+use crate::math::Vec4;
+use crate::shade::color::premultiply;
+use crate::target::Framebuffer;
+use crate::visibility::surface::background::background_rows;
+use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::layers::{below_color, over};
+use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::picture;
+use crate::visibility::surface::setup::Coverage;
+use crate::visibility::surface::visible::{Visible, pixels_of, write};
+
+/// What is opaque so far, and the sum of what was blended over it since.
+pub struct Glazed<'a> {
+    input: &'a SurfaceInput<'a>,
+    lighting: Lighting<'a>,
+    look: &'a picture::Options,
+    opaque: Visible,
+    /// Linear, premultiplied; `None` where nothing was blended since the latest opaque surface.
+    sums: Vec<Option<Vec4>>,
+    lit: Lit<'a>,
+}
+
+impl<'a> Glazed<'a> {
+    pub fn new(
+        input: &'a SurfaceInput<'a>,
+        lighting: Lighting<'a>,
+        look: &'a picture::Options,
+    ) -> Self {
+        let opaque = Visible::new(pixels_of(input.view));
+        let sums = vec![None; opaque.item.len()];
+        Self { input, lighting, look, opaque, sums, lit: Lit::new(lighting) }
+    }
+
+    /// Paints a pixel.
+    pub fn put(&mut self, [x, y]: [i32; 2], item: u32, depth: f32) {
+        if depth >= 1.0 {
+            return;
+        }
+        let index = self.opaque.index(x, y);
+        if self.input.run_of(item).coverage != Coverage::Blended {
+            self.opaque.put(x, y, depth, item);
+            self.sums[index] = None;
+            return;
+        }
+        let under = self.sums[index].unwrap_or_else(|| {
+            let behind = background_rows(self.look.background, self.input.view.height())(y);
+            below_color(&mut self.lit, self.opaque.item[index], premultiply(behind), [x, y])
+        });
+        self.sums[index] = Some(over(&mut self.lit, item, under, [x, y]));
+    }
+
+    /// Writes the colour plane, and no other.
+    pub fn write(self, framebuffer: &mut Framebuffer) {
+        let mut colors = Framebuffer::new(framebuffer.width(), framebuffer.height());
+        write(&self.opaque, self.lighting, self.look, &mut colors);
+        for (color, sum) in colors.color.data_mut().iter_mut().zip(&self.sums) {
+            if let Some(sum) = sum {
+                *color = crate::visibility::surface::mixed::encode(*sum);
+            }
+        }
+        framebuffer.color = colors.color;
+    }
+}

@@ -1,0 +1,124 @@
+//! Wireframe: every edge of every face, whether something is before it or not.
+//!
+//! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963,
+//! drew solids so before he found out which lines are hidden. Edges are clipped in homogeneous
+//! coordinates and drawn by J. Bresenham's lines; each edge once, though two faces share it. Cost:
+//! O(edges · log edges + pixels lit); memory O(edges).
+//!
+//! Limits: the picture is ambiguous — front and back cannot be told apart. That is what the other
+//! algorithms are for. Coherence used: none.
+
+use crate::clip::volume::{self, ClipVertex, clip_segment};
+use crate::info::{Class, Info};
+use crate::math::{DMat4, DVec2, DVec4, IVec2};
+use crate::raster::line::{self, bresenham};
+use crate::scene::{Mesh, Scene, Topology};
+use crate::target::Pixels;
+use crate::trace::{NoTrace, Tracer};
+use crate::view::View;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "wireframe",
+    title: "Wireframe",
+    authors: "L. G. Roberts",
+    year: 1963,
+    source: "Machine Perception of Three-Dimensional Solids, MIT Lincoln Laboratory TR 315",
+    class: Class::ImageSpace,
+    cost: "O(edges · log edges + pixels lit) time, O(edges) memory",
+    limits: "ambiguous: what is in front cannot be told",
+};
+
+/// How lines look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// 8-bit sRGB with straight alpha; replaces what is there.
+    pub color: [u8; 4],
+}
+
+impl Default for Options {
+    /// Black.
+    fn default() -> Self {
+        Self { color: [0, 0, 0, 255] }
+    }
+}
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// An edge, or what the view volume leaves of it, is drawn between two pixels.
+    Edge {
+        /// Index of the instance.
+        instance: usize,
+        /// Its vertices in the mesh.
+        vertices: [u32; 2],
+        /// The pixel where it begins.
+        from: IVec2,
+        /// The pixel where it ends.
+        to: IVec2,
+    },
+}
+
+/// Draws the edges of all faces and all lines of a scene, which has passed [`Scene::check`], over what
+/// is in the plane. Edges with an end that is not finite are left out.
+pub fn render(
+    scene: &Scene,
+    view: &View,
+    options: &Options,
+    target: &mut Pixels<[u8; 4]>,
+    t: &mut impl Tracer<Step>,
+) {
+    for (instance, placed) in scene.instances.iter().enumerate() {
+        let Some(mesh) = scene.meshes.get(placed.mesh) else { continue };
+        let clip_from_mesh = view.clip_from_world() * placed.world_from_mesh;
+        for vertices in edges(mesh) {
+            let Some([from, to]) = pixels_of(mesh, vertices, &clip_from_mesh, view) else {
+                continue;
+            };
+            t.step(|| Step::Edge { instance, vertices, from, to });
+            let last = IVec2::new(view.width() as i32 - 1, view.height() as i32 - 1);
+            let window = line::Options { window: Some((IVec2::ZERO, last)) };
+            let plot = |p: IVec2| target.set(p.x as u32, p.y as u32, options.color);
+            bresenham::draw(from, to, &window, plot, &mut NoTrace);
+        }
+    }
+}
+
+/// The edges of a mesh, each once, by their vertices.
+fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
+    let mut edges = Vec::new();
+    match mesh.topology {
+        Topology::Triangles => {
+            for i in 0..mesh.triangle_count() {
+                let [a, b, c] = mesh.triangle(i);
+                edges.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
+            }
+        }
+        Topology::Lines => edges.extend((0..mesh.primitive_count()).map(|i| mesh.line_or_point(i))),
+        Topology::Points => {}
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+/// The pixels at the ends of what is left of an edge within the view volume.
+fn pixels_of(
+    mesh: &Mesh,
+    vertices: [u32; 2],
+    clip_from_mesh: &DMat4,
+    view: &View,
+) -> Option<[IVec2; 2]> {
+    let mut ends = [ClipVertex { position: DVec4::ZERO, attributes: () }; 2];
+    for (end, vertex) in ends.iter_mut().zip(vertices) {
+        let p = mesh.positions.get(vertex as usize)?.as_dvec3();
+        end.position = *clip_from_mesh * p.extend(1.0);
+    }
+    let size = DVec2::new(f64::from(view.width()), f64::from(view.height()));
+    let clipped = clip_segment(ends, &volume::Options::default(), &mut NoTrace)?;
+    Some(clipped.map(|v| {
+        let ndc = DVec2::new(v.position.x, -v.position.y) / v.position.w;
+        // The right and lower border belong to the last pixels.
+        ((ndc + 1.0) * 0.5 * size).floor().min(size - 1.0).max(DVec2::ZERO).as_ivec2()
+    }))
+}
