@@ -4,6 +4,7 @@ mod conformance_geo;
 mod conformance_gltf;
 mod conformance_meshes;
 mod conformance_svg;
+mod drawing;
 mod fuzz;
 mod geo;
 mod gltf;
