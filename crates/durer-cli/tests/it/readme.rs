@@ -135,6 +135,7 @@ fn links_lead_to_files() {
         "CHANGELOG.md",
         "docs/performance.md",
         "docs/clip.md",
+        "docs/drawing.md",
         "docs/draw.md",
         "samples/README.md",
         "peers/render/README.md",

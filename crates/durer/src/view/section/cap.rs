@@ -207,7 +207,8 @@ fn winds(ring: &Ring, p: DVec2) -> bool {
         if (a.y <= p.y) != (b.y <= p.y) {
             let up = b.y > a.y;
             let turn = orient2d(a, b, p);
-            inside ^= turn == if up { Orientation::CounterClockwise } else { Orientation::Clockwise };
+            inside ^=
+                turn == if up { Orientation::CounterClockwise } else { Orientation::Clockwise };
         }
         a = b;
     }

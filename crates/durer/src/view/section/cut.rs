@@ -87,7 +87,11 @@ pub fn add_caps(mesh: &mut Mesh, caps: &[[u32; 3]], normal: crate::math::DVec3, 
     }
     let end = (indices.len() / 3) as u32;
     mesh.indices = Some(indices);
-    mesh.parts.push(Part { range: start..end, material: Some(material), name: "section".to_owned() });
+    mesh.parts.push(Part {
+        range: start..end,
+        material: Some(material),
+        name: "section".to_owned(),
+    });
 }
 
 struct Cutter<'a> {
@@ -116,7 +120,8 @@ impl Cutter<'_> {
             _ => {}
         }
         // Turned so that one corner is alone on its side.
-        let alone = (0..3).find(|&i| inside[i] != inside[(i + 1) % 3] && inside[i] != inside[(i + 2) % 3]);
+        let alone =
+            (0..3).find(|&i| inside[i] != inside[(i + 1) % 3] && inside[i] != inside[(i + 2) % 3]);
         let i = alone.unwrap_or(0);
         let [a, b, c] = [t[i], t[(i + 1) % 3], t[(i + 2) % 3]];
         let ((ab, p), (ac, q)) = (self.meet(a, b), self.meet(a, c));
@@ -148,7 +153,8 @@ impl Cutter<'_> {
     /// Where an edge meets the plane: its own vertex, and that of its place.
     fn meet(&mut self, v: u32, w: u32) -> (u32, u32) {
         // From the smaller of the welded vertices, so that both neighbours find the same place.
-        let (v, w) = if self.welded[v as usize] <= self.welded[w as usize] { (v, w) } else { (w, v) };
+        let (v, w) =
+            if self.welded[v as usize] <= self.welded[w as usize] { (v, w) } else { (w, v) };
         if let Some(&own) = self.vertices.get(&(v, w)) {
             return (own, self.places[&self.key(v, w)]);
         }

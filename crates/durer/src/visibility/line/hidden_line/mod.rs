@@ -256,9 +256,8 @@ fn feature_lines(rules: &Rules<'_>, projected: &Projected) -> Vec<FeatureLine> {
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
     let of = |vertices| {
         let lines = rules.lines(vertices).into_iter();
-        let line = |l: EdgeLine| {
-            FeatureLine::new(projected.edge(rules.faces, l.ends)?, l.class, l.items)
-        };
+        let line =
+            |l: EdgeLine| FeatureLine::new(projected.edge(rules.faces, l.ends)?, l.class, l.items);
         lines.filter_map(line).collect::<Vec<_>>()
     };
     parallel::map(jobs, of).into_iter().flatten().collect()
