@@ -5,6 +5,7 @@ mod clip;
 mod conformance_clip;
 mod conformance_models;
 mod draw;
+mod drawings;
 mod faults;
 mod fill;
 mod harness;

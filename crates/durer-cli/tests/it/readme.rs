@@ -36,6 +36,12 @@ fn arguments(line: &str) -> Option<Vec<String>> {
 
 /// The same command for a small picture.
 fn made_small(mut arguments: Vec<String>) -> Vec<String> {
+    // Drawings in vectors are small anyway.
+    let vectors = [".svg", ".pdf", ".dxf", ".hpgl", ".geojson"];
+    let output = arguments.iter().skip_while(|a| *a != "-o").nth(1);
+    if output.is_some_and(|a| vectors.iter().any(|v| a.ends_with(v))) {
+        return arguments;
+    }
     if !["render", "draw"].contains(&arguments[0].as_str()) {
         return arguments;
     }
@@ -135,6 +141,7 @@ fn links_lead_to_files() {
         "CHANGELOG.md",
         "docs/performance.md",
         "docs/clip.md",
+        "docs/drawing.md",
         "docs/draw.md",
         "docs/plot.md",
         "samples/README.md",

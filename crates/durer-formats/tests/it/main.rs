@@ -5,6 +5,7 @@ mod conformance_gltf;
 mod conformance_height_map;
 mod conformance_meshes;
 mod conformance_svg;
+mod drawing;
 mod fuzz;
 mod geo;
 mod gltf;

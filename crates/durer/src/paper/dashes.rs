@@ -105,7 +105,7 @@ impl Cutter<'_> {
             self.add(here);
             self.index = (self.index + 1) % self.dashes.len();
             self.left = self.dashes[self.index];
-            if self.index % 2 == 0 {
+            if self.draws() {
                 self.done.push(vec![here]);
             }
         }
@@ -113,11 +113,14 @@ impl Cutter<'_> {
         self.add(to);
     }
 
+    fn draws(&self) -> bool {
+        self.index.is_multiple_of(2)
+    }
+
     fn add(&mut self, point: DVec2) {
-        if let (true, Some(dash)) = (self.index % 2 == 0, self.done.last_mut()) {
-            if dash.last() != Some(&point) {
-                dash.push(point);
-            }
+        match (self.draws(), self.done.last_mut()) {
+            (true, Some(dash)) if dash.last() != Some(&point) => dash.push(point),
+            _ => {}
         }
     }
 }

@@ -46,8 +46,7 @@ struct Cells {
 pub fn third_angle(views: &Views, title: &TitleBlock, options: &Options) -> Result<LaidOut> {
     options.check()?;
     let bounds = |d: &Drawing| super::frame_of(d, super::Frame::Content);
-    let [front, top, right, iso] =
-        [views.front, views.top, views.right, views.iso].map(|d| bounds(d));
+    let [front, top, right, iso] = [views.front, views.top, views.right, views.iso].map(bounds);
     let cells = Cells {
         left: (front.min().x.min(top.min().x), front.max().x.max(top.max().x)),
         lower: (front.min().y.min(right.min().y), front.max().y.max(right.max().y)),

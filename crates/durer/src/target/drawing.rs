@@ -204,6 +204,7 @@ impl Drawing {
 
     /// Total length of the lines that `filter` lets through, plane units.
     pub fn length(&self, filter: impl Fn(&Line) -> bool) -> f64 {
-        self.lines.iter().filter(|l| filter(l)).map(Line::length).sum()
+        // The sum of no numbers is −0.
+        self.lines.iter().filter(|l| filter(l)).map(Line::length).sum::<f64>() + 0.0
     }
 }

@@ -1,0 +1,107 @@
+//! Drawings from the command line: golden files, layers, errors, reports.
+
+use crate::harness::{Folder, Picture};
+use std::fs;
+use std::path::Path;
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+/// Name, model, options.
+const GOLDEN: &[(&str, &str, &str)] = &[
+    ("cube", "cube.obj", "--hidden dashed"),
+    ("cube_wireframe", "cube.obj", "--style wireframe --view front --page A6"),
+    ("bracket", "bracket.stl", "--hidden dashed --page A4"),
+    ("bracket_sheet", "bracket.stl", "--sheet third-angle --hidden dashed --page A4"),
+    ("teapot", "teapot.obj", "--azimuth 25 --elevation 22"),
+    ("crate", "crate.glb", "--style regions+lines --merge material --azimuth -25 --elevation 20"),
+];
+
+/// A folder with the cube and the samples' models.
+fn folder() -> Folder {
+    let folder = Folder::with_models();
+    for name in ["bracket.stl", "teapot.obj", "crate.glb"] {
+        fs::copy(root().join("samples").join(name), folder.path(name)).unwrap();
+    }
+    folder
+}
+
+/// `DURER_BLESS=1` rewrites the files.
+#[test]
+fn drawings_are_the_golden_ones() {
+    let (folder, golden) = (folder(), root().join("crates/durer-cli/tests/golden"));
+    for (name, model, options) in GOLDEN {
+        folder.must(&format!("render {model} -o {name}.svg {options}"));
+        let (found, path) =
+            (folder.read(&format!("{name}.svg")), golden.join(format!("{name}.svg")));
+        if std::env::var_os("DURER_BLESS").is_some() {
+            fs::create_dir_all(&golden).unwrap();
+            fs::write(&path, &found).unwrap();
+        }
+        let same = fs::read(&path).is_ok_and(|expected| expected == found);
+        assert!(same, "{name}.svg differs from {}; DURER_BLESS=1 rewrites it", path.display());
+    }
+}
+
+#[test]
+fn a_cube_has_nine_visible_edges_and_three_hidden() {
+    let folder = Folder::with_models();
+    let ended = folder.must("render cube.obj -o cube.svg --hidden dashed --scale 10:1 --json");
+    let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];
+    assert_eq!(drawing["scale_text"], "10:1");
+    let total = |kind: &str| -> f64 {
+        let lines = drawing["lines"].as_array().unwrap();
+        lines.iter().map(|c| c[kind]["length"].as_f64().unwrap()).sum()
+    };
+    // Edges of length 2, shortened alike.
+    let edge = 2.0 * (2.0f64 / 3.0).sqrt();
+    assert!((total("visible") / edge - 9.0).abs() < 1e-3, "{}", total("visible") / edge);
+    assert!((total("hidden") / edge - 3.0).abs() < 1e-3, "{}", total("hidden") / edge);
+}
+
+#[test]
+fn every_format_is_written_by_suffix_and_by_name() {
+    let folder = Folder::with_models();
+    let starts: [(&str, &[u8]); 5] = [
+        ("svg", b"<svg"),
+        ("pdf", b"%PDF-1.5"),
+        ("dxf", b"  0\nSECTION"),
+        ("hpgl", b"IN;"),
+        ("geojson", b"{\"type\":\"FeatureCollection\""),
+    ];
+    for (format, start) in starts {
+        folder.must(&format!("render cube.obj -o cube.{format}"));
+        let file = folder.read(&format!("cube.{format}"));
+        assert!(file.starts_with(start), "{format}");
+        let piped = folder.must(&format!("render cube.obj -o - --format {format}")).out;
+        assert_eq!(piped, file, "{format}");
+    }
+    folder.must("render cube.obj -o many/ --format svg --turntable 2");
+    assert!(!folder.read("many/cube_0001.svg").is_empty());
+    folder.must("render cube.obj -o cube.png --style regions+lines --size 80x60");
+    let picture = Picture::decode(&folder.read("cube.png"));
+    assert_eq!(picture.size(), (80, 60));
+    assert!(picture.shows_something());
+}
+
+#[test]
+fn options_that_do_not_fit_say_what_does() {
+    let folder = Folder::with_models();
+    let cases = [
+        ("-o a.svg --aa 16", "--aa is not for a vector drawing"),
+        ("-o a.pdf --size 100x100", "use --page"),
+        ("-o a.dxf --algorithm warnock", "--style"),
+        ("-o a.png --pen 0.3", "give --style"),
+        ("-o a.svg --pen silhouette=wide", "WIDTH[,CLASS=WIDTH"),
+        ("-o a.svg --page A4 --scale 500:1", "the page has room for"),
+        ("-o a.svg --page B4711", "WIDTHxHEIGHT in millimetres"),
+        ("-o a.svg --sheet third-angle --view top", "has its own four views"),
+        ("-o a.geojson --sheet third-angle", "GeoJSON has no paper"),
+        ("-o a.svg --lines edges", "silhouette"),
+    ];
+    for (options, part) in cases {
+        folder.run(&format!("render cube.obj {options}")).fails(2, part);
+    }
+    assert_eq!(folder.names(), ["broken.obj", "cube.obj"]);
+}
