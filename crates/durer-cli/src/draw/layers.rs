@@ -213,8 +213,8 @@ fn last<T: Clone + Send + Sync + 'static>(
     place: &Range<usize>,
 ) -> Option<T> {
     let values = matches.get_many::<T>(name)?;
-    let placed = matches.indices_of(name)?.zip(values);
-    placed.filter(|(index, _)| place.contains(index)).last().map(|(_, value)| value.clone())
+    let mut placed = matches.indices_of(name)?.zip(values);
+    placed.rfind(|(index, _)| place.contains(index)).map(|(_, value)| value.clone())
 }
 
 #[cfg(test)]

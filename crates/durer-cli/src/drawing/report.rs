@@ -64,7 +64,8 @@ impl DrawingReport {
             scale: laid.scale,
             scale_text: scale_text(laid.scale),
             regions: regions().count(),
-            region_area: regions().map(|r| r.area()).sum(),
+            // The sum of no numbers is −0.
+            region_area: regions().map(|r| r.area()).sum::<f64>() + 0.0,
             lines: LineClass::ALL.iter().filter_map(class).collect(),
         }
     }

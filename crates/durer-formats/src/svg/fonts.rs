@@ -41,11 +41,9 @@ impl Default for Fonts {
 }
 
 impl Fonts {
-    pub(super) const NONE: Self = Self { database: OnceLock::new() };
-
     /// No fonts.
-    pub fn new() -> Self {
-        Self::NONE
+    pub const fn new() -> Self {
+        Self { database: OnceLock::new() }
     }
 
     /// Adds the fonts of a file; gives how many there are in it, 0 where the bytes are no font.

@@ -67,7 +67,7 @@ pub struct ReadOptions<'a> {
 impl Default for ReadOptions<'_> {
     /// No fonts, no resources, the default limits.
     fn default() -> Self {
-        static NONE: Fonts = Fonts::NONE;
+        static NONE: Fonts = Fonts::new();
         Self { fonts: &NONE, resources: &NoResources, limits: Limits::default() }
     }
 }

@@ -152,7 +152,8 @@ const MOST_DROPPED: usize = 64;
 fn straight(map: &Planar, chain: &[u32], mut tell: impl FnMut(u32)) {
     let at = |i: usize| map.points[chain[i] as usize];
     let mut from = 0;
-    for i in 1..chain.len().saturating_sub(1) {
+    let inner = chain.iter().enumerate().take(chain.len().saturating_sub(1)).skip(1);
+    for (i, &vertex) in inner {
         let (a, b) = (at(from), at(i + 1));
         let reach = (float(b) - float(a)).length();
         let near = |k: usize| {
@@ -161,7 +162,7 @@ fn straight(map: &Planar, chain: &[u32], mut tell: impl FnMut(u32)) {
             forward && (cross(a, b, p) as f64).abs() <= reach
         };
         if i - from <= MOST_DROPPED && (from + 1..=i).all(near) {
-            tell(chain[i]);
+            tell(vertex);
         } else {
             from = i;
         }

@@ -79,7 +79,7 @@ impl Planar {
         for vertex in 0..self.points.len() as u32 {
             let around = self.around(vertex);
             let kept = |half: &&u32| keep(**half as usize / 2);
-            let Some(mut before) = around.iter().filter(kept).next_back().copied() else {
+            let Some(mut before) = around.iter().rfind(kept).copied() else {
                 continue;
             };
             for &half in around.iter().filter(kept) {

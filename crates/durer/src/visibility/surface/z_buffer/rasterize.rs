@@ -142,13 +142,13 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     let lane_y = i32x8::from_slice(simd, &plane.lanes[1]);
     let mut edges = LaneEdges { row: [lane_x; 3], step_y: [0; 3] };
     let mut step_x = [0; 3];
-    for i in 0..3 {
+    for (i, step_x) in step_x.iter_mut().enumerate() {
         let j = (i + 1) % 3;
         let (dx, dy) = (t.x[j] - t.x[i], t.y[j] - t.y[i]);
         let at = dx * (py - t.y[i]) - dy * (px - t.x[i]) - i32::from(!top_left(dx, dy));
         edges.row[i] = lane_y * dx - lane_x * dy + at;
         edges.step_y[i] = dx * SUBPIXELS;
-        step_x[i] = -dy * SUBPIXELS;
+        *step_x = -dy * SUBPIXELS;
     }
     loop {
         fill_rows(simd, plane, t, tile, edges, [x, y0, y1], test);
@@ -159,8 +159,8 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
         // The last step may not reach beyond the tile.
         let over = (x + columns - TILE).max(0);
         x -= over;
-        for i in 0..3 {
-            edges.row[i] += step_x[i] * (columns - over);
+        for (row, step) in edges.row.iter_mut().zip(step_x) {
+            *row += step * (columns - over);
         }
     }
 }
