@@ -103,12 +103,12 @@ fn crossing(
 ) -> [f64; 3] {
     let mut point = line.at(convex::parameter(&planes[border], line));
     let w = point[2];
-    for axis in 0..2 {
+    for (axis, value) in point.iter_mut().take(2).enumerate() {
         let [min, max] = window.borders[axis].map(|border| border * w);
-        point[axis] = match border.wrapping_sub(2 * axis) {
+        *value = match border.wrapping_sub(2 * axis) {
             0 => min,
             1 => max,
-            _ => clamped(point[axis], min, max),
+            _ => clamped(*value, min, max),
         };
     }
     if border == 4 {
