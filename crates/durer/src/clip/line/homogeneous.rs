@@ -52,6 +52,9 @@ pub fn clip(
 /// The part of a segment of homogeneous points (x, y, w) whose places (x/w, y/w) are in the closed
 /// rectangle; w > 0 at both of its ends.
 ///
+/// A segment that leads through the null vector (0, 0, 0), or so near that w rounds to 0 where it is cut,
+/// is left out: that end has no place.
+///
 /// ```
 /// use durer::clip::line::{Segment, homogeneous::clip_homogeneous};
 /// use durer::math::{DVec2, DVec3, Rect};
