@@ -9,7 +9,10 @@ mod geo;
 #[path = "../../../../fuzz/bodies/model.rs"]
 mod model;
 
-const TARGETS: [(&str, fn(&[u8])); 12] = [
+/// What a target does with bytes.
+type Body = fn(&[u8]);
+
+const TARGETS: [(&str, Body); 12] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
