@@ -9,6 +9,7 @@ use crate::input;
 use crate::messages::Messages;
 use crate::output::{self, Kind, Name, Target};
 use crate::report::{self, Failed, ModelReport, PictureReport, Report};
+use crate::section;
 use crate::values::{Algorithm, Size};
 use durer::pipeline::{self, Lighting, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::Scene;
