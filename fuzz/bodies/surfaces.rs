@@ -93,7 +93,7 @@ fn camera(bytes: &mut Bytes<'_>) -> Camera {
         n => Projection::Perspective { fov_y: 0.3 + f64::from(n) / 128.0 },
     };
     let target = bytes.point().as_dvec3() * 0.3;
-    let up = if bytes.next() % 2 == 0 { DVec3::Y } else { DVec3::new(0.3, 0.5, 0.8) };
+    let up = if bytes.next().is_multiple_of(2) { DVec3::Y } else { DVec3::new(0.3, 0.5, 0.8) };
     Camera { eye, target, up, projection, near: 0.05, far: 6.0 }
 }
 

@@ -71,6 +71,9 @@ pub enum Command {
     /// Make a new view from a picture and its depths, for a camera near by
     #[command(after_long_help = crate::warp::EXAMPLES, after_help = "--help shows more, and examples.")]
     Warp(Box<crate::warp::WarpArgs>),
+    /// Plot a surface y = f(x, z): a formula or a height map
+    #[command(after_long_help = crate::plot::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Plot(Box<crate::plot::PlotArgs>),
     /// Write a completion script for a shell to standard output
     Completions {
         /// The shell

@@ -17,6 +17,7 @@ mod lights;
 mod messages;
 mod output;
 mod pick;
+mod plot;
 mod progress;
 mod render;
 mod report;
@@ -68,6 +69,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
         Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
+        Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),
     }

@@ -134,6 +134,25 @@ fn single(option: &str, path: &Path, kind: Kind) -> Result<Target, Failure> {
                     .hpgl, .geojson)";
         return Err(usage(option, path, if option == "--output" { hint } else { PNG_ONLY }));
     }
+    in_its_folder(path)
+}
+
+/// One file of any format, or `-` for standard output; nothing is read or written yet.
+pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
+    if is_stream(path) {
+        return stdout_target(option);
+    }
+    if is_special(path) {
+        return Ok(Target::File(path.to_owned()));
+    }
+    if path.is_dir() || ends_in_separator(path) {
+        return Err(usage(option, path, "it is a folder; name a file in it"));
+    }
+    in_its_folder(path)
+}
+
+/// A file in a folder that is there.
+fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(folder) {
         Ok(m) if m.is_dir() => Ok(Target::File(path.to_owned())),

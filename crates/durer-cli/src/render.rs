@@ -134,7 +134,8 @@ fn algorithm(args: &RenderArgs, scene: &Scene) -> Algorithm {
 fn tell_opaque(args: &RenderArgs, name: &str, scene: &Scene, messages: &Messages) {
     let blends = SurfaceMethod::for_scene(scene) == SurfaceMethod::ABuffer;
     let unable = |m: &SurfaceMethod| {
-        !m.composes() && !(*m == SurfaceMethod::Ray && asks_for_rays(args).is_some())
+        let by_rays = *m == SurfaceMethod::Ray && asks_for_rays(args).is_some();
+        !m.composes() && !by_rays
     };
     let methods: Vec<&str> = match algorithm(args, scene) {
         Algorithm::Surfaces(method) => {

@@ -135,6 +135,12 @@ pub fn bytes(text: &str) -> Result<u64, String> {
     count(digits)?.checked_mul(factor).ok_or_else(|| "the number is too large".to_owned())
 }
 
+/// `FROM,TO`, finite, the first the smaller.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "a range is FROM,TO, the first the smaller, e.g. -4,4".to_owned();
+    numbers(text).filter(|[from, to]| from < to).ok_or_else(wrong)
+}
+
 /// `x,y,z`, all finite.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     let parts: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;

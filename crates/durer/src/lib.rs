@@ -66,6 +66,7 @@
 //! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are no rectangles |
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
+//! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
 //! | [Polylines](clip::line::polyline) | polygon with holes | chains with attributes, inside or outside part |
 //!

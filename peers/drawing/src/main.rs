@@ -1,14 +1,13 @@
 //! Measures line drawings: hiding alone, in CPU seconds, and what comes out.
 //!
-//! `drawing hide MODEL|bumps:N [--azimuth A] [--elevation E] [--classes all|wire] [--no-hidden] [--all-intersections]
-//! [--svg FILE] [--rounds N]`
+//! `make FILE.obj --triangles N` or `hide MODEL`; README.md has the options.
 
 use durer::target::drawing::Drawing;
 use durer::trace::NoTrace;
 use durer::view::View;
-use durer::view::projection::{FitOptions, Lens, ViewDirection, fit_scene};
+use durer::view::projection::{FitOptions, Lens, ViewDirection, fit_box};
 use durer::visibility::line::hidden_line::{self, Options};
-use durer::visibility::line::{ClassSet, Intersections};
+use durer::visibility::line::Intersections;
 use durer_formats::{ReadOptions, Resources};
 use std::fmt::Write as _;
 
@@ -50,7 +49,7 @@ fn main() {
     )
     .expect("view");
     let fit = FitOptions { lens: Lens::Orthographic, ..FitOptions::default() };
-    let camera = fit_scene(&scene, &direction, &fit).expect("camera");
+    let camera = fit_box(scene.bounds().as_ref(), &direction, &fit).expect("camera");
     let view = View::new(camera, 1000, 1000).expect("view");
     let mut options = Options { hidden: !has("--no-hidden"), pen_order: has("--pen"), ..Options::default() };
     options.tolerance = number("--tolerance", options.tolerance);
@@ -63,7 +62,6 @@ fn main() {
     if has("--no-intersections") {
         options.classes = options.classes.without(durer::target::drawing::LineClass::Intersection);
     }
-    let _: ClassSet = options.classes;
     let mut seconds = Vec::new();
     let mut drawing = Drawing::default();
     for _ in 0..number("--rounds", 1.0) as usize {

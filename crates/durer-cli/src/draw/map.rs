@@ -97,6 +97,10 @@ impl Job<'_> {
             features.push(feature);
         }
         self.warn(&name, reader.warnings());
+        let more = reader.further_warnings();
+        if more > 0 {
+            self.report.warnings.push(format!("and {more} more"));
+        }
         Ok(features)
     }
 }

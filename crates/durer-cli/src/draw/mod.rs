@@ -186,7 +186,7 @@ fn frame(viewport: &Viewport) -> durer::curve::Path {
     durer::curve::Path::rectangle(x, y, f64::from(p.width()), f64::from(p.height()))
 }
 
-/// Whether standard input is what a path stands for; such a file has no folder.
+/// Whether a layer is a file, which has a folder, and not standard input.
 fn has_folder(layer: &Layer) -> bool {
     !is_stream(&layer.input)
 }

@@ -122,7 +122,9 @@ fn a_warped_picture_is_nearly_the_rendered_one() {
     let pairs = warped.pixels().zip(right.pixels());
     let differing = pairs.filter(|(a, b)| a[..3] != b[..3]).count() as u64;
     let holes = report["holes"].as_u64().unwrap();
-    assert!(holes > 0 && differing < 500 && holes <= differing, "{holes} {differing}");
+    // What comes into the picture at its border, and from behind the cube; else outlines only.
+    assert!(holes > 0 && holes < 700, "{holes}");
+    assert!(holes <= differing && differing < holes + 100, "{holes} {differing}");
     // Warped from the very camera, the second picture leaves no hole.
     let report = warp("--fill b.png b_d.png --fill-eye 0.3,3.1,7");
     assert_eq!((&report["holes"], &report["filled"]), (&0.into(), &holes.into()));

@@ -13,6 +13,7 @@ mod options;
 mod outputs;
 mod pick;
 mod pictures;
+mod plot;
 mod readme;
 mod resources;
 mod streams;

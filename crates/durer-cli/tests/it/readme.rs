@@ -136,6 +136,7 @@ fn links_lead_to_files() {
         "docs/performance.md",
         "docs/clip.md",
         "docs/draw.md",
+        "docs/plot.md",
         "samples/README.md",
         "peers/render/README.md",
     ];

@@ -95,6 +95,12 @@ impl Fonts {
         }
     }
 
+    /// The family of text that names none.
+    pub(super) fn default_family(&self) -> String {
+        let database = self.database.get();
+        database.map_or_else(String::new, |d| d.family_name(&Family::SansSerif).to_owned())
+    }
+
     pub(super) fn database(&self) -> Arc<Database> {
         self.database.get().cloned().unwrap_or_default()
     }

@@ -30,6 +30,7 @@ mod paint;
 
 pub use fonts::Fonts;
 
+use crate::gltf::uri::relative_path;
 use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
@@ -92,10 +93,17 @@ impl Drawing {
         })?;
         let xml = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
         let document = roxmltree::Document::parse_with_options(text, xml).map_err(not_xml)?;
+        let root = document.root_element().tag_name();
+        if root != ROOT.into() {
+            let name = root.name();
+            let message = format!("the root is `{name}`, not `svg` with xmlns=\"{}\"", ROOT.0);
+            return Err(Error::line(1, 0, message));
+        }
         let mut warnings = passed_over(&document);
         let (tree, told) = {
             let told = Told::default();
             let usvg_options = usvg::Options {
+                font_family: options.fonts.default_family(),
                 fontdb: options.fonts.database(),
                 font_resolver: fonts::resolver(&told),
                 image_href_resolver: images(options, &told),
@@ -133,7 +141,8 @@ impl Drawing {
     }
 }
 
-const TEXT: (&str, &str) = ("http://www.w3.org/2000/svg", "text");
+const ROOT: (&str, &str) = ("http://www.w3.org/2000/svg", "svg");
+const TEXT: (&str, &str) = (ROOT.0, "text");
 
 fn warning(message: impl Into<String>) -> Warning {
     Warning { place: Place::Whole, message: message.into() }
@@ -192,11 +201,14 @@ fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a
     let (resources, limit) = (options.resources, options.limits.decoded_bytes);
     ImageHrefResolver {
         resolve_data: ImageHrefResolver::default_data_resolver(),
-        resolve_string: Box::new(move |href, usvg_options| match resources.read(href, limit) {
-            Ok(bytes) => kind_of(bytes, usvg_options),
-            Err(why) => {
-                told.tell(format!("image `{href}` is left out: {why}"));
-                None
+        resolve_string: Box::new(move |href, usvg_options| {
+            let path = relative_path(href).map_err(str::to_owned);
+            match path.and_then(|path| resources.read(&path, limit)) {
+                Ok(bytes) => kind_of(bytes, usvg_options),
+                Err(why) => {
+                    told.tell(format!("image `{href}` is left out: {why}"));
+                    None
+                }
             }
         }),
     }

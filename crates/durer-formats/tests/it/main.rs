@@ -2,10 +2,13 @@
 
 mod conformance_geo;
 mod conformance_gltf;
+mod conformance_height_map;
 mod conformance_meshes;
 mod conformance_svg;
+mod fuzz;
 mod geo;
 mod gltf;
+mod height_map;
 mod mesh_properties;
 mod shared;
 mod svg;

@@ -84,7 +84,7 @@ pub fn draw(p: &Pipeline, primitive: Primitive, vertices: &[Vertex], target: &mu
             corners.as_chunks().0.iter().for_each(|ends| segment(p, *ends, target));
         }
         Primitive::LineStrip => {
-            corners.array_windows().for_each(|ends| segment(p, *ends, target));
+            corners.windows(2).for_each(|ends| segment(p, [ends[0], ends[1]], target));
         }
         Primitive::Triangles => {
             corners.as_chunks::<3>().0.iter().for_each(|ring| polygon(p, ring, target));

@@ -291,8 +291,12 @@ impl Layout {
     }
 
     fn sheet(&self, drawing: &Drawing, lines: &[Colored], options: &Options) -> Sheet {
-        let mut sheet =
-            Sheet { size: options.page, background: options.background, ..Sheet::default() };
+        let mut sheet = Sheet {
+            title: options.title.clone(),
+            size: options.page,
+            background: options.background,
+            ..Sheet::default()
+        };
         let fills = drawing.regions.iter().map(|region| {
             let ring = |r: &Vec<DVec2>| r.iter().map(|&p| self.place(p)).collect();
             Mark::Fill { rings: region.rings.iter().map(ring).collect(), color: region.color }

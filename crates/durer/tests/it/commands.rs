@@ -170,10 +170,13 @@ fn evaluators_draw_curves_and_patches() {
     let (target, _) = run(&commands, &DisplayLists::default());
     let lit = count(&target, RED);
     assert!((18..=36).contains(&lit), "{lit}");
-    let line =
-        vec![DVec3::new(-0.9, -0.5, 0.0), DVec3::new(0.0, -0.5, 0.0), DVec3::new(0.9, -0.5, 0.0)];
+    let line = vec![
+        DVec3::new(-0.875, -0.5, 0.0),
+        DVec3::new(0.0, -0.5, 0.0),
+        DVec3::new(0.875, -0.5, 0.0),
+    ];
     let commands = [color(1., 0., 0.), Command::EvaluateCurve(Curve::Bezier(line), 7)];
-    assert_eq!(count(&run(&commands, &DisplayLists::default()).0, RED), 37);
+    assert_eq!(count(&run(&commands, &DisplayLists::default()).0, RED), 36);
     let row = |y: f64| vec![DVec3::new(-0.5, y, 0.0), DVec3::new(0.5, y, 0.0)];
     let patch = Patch { rows: vec![row(-0.5), row(0.0), row(0.5)] };
     let commands = [color(1., 0., 0.), Command::EvaluatePatch(patch, [3, 5])];

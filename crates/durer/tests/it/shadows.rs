@@ -33,7 +33,8 @@ fn scene() -> Scene {
 }
 
 fn lights() -> Vec<(&'static str, LightKind)> {
-    let position = DVec3::new(1.5, 3.0, 2.0);
+    // From behind on the right, so that shadows fall to the front.
+    let position = DVec3::new(2.6, 2.5, -1.5);
     let direction = (DVec3::new(0.1, -0.6, 0.0) - position).normalize();
     let spot = |outer: f64| LightKind::Spot { position, direction, range: None, inner: 0.0, outer };
     vec![
@@ -71,12 +72,12 @@ fn picture(
     render(&scene(), &options).expect("picture").0
 }
 
-/// Whether a pixel is as its neighbours are, up to shading.
-fn is_inner(framebuffer: &Framebuffer, x: u32, y: u32) -> bool {
-    let at = |x: u32, y: u32| framebuffer.color.get(x, y).map_or(0, |c| c[1]);
-    let around = (y.saturating_sub(1)..=y + 1)
-        .flat_map(|j| (x.saturating_sub(1)..=x + 1).map(move |i| (i, j)));
-    around.into_iter().all(|(i, j)| at(i, j).abs_diff(at(x, y)) <= 12)
+/// Whether rays say the same, lit or in shadow, of all pixels around one.
+fn is_inner(none: &Framebuffer, rays: &Framebuffer, x: u32, y: u32) -> bool {
+    let dark = |x: u32, y: u32| none.color.get(x, y) != rays.color.get(x, y);
+    let mut around = (y.saturating_sub(2)..=y + 2)
+        .flat_map(|j| (x.saturating_sub(2)..=x + 2).map(move |i| (i, j)));
+    around.all(|(i, j)| dark(i, j) == dark(x, y))
 }
 
 #[test]
@@ -89,7 +90,7 @@ fn maps_and_rays_agree_away_from_edges() {
             let (mut inner, mut dark) = (0, 0);
             for (x, y) in (0..90).flat_map(|y| (0..120).map(move |x| (x, y))) {
                 let green = |f: &Framebuffer| f.color.get(x, y).map_or(0, |c| u32::from(c[1]));
-                if !is_inner(&rays, x, y) || !is_inner(&map, x, y) {
+                if !is_inner(&none, &rays, x, y) {
                     continue;
                 }
                 inner += 1;
@@ -102,7 +103,7 @@ fn maps_and_rays_agree_away_from_edges() {
                     green(&rays)
                 );
             }
-            assert!(inner > 7000 && dark > 300, "{name}: {inner} inner pixels, {dark} in shadow");
+            assert!(inner > 7000 && dark > 100, "{name}: {inner} inner pixels, {dark} in shadow");
         }
     }
 }

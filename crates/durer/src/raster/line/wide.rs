@@ -62,7 +62,7 @@ const MAX_DASHES: f64 = 100_000.0;
 
 /// Dots — dashes and contours without length, with round or square caps — are lines as long as this share
 /// of the width: too short to be seen, long enough to have a direction.
-const DOT: f64 = 1e-3;
+const DOT: f64 = 1e-4;
 
 /// The outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is
 /// at most `tolerance`. Elements with points that are not finite are left out.
@@ -113,6 +113,10 @@ fn style(stroke: &Stroke, source: &BezPath) -> kurbo::Stroke {
         let twice = if stroke.dashes.len() % 2 == 1 { 2 } else { 1 };
         let mut dashes: Vec<f64> = (0..twice).flat_map(|_| stroke.dashes.iter().copied()).collect();
         if stroke.cap != Cap::Butt {
+            if dashes.iter().step_by(2).all(|d| *d == 0.0) {
+                // Dots at corners have none themselves.
+                style = style.with_join(kurbo::Join::Round);
+            }
             lengthen_dots(&mut dashes, stroke.width * DOT);
         }
         let offset = stroke.dash_offset.rem_euclid(dashes.iter().sum());

@@ -55,8 +55,11 @@ struct Painter<P> {
     background: Option<Color>,
     /// A layer for each open group.
     layers: Vec<Vec<P>>,
-    /// Coverage of the open clip paths, each multiplied with those below it.
+    /// Coverage of the open clip paths, each multiplied with those below it in the same layer.
     clips: Vec<Vec<u8>>,
+    /// For each layer how many clip paths were open when it was begun: they do not clip what is painted
+    /// onto it, but the layer as a whole, or edges would be thinned twice.
+    floors: Vec<usize>,
     coverage: Vec<u32>,
     colors: Vec<P>,
     /// Whether what was popped can be used again.
@@ -73,6 +76,7 @@ impl<P: Space> Painter<P> {
             background: canvas.background,
             layers: Vec::new(),
             clips: Vec::new(),
+            floors: Vec::new(),
             coverage: vec![0; width],
             colors: vec![P::CLEAR; width],
             spare: Vec::new(),
@@ -133,10 +137,7 @@ impl<P: Space> Painter<P> {
                 Prepared::PopClip => drop(self.clips.pop()),
                 Prepared::PushGroup => self.push_group(base.len()),
                 Prepared::PopGroup { opacity } => self.pop_group(*opacity, base),
-                Prepared::BeginMask => {
-                    self.push_group(base.len());
-                    self.clips.push(vec![255; base.len()]);
-                }
+                Prepared::BeginMask => self.push_group(base.len()),
                 Prepared::EndMask { kind } => self.end_mask(*kind),
             }
         }
@@ -150,10 +151,10 @@ impl<P: Space> Painter<P> {
         source: &Source<P>,
         (top, anti_alias, base): (i32, bool, &mut [P]),
     ) {
-        let Self { filler, layers, clips, coverage, colors, .. } = self;
+        let Self { filler, layers, clips, floors, coverage, colors, .. } = self;
         let width = self.width;
         let layer = layers.last_mut().map_or(base, |l| l.as_mut_slice());
-        let clip = clips.last();
+        let clip = clip_in_force(clips, floors);
         let color = source.color();
         let paint = |simd: S, row: i32, runs: &[Run], own: &[u32]| {
             let start = row as usize * width;
@@ -202,7 +203,7 @@ impl<P: Space> Painter<P> {
         (top, anti_alias): (i32, bool),
     ) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
-        let (width, below) = (self.width, self.clips.last());
+        let (width, below) = (self.width, clip_in_force(&self.clips, &self.floors));
         if !path.misses(top) {
             let write = |_: S, row: i32, runs: &[Run], own: &[u32]| {
                 let start = row as usize * width;
@@ -225,19 +226,22 @@ impl<P: Space> Painter<P> {
         layer.clear();
         layer.resize(len, P::CLEAR);
         self.layers.push(layer);
+        self.floors.push(self.clips.len());
     }
 
     /// Makes a clip of the last layer.
     fn end_mask(&mut self, kind: MaskKind) {
-        let (Some(layer), Some(mut clip)) = (self.layers.pop(), self.clips.pop()) else { return };
-        let below = self.clips.last();
-        for (i, (mask, pixel)) in clip.iter_mut().zip(&layer).enumerate() {
-            let own = match kind {
-                MaskKind::Alpha => pixel.alpha(),
-                MaskKind::Luminance => pixel.luminance(),
-            };
-            *mask = multiplied(u32::from(own), below.map_or(255, |b| b[i])) as u8;
-        }
+        let Some(layer) = self.layers.pop() else { return };
+        self.floors.pop();
+        let below = clip_in_force(&self.clips, &self.floors);
+        let own = |pixel: &P| match kind {
+            MaskKind::Alpha => pixel.alpha(),
+            MaskKind::Luminance => pixel.luminance(),
+        };
+        let within = |(i, pixel): (usize, &P)| {
+            multiplied(u32::from(own(pixel)), below.map_or(255, |b| b[i])) as u8
+        };
+        let clip = layer.iter().enumerate().map(within).collect();
         self.clips.push(clip);
         self.spare.push(layer);
     }
@@ -246,7 +250,8 @@ impl<P: Space> Painter<P> {
     fn pop_group(&mut self, opacity: u8, base: &mut [P]) {
         let Some(layer) = self.layers.pop() else { return };
         let below = self.layers.last_mut().map_or(base, |l| l.as_mut_slice());
-        let clip = self.clips.last();
+        self.floors.pop();
+        let clip = clip_in_force(&self.clips, &self.floors);
         for (i, (pixel, below)) in layer.iter().zip(below.iter_mut()).enumerate() {
             if *pixel != P::CLEAR {
                 let mask = clip.map_or(255, |c| c[i]);
@@ -255,6 +260,11 @@ impl<P: Space> Painter<P> {
         }
         self.spare.push(layer);
     }
+}
+
+/// The coverage that what is painted now is multiplied with.
+fn clip_in_force<'a>(clips: &'a [Vec<u8>], floors: &[usize]) -> Option<&'a Vec<u8>> {
+    clips.last().filter(|_| clips.len() > floors.last().copied().unwrap_or(0))
 }
 
 /// Coverage times the clip path's.

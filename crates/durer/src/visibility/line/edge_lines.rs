@@ -140,8 +140,12 @@ fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
 /// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
 pub(super) fn turned_on_grid(c: [super::page::GridPoint; 3]) -> i8 {
     let area = orient(c[0], c[1], c[2]) as f64;
-    let longest = c[0].distance(c[1]).max(c[1].distance(c[2])).max(c[2].distance(c[0]));
-    if area.abs() <= longest * EDGE_ON {
+    let squared = |a: usize, b: usize| {
+        let [x, y] = c[a].minus(c[b]).map(|d| d as f64);
+        x * x + y * y
+    };
+    let longest = squared(0, 1).max(squared(1, 2)).max(squared(2, 0));
+    if area * area <= longest * (EDGE_ON * EDGE_ON) {
         0
     } else if area > 0.0 {
         1
@@ -161,6 +165,8 @@ pub(super) struct Rules<'a> {
     pub classes: ClassSet,
     /// Cosine of the crease angle.
     pub crease: f32,
+    /// Whether silhouettes of smooth parts come from elsewhere.
+    pub smooth: bool,
 }
 
 /// The material of each item; `None` where all have the same.
@@ -222,12 +228,12 @@ impl Rules<'_> {
         if a == b {
             return None;
         }
-        if self.facing.front(a) != self.facing.front(b)
-            && self.classes.contains(LineClass::Silhouette)
-        {
+        let sharp = self.facing.angle_cosine(a, b) < self.crease;
+        let turns = self.facing.front(a) != self.facing.front(b) && (sharp || !self.smooth);
+        if turns && self.classes.contains(LineClass::Silhouette) {
             return Some(LineClass::Silhouette);
         }
-        (self.facing.angle_cosine(a, b) < self.crease).then_some(LineClass::Crease)
+        sharp.then_some(LineClass::Crease)
     }
 
     /// The triangle itself, or for one that is too thin to be turned any way, the neighbour

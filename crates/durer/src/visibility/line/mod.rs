@@ -11,6 +11,7 @@ mod overlap;
 mod page;
 mod pen_order;
 mod simplify;
+mod smooth_silhouette;
 pub mod wireframe;
 
 pub use edge_lines::{ClassSet, Intersections};

@@ -350,7 +350,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Whether an item can be shaded in the batch of a queue: alone, after it is emptied, or now.
+    /// Whether an item can be shaded in the batch of a queue.
     #[inline(always)]
     pub fn batch_of(&mut self, item: u32, queue: &Queue) -> Batched {
         let info = self.run_info(item);

@@ -2,7 +2,7 @@
 //! surface per pixel end with.
 //!
 //! Blended surfaces count as opaque here, as they do in the z-buffer's depth, item and normal
-//! planes; their colour is shown without its alpha. [`super::layers`] lays them over each other.
+//! planes; their colour is shown without its alpha. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, encode_srgb8};

@@ -28,6 +28,7 @@ use super::edge_lines::{ClassSet, EdgeLine, Facing, Intersections, NO_ITEM, Rule
 use super::intersection::intersections;
 use super::overlap::Piece;
 use super::page::{GridPoint, Page, Projected, Vertex};
+use super::smooth_silhouette::{SmoothSilhouette, smooth_silhouettes};
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::scene::Scene;
@@ -59,6 +60,10 @@ pub struct Options {
     pub crease: f64,
     /// Where penetrating faces are looked for, if [`LineClass::Intersection`] is among the classes.
     pub intersections: Intersections,
+    /// Whether silhouettes are those of the smooth surface that the mesh stands for, where its normals
+    /// are at a right angle to the sight, and not the edges between faces. Such a line runs beside the
+    /// mesh's own outline, so faces that touch its triangle do not hide it.
+    pub smooth: bool,
     /// Whether hidden lines are given too. Without them the work ends where a line is known to be
     /// hidden, and the drawing has visible lines only.
     pub hidden: bool,
@@ -78,6 +83,7 @@ impl Default for Options {
             classes: ClassSet::default(),
             crease: 40.0_f64.to_radians(),
             intersections: Intersections::default(),
+            smooth: false,
             hidden: true,
             tolerance: 5e-5,
             pen_order: false,
@@ -180,12 +186,16 @@ pub fn draw(
         materials: materials(&faces),
         classes: options.classes,
         crease: libm::cos(options.crease) as f32,
+        smooth: options.smooth,
     };
     let mut lines = feature_lines(&rules, &projected);
     drop(rules);
     drop(edges);
     if options.classes.contains(LineClass::Intersection) {
         lines.extend(meeting_lines(&faces, &bodies, options.intersections, &projected));
+    }
+    if options.smooth && options.classes.contains(LineClass::Silhouette) {
+        lines.extend(smooth_lines(scene, &faces, &projected));
     }
     let segments: Vec<[Vertex; 2]> = lines.iter().map(|l| l.ends).collect();
     let occluders = Occluders::new(&faces, &bodies, &facing, &projected, &segments);
@@ -226,7 +236,18 @@ const JOB: usize = 2048;
 struct FeatureLine {
     ends: [Vertex; 2],
     class: LineClass,
+    /// The faces that it lies on.
     items: [u32; 2],
+    /// Faces with one of these vertices do not hide it; [`NO_ITEM`] is none.
+    around: [u32; 3],
+}
+
+impl FeatureLine {
+    /// `None` for a line that is a point in the picture.
+    fn new(ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
+        let around = [NO_ITEM; 3];
+        (ends[0].at != ends[1].at).then_some(Self { ends, class, items, around })
+    }
 }
 
 /// Lines among the edges of the mesh that have an extent in the picture.
@@ -235,14 +256,8 @@ fn feature_lines(rules: &Rules<'_>, projected: &Projected) -> Vec<FeatureLine> {
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
     let of = |vertices| {
         let lines = rules.lines(vertices).into_iter();
-        let line = |l: EdgeLine| {
-            let ends = projected.edge(rules.faces, l.ends)?;
-            (ends[0].at != ends[1].at).then_some(FeatureLine {
-                ends,
-                class: l.class,
-                items: l.items,
-            })
-        };
+        let line =
+            |l: EdgeLine| FeatureLine::new(projected.edge(rules.faces, l.ends)?, l.class, l.items);
         lines.filter_map(line).collect::<Vec<_>>()
     };
     parallel::map(jobs, of).into_iter().flatten().collect()
@@ -256,11 +271,19 @@ fn meeting_lines(
     projected: &Projected,
 ) -> Vec<FeatureLine> {
     let line = |m: super::intersection::Meeting| {
-        let ends = projected.segment(m.ends)?;
-        let class = LineClass::Intersection;
-        (ends[0].at != ends[1].at).then_some(FeatureLine { ends, class, items: m.items })
+        FeatureLine::new(projected.segment(m.ends)?, LineClass::Intersection, m.items)
     };
     intersections(faces, bodies, which).into_iter().filter_map(line).collect()
+}
+
+/// Silhouettes across the faces.
+fn smooth_lines(scene: &Scene, faces: &Faces, projected: &Projected) -> Vec<FeatureLine> {
+    let line = |s: SmoothSilhouette| {
+        let ends = projected.segment(s.ends)?;
+        let line = FeatureLine::new(ends, LineClass::Silhouette, [s.item, NO_ITEM])?;
+        Some(FeatureLine { around: faces.triangle(s.item)?, ..line })
+    };
+    smooth_silhouettes(scene, faces, &projected.plane).into_iter().filter_map(line).collect()
 }
 
 /// What hides a line, by face. `enough` ends the search where the whole line is known to be hidden.
@@ -277,7 +300,7 @@ fn covers_of(
             return true;
         }
         let Some(face) = face() else { return true };
-        if line.items.contains(&face.item) {
+        if line.items.contains(&face.item) || occluders.has_vertex(face.item, line.around) {
             return true;
         }
         let Some(cover) = cover::cover(&line.ends, &face, touching) else { return true };

@@ -201,6 +201,12 @@ impl<'a> Occluders<'a> {
         }
     }
 
+    /// Whether a face has one of three vertices.
+    pub fn has_vertex(&self, item: u32, vertices: [u32; 3]) -> bool {
+        vertices != [u32::MAX; 3]
+            && self.faces.triangle(item).is_some_and(|t| t.iter().any(|v| vertices.contains(v)))
+    }
+
     /// Calls `f` once or more with each face that may hide a part of the line; in the order of cells
     /// and depths, until it says that it has seen enough.
     pub fn along(

@@ -1,0 +1,277 @@
+//! `durer plot`.
+
+mod args;
+mod report;
+
+pub use args::{EXAMPLES, PlotArgs};
+
+use crate::failure::Failure;
+use crate::input;
+use crate::messages::Messages;
+use crate::output::{self, Target};
+use crate::report as reports;
+use crate::values::{self, Size};
+use args::{Hidden, Lines, PlotLookArgs};
+use durer::math::DVec2;
+use durer::paper::{self, Page};
+use durer::plot::{self, Axes, Plot};
+use durer::scene::{HeightField, UpAxis};
+use durer::shade::color::encode_rgba8;
+use durer::view::projection::{Lens, ViewDirection};
+use durer::visibility::line::floating_horizon;
+use durer_formats::drawing::{self, DrawingFormat};
+use durer_formats::formula::Formula;
+use durer_formats::height_map::{self, HeightMapOptions};
+use durer_formats::{Limits, png};
+use report::Report;
+use std::path::Path;
+use std::time::Instant;
+
+/// More lines than this in a family are a dark area on paper.
+const MOST_LINES: usize = 100;
+/// `--exaggeration auto`: height over the longer side of the ground.
+const AUTO_HEIGHT: f64 = 0.4;
+/// Where a formula is evaluated unless told.
+const FORMULA_RANGE: [f64; 2] = [-4.0, 4.0];
+
+/// What the plot becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Vectors.
+    Drawing(DrawingFormat),
+    /// Pixels.
+    Png,
+}
+
+/// A format by its name or a file's suffix.
+pub fn format(text: &str) -> Result<Format, String> {
+    match text.to_ascii_lowercase().as_str() {
+        "png" => Ok(Format::Png),
+        other => DrawingFormat::of_suffix(other)
+            .map(Format::Drawing)
+            .ok_or_else(|| "a plot is svg, pdf, dxf, hpgl, geojson or png".to_owned()),
+    }
+}
+
+/// `--exaggeration`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Exaggeration {
+    /// By the extent of the surface.
+    Auto,
+    /// As told.
+    Factor(f64),
+}
+
+/// `auto` or a factor above 0.
+pub fn exaggeration(text: &str) -> Result<Exaggeration, String> {
+    match text {
+        "auto" => Ok(Exaggeration::Auto),
+        _ => {
+            values::positive(text).map(Exaggeration::Factor).map_err(|e| format!("{e}; or `auto`"))
+        }
+    }
+}
+
+/// Three names joined by commas; they may be empty.
+pub fn names(text: &str) -> Result<[String; 3], String> {
+    let names: Vec<String> = text.split(',').map(|n| n.trim().to_owned()).collect();
+    names.try_into().map_err(|_| "three names joined by commas are needed, e.g. x,y,z".to_owned())
+}
+
+/// A page; `fit` has no meaning for a plot, which fits the page.
+pub fn page(text: &str) -> Result<Page, String> {
+    match text.parse() {
+        Ok(Page::Fit) => Err("a plot fits its page; name a size such as A4 or 180x135".to_owned()),
+        other => other.map_err(|e: durer::Error| e.to_string()),
+    }
+}
+
+/// Makes the plot.
+pub fn run(args: &PlotArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    let format = format_of(args)?;
+    let target = target(args)?;
+    let messages = Messages::new(&args.running, 1);
+    messages.progress.stage(|| "reading".to_owned());
+    let surface = Surface::read(args, &messages)?;
+    let read_seconds = start.elapsed().as_secs_f64();
+    messages.progress.stage(|| "drawing".to_owned());
+    let start = Instant::now();
+    let options = options(args, &surface)?;
+    let plot = plot::surface(&surface.field, &options)
+        .map_err(|e| Failure::Data(format!("{}: {e}", surface.name)))?;
+    let draw_seconds = start.elapsed().as_secs_f64();
+    messages.progress.stage(|| "writing".to_owned());
+    let start = Instant::now();
+    let bytes = output::deliver(&target, |out| write(out, format, &plot, &args.look))?;
+    messages.detail(|| format!("{target}: {} lines, {bytes} bytes", plot.drawing.lines.len()));
+    drop(messages);
+    if args.json {
+        let mut report = Report::new(&surface, &plot, &options, &target);
+        (report.read_seconds, report.draw_seconds) = (read_seconds, draw_seconds);
+        report.write_seconds = start.elapsed().as_secs_f64();
+        reports::print(&report)?;
+    }
+    Ok(())
+}
+
+fn format_of(args: &PlotArgs) -> Result<Format, Failure> {
+    if let Some(format) = args.to {
+        return Ok(format);
+    }
+    let suffix = args.output.extension().unwrap_or_default().to_string_lossy();
+    let name = args.output.display();
+    format(&suffix).map_err(|e| {
+        Failure::Usage(format!("--output {name}: the suffix tells no format; {e}, or use --to"))
+    })
+}
+
+/// The place of the plot, checked before anything is read.
+fn target(args: &PlotArgs) -> Result<Target, Failure> {
+    let target = output::file_or_stream("--output", &args.output)?;
+    if args.json && target == Target::Stdout {
+        let message = "--json: the report goes to standard output, where the plot goes too";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(target)
+}
+
+/// What is plotted.
+pub struct Surface {
+    field: HeightField,
+    name: String,
+    format: String,
+    on_map: bool,
+}
+
+impl Surface {
+    fn read(args: &PlotArgs, messages: &Messages) -> Result<Self, Failure> {
+        match (&args.surface.formula, &args.input) {
+            (Some(formula), _) => Self::of_formula(formula, args),
+            (None, Some(path)) => Self::of_file(path, args, messages),
+            // The parser asks for one of them.
+            (None, None) => Err(Failure::Usage("a file or --formula is needed".to_owned())),
+        }
+    }
+
+    fn of_formula(text: &str, args: &PlotArgs) -> Result<Self, Failure> {
+        let wrong = |e: &dyn std::fmt::Display| Failure::Usage(format!("--formula: {e}"));
+        let formula = Formula::parse(text).map_err(|e| wrong(&e))?;
+        let Size { width, height } = args.surface.samples;
+        let size = [width as usize, height as usize];
+        let x = args.surface.x.unwrap_or(FORMULA_RANGE);
+        let z = args.surface.z.unwrap_or(FORMULA_RANGE);
+        let mut stack = Vec::new();
+        let f = |x: f64, z: f64| formula.evaluate_on(&mut stack, x, z);
+        let field = HeightField::from_fn(size, x, z, f)
+            .map_err(|e| Failure::Usage(format!("--samples, --x, --z: {e}")))?;
+        if field.range().is_none() {
+            return Err(wrong(&"it has no value at any point of the grid"));
+        }
+        Ok(Self { field, name: text.to_owned(), format: "formula".to_owned(), on_map: false })
+    }
+
+    fn of_file(path: &Path, args: &PlotArgs, messages: &Messages) -> Result<Self, Failure> {
+        let name = input::display_name(path);
+        let default = Limits::default();
+        let decoded_bytes = args.surface.max_bytes.unwrap_or(default.decoded_bytes);
+        let limits = Limits { decoded_bytes, ..default };
+        let options = HeightMapOptions {
+            limits,
+            no_data: args.surface.no_data,
+            array: args.surface.array.clone(),
+        };
+        let bytes = input::bytes(path, decoded_bytes)?;
+        let file_name = path.file_name().unwrap_or_default().to_string_lossy();
+        let map = height_map::read(&bytes, &file_name, &options)
+            .map_err(|e| Failure::Data(format!("{name}: {e}")))?;
+        messages.warnings(&name, &map.warnings);
+        let (x, z) = (args.surface.x, args.surface.z);
+        let on_map = map.on_map && z.is_none();
+        let (old_x, old_z) = (map.field.x_range(), map.field.z_range());
+        let field = map.field.with_ranges(x.unwrap_or(old_x), z.unwrap_or(old_z));
+        let field = field.map_err(|e| Failure::Usage(format!("--x, --z: {e}")))?;
+        Ok(Self { field, name, format: map.format, on_map })
+    }
+
+    /// What heights are multiplied with so that the plot is neither flat nor a tower.
+    fn auto_exaggeration(&self) -> f64 {
+        let extent = |[from, to]: [f64; 2]| to - from;
+        let ground = extent(self.field.x_range()).max(extent(self.field.z_range()));
+        let height = self.field.range().map_or(0.0, extent);
+        let factor = AUTO_HEIGHT * ground / height;
+        if factor.is_finite() && factor > 0.0 { factor } else { 1.0 }
+    }
+}
+
+fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure> {
+    let view = &args.view;
+    let (azimuth, elevation) = view.view.map_or((view.azimuth, view.elevation), |v| v.angles());
+    let direction = ViewDirection::from_angles(azimuth, elevation, UpAxis::Y)
+        .map_err(|e| Failure::Usage(format!("--{e}")))?;
+    let lens = match view.fov {
+        Some(fov) => Lens::Perspective { fov_y: fov.to_radians() },
+        None => Lens::Orthographic,
+    };
+    let look = &args.look;
+    let every = |points: usize| match look.every {
+        Some(n) => usize::try_from(n).unwrap_or(usize::MAX),
+        None => points.saturating_sub(1).div_ceil(MOST_LINES).max(1),
+    };
+    let along_x = matches!(look.lines, Lines::X | Lines::Both);
+    let along_z = matches!(look.lines, Lines::Z | Lines::Both);
+    let lines = floating_horizon::Options {
+        every_row: if along_x { every(surface.field.rows()) } else { 0 },
+        every_column: if along_z { every(surface.field.columns()) } else { 0 },
+        hidden: look.hidden == Hidden::Dashed,
+    };
+    let exaggeration = match args.surface.exaggeration {
+        Exaggeration::Factor(factor) => factor,
+        Exaggeration::Auto => surface.auto_exaggeration(),
+    };
+    let names = look.labels.clone().unwrap_or_else(|| ["x", "y", "z"].map(str::to_owned));
+    let axes = (!look.no_axes).then_some(Axes { names, z_is_south: surface.on_map });
+    let background = Some(encode_rgba8(look.background)).filter(|c| c[3] > 0);
+    Ok(plot::Options {
+        direction,
+        lens,
+        lines,
+        exaggeration,
+        color_map: look.color_map,
+        fill: look.fill,
+        ink: encode_rgba8(look.ink),
+        underside: look.underside.map(encode_rgba8),
+        axes,
+        title: look.title.clone(),
+        page: paper_size(look.page),
+        background,
+        pen: look.pen,
+        ..plot::Options::default()
+    })
+}
+
+/// Paper that may lie either way lies: plots are wider than high.
+fn paper_size(page: Page) -> DVec2 {
+    match page {
+        Page::Exact(size) => size,
+        Page::Either(size) => DVec2::new(size.max_element(), size.min_element()),
+        Page::Fit => plot::Options::default().page,
+    }
+}
+
+fn write(
+    out: &mut Vec<u8>,
+    format: Format,
+    plot: &Plot,
+    look: &PlotLookArgs,
+) -> durer_formats::Result<()> {
+    match format {
+        Format::Drawing(format) => drawing::write(out, format, &plot.sheet, &plot.drawing),
+        Format::Png => {
+            let background = plot.sheet.background.unwrap_or([0; 4]);
+            let Size { width, height } = look.size;
+            let pixels = paper::paint(&plot.sheet, width, height, background)?;
+            png::write_color(out, &pixels, png::Compression::Fast)
+        }
+    }
+}
