@@ -36,6 +36,9 @@ fn wrong_values_name_their_option() {
         ("--turntable 0", "--turntable"),
         ("--time nan", "--time"),
         ("--max-bytes 1x", "--max-bytes"),
+        ("--section 1,0,0", "--section"),
+        ("--section 0,0,0,1", "--section"),
+        ("--cap-color red", "--section"),
         ("--wrong", "--wrong"),
     ] {
         let ended = folder.run(&format!("render cube.obj -o out.png {option}"));

@@ -1,7 +1,7 @@
 //! Cutting the triangles of one mesh.
 
 use crate::math::{Plane, Vec2, Vec3, Vec4};
-use crate::scene::{Mesh, Part};
+use crate::scene::{Aabb, Mesh, Part};
 use crate::view::topology::weld;
 use std::collections::HashMap;
 
@@ -16,8 +16,7 @@ pub struct Cut {
 /// The part of a mesh of triangles inside a plane.
 pub fn triangles(mesh: &Mesh, plane: &Plane) -> Cut {
     let welded = weld(&mesh.positions);
-    let heights: Vec<f64> =
-        welded.iter().map(|&v| plane.evaluate(mesh.positions[v as usize].as_dvec3())).collect();
+    let heights = heights(mesh, &welded, plane);
     let mut cutter = Cutter {
         old: mesh,
         welded: &welded,
@@ -42,6 +41,21 @@ pub fn triangles(mesh: &Mesh, plane: &Plane) -> Cut {
     mesh.indices = Some(indices);
     mesh.parts = parts;
     Cut { mesh, segments }
+}
+
+/// Vertices this near to the plane, as a part of the mesh's extent, lie on it: as far as an f32 can tell.
+const ON_PLANE: f64 = 1.0 / (1u64 << 23) as f64;
+
+/// How far inside the plane each vertex lies, the same for all at one place.
+fn heights(mesh: &Mesh, welded: &[u32], plane: &Plane) -> Vec<f64> {
+    let bounds = Aabb::around(mesh.positions.iter().map(|p| p.as_dvec3()));
+    let extent = bounds.map_or(0.0, |b| b.size().max_element());
+    let tolerance = extent * plane.normal.length() * ON_PLANE;
+    let height = |&v: &u32| {
+        let height = plane.evaluate(mesh.positions[v as usize].as_dvec3());
+        if height.abs() <= tolerance { 0.0 } else { height }
+    };
+    welded.iter().map(height).collect()
 }
 
 /// Lines and points whose first vertex lies inside a plane.
@@ -100,8 +114,8 @@ struct Cutter<'a> {
     heights: &'a [f64],
     mesh: Mesh,
     indices: Vec<u32>,
-    /// Of each welded edge or vertex on the plane, the first vertex made there: what caps use.
-    places: HashMap<(u32, u32), u32>,
+    /// Of each position on the plane the first vertex made there: what caps use.
+    places: HashMap<[u32; 3], u32>,
     /// Of each edge of the file, which may have attributes of its own, its new vertex.
     vertices: HashMap<(u32, u32), u32>,
     segments: Vec<[u32; 2]>,
@@ -145,7 +159,7 @@ impl Cutter<'_> {
 
     /// The faces beside the cap run from `b` to `a`, so the cap's border from `a` to `b`.
     fn segment(&mut self, a: u32, b: u32) {
-        if self.mesh.positions[a as usize] != self.mesh.positions[b as usize] {
+        if a != b {
             self.segments.push([a, b]);
         }
     }
@@ -156,7 +170,7 @@ impl Cutter<'_> {
         let (v, w) =
             if self.welded[v as usize] <= self.welded[w as usize] { (v, w) } else { (w, v) };
         if let Some(&own) = self.vertices.get(&(v, w)) {
-            return (own, self.places[&self.key(v, w)]);
+            return (own, self.place(own));
         }
         let (from, to) = (self.welded[v as usize], self.welded[w as usize]);
         let (d, e) = (self.heights[from as usize], self.heights[to as usize]);
@@ -172,20 +186,14 @@ impl Cutter<'_> {
         push(&mut self.mesh, at, v, w, t as f32);
         let own = self.mesh.positions.len() as u32 - 1;
         self.vertices.insert((v, w), own);
-        let place = *self.places.entry(self.key(v, w)).or_insert(own);
-        (own, place)
+        (own, self.place(own))
     }
 
-    /// What tells a place on the plane: a vertex that lies on it, else the edge.
-    fn key(&self, v: u32, w: u32) -> (u32, u32) {
-        let (v, w) = (self.welded[v as usize], self.welded[w as usize]);
-        if self.heights[v as usize] == 0.0 {
-            (v, v)
-        } else if self.heights[w as usize] == 0.0 {
-            (w, w)
-        } else {
-            (v, w)
-        }
+    /// The first vertex at the position of another.
+    fn place(&mut self, own: u32) -> u32 {
+        // Adding zero makes one zero of two.
+        let at = (self.mesh.positions[own as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+        *self.places.entry(at).or_insert(own)
     }
 }
 
