@@ -1,5 +1,7 @@
 //! What can be said on the command line.
 
+use crate::drawing::args::DrawingArgs;
+use crate::output::Kind;
 use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -11,7 +13,7 @@ use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
 use std::path::PathBuf;
 
-const ABOUT: &str = "Renders 3D models to pictures, on the CPU";
+const ABOUT: &str = "Renders 3D models to pictures and drawings, on the CPU";
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
@@ -29,6 +31,9 @@ Examples:
   durer render bunny.obj -o compare.png --algorithm all
   durer render bunny.obj -o bunny.png --light directional:-1,-2,-1:white:3 --shadows map
   durer render bunny.obj -o bunny.png --item items.png --depth depth.png --normal normals.png
+  durer render part.stl -o part.svg --view front --hidden dashed
+  durer render part.stl -o part.pdf --sheet third-angle --page A3 --hidden dashed
+  durer render scene.glb -o scene.png --style regions+lines --size 1600x1200
   curl -s https://example.org/a.glb | durer render - -o - --size 256x256 > a.png
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use; 3 done in part \
@@ -46,12 +51,18 @@ pub struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render models to PNG pictures
+    /// Render models to PNG pictures, or draw them as SVG, PDF, DXF, HPGL or GeoJSON
     #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
     Clip(Box<crate::clip::ClipArgs>),
+    /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a PNG picture
+    #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Draw(Box<crate::draw::DrawArgs>),
+    /// Fill what is connected with a pixel of a PNG or JPEG, by seed fill
+    #[command(after_long_help = crate::fill::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Fill(Box<crate::fill::FillArgs>),
     /// Say what is in a model
     Info(InfoArgs),
     /// Say which objects and triangles lie behind a point or a rectangle of the picture
@@ -96,11 +107,18 @@ pub struct RenderArgs {
     pub models: Vec<PathBuf>,
     /// Where the picture goes
     ///
-    /// A .png file; `-` for standard output; a folder (existing, or ending in `/`) for NAME.png of
-    /// each model; for --turntable also a file name with a place for the frame's number, e.g.
-    /// `frame_%04d.png`. Missing folders are made. A file is replaced only by a whole picture.
+    /// A .png file, or a drawing as .svg, .pdf, .dxf, .hpgl or .geojson; `-` for standard output; a
+    /// folder (existing, or ending in `/`) for NAME.png of each model; for --turntable also a file
+    /// name with a place for the frame's number, e.g. `frame_%04d.png`. Missing folders are made. A
+    /// file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
+    /// The format of the output [default: by its suffix, else png]
+    #[arg(long, value_name = "FORMAT", value_parser = values::kind())]
+    pub format: Option<Kind>,
+    /// The options that were given, by their names in the parser.
+    #[arg(skip)]
+    pub given: Vec<String>,
     /// What the picture is like.
     #[command(flatten)]
     pub picture: PictureArgs,
@@ -110,6 +128,9 @@ pub struct RenderArgs {
     /// How surfaces look.
     #[command(flatten)]
     pub look: LookArgs,
+    /// Exact drawings.
+    #[command(flatten)]
+    pub drawing: DrawingArgs,
     /// Further planes.
     #[command(flatten)]
     pub planes: PlaneArgs,
@@ -200,7 +221,7 @@ pub struct PictureArgs {
 }
 
 /// The camera: a named view, angles, a place, or one of the file's.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "View")]
 pub struct ViewArgs {
     /// iso, front, back, left, right, top or bottom; fits the model into the picture

@@ -35,13 +35,18 @@ const GRADIENT: (&str, &str) = ("#9fb7d4", "#f2f4f7");
 
 /// A linear RGBA colour from `#rgb`, `#rgba`, `#rrggbb`, `#rrggbbaa` or a name.
 pub fn color(text: &str) -> Result<Vec4, String> {
+    let [r, g, b, a] = bytes(text)?;
+    let linear = |channel: u8| LINEAR_FROM_SRGB[usize::from(channel)];
+    Ok(Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0))
+}
+
+/// The same as sRGB bytes with straight alpha.
+pub fn bytes(text: &str) -> Result<[u8; 4], String> {
     let rgba = match text.strip_prefix('#') {
         Some(digits) => hexadecimal(digits),
         None => NAMES.iter().find(|(name, _)| text.eq_ignore_ascii_case(name)).map(|n| n.1),
     };
-    let [r, g, b, a] = rgba.ok_or_else(wanted)?.to_be_bytes();
-    let linear = |channel: u8| LINEAR_FROM_SRGB[usize::from(channel)];
-    Ok(Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0))
+    rgba.map(u32::to_be_bytes).ok_or_else(wanted)
 }
 
 fn wanted() -> String {

@@ -47,19 +47,19 @@ pub fn read_options(args: &ReadingArgs) -> ReadOptions {
 
 /// Reads a model.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
-    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let bytes = read_bytes(path, options.limits.decoded_bytes)?;
+    let bytes = bytes(path, options.limits.decoded_bytes)?;
     let folder = Folder::of(path);
     let resources: &dyn Resources = match &folder {
         Ok(folder) if !is_stream(path) => folder,
         _ => &NoResources,
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_model(&bytes, &name, resources, options).map_err(|e| fail(e.to_string()))
+    read_model(&bytes, &name, resources, options)
+        .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
 }
 
-/// All bytes of a file or of standard input, refused above the limit.
-pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
+/// All bytes of a file, or of standard input, refused above the limit.
+pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     if is_stream(path) {
         return bounded(std::io::stdin().lock(), 0, limit).map_err(fail);
@@ -70,12 +70,6 @@ pub fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
         return Err(fail("it is a folder; name the model in it".to_owned()));
     }
     bounded(file, metadata.len(), limit).map_err(fail)
-}
-
-/// All bytes of a file, refused above the limit.
-pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
-    let file = File::open(path).map_err(|e| Failure::of_file(path, in_words(&e)))?;
-    bounded(file, 0, limit).map_err(|e| Failure::of_file(path, e))
 }
 
 /// All bytes of a source, refused above the limit.

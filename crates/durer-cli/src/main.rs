@@ -6,7 +6,10 @@ mod camera;
 mod clip;
 mod color;
 mod compare;
+mod draw;
+mod drawing;
 mod failure;
+mod fill;
 mod fit;
 mod info;
 mod input;
@@ -23,14 +26,15 @@ mod values;
 mod warp;
 
 use args::{Cli, Command, RunningArgs};
-use clap::{CommandFactory, Parser};
+use clap::parser::ValueSource;
+use clap::{CommandFactory, FromArgMatches};
 use failure::Failure;
 use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     beside::clean_up_when_interrupted();
-    match run(Cli::parse().command) {
+    match run(parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let message = failure.to_string();
@@ -43,12 +47,26 @@ fn main() -> ExitCode {
     }
 }
 
+/// The command line; `render` also gets to know which options were given.
+fn parse() -> Command {
+    let matches = Cli::command().get_matches();
+    let mut cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
+    if let (Command::Render(args), Some((_, given))) = (&mut cli.command, matches.subcommand()) {
+        let by_hand =
+            |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
+        args.given = given.ids().filter(by_hand).map(ToString::to_string).collect();
+    }
+    cli.command
+}
+
 fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(args) => on_threads(&args.running, || render::run(&args)),
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
         Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
+        Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
+        Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
         Command::Completions { shell } => completions(shell),

@@ -3,6 +3,7 @@
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
+use durer_formats::drawing::DrawingFormat;
 use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
@@ -26,6 +27,30 @@ impl std::fmt::Display for Target {
     }
 }
 
+/// What kind of file a picture becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Pixels.
+    Png,
+    /// Vectors.
+    Drawing(DrawingFormat),
+}
+
+impl Kind {
+    /// The kind that a file's name asks for; pixels where it does not say.
+    pub fn of(path: &Path) -> Self {
+        let suffix = path.extension().unwrap_or_default().to_string_lossy();
+        DrawingFormat::of_suffix(&suffix).map_or(Self::Png, Self::Drawing)
+    }
+
+    fn suffix(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Drawing(format) => format.name(),
+        }
+    }
+}
+
 /// What a picture is called where there are several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
@@ -36,7 +61,7 @@ pub struct Name {
 }
 
 /// One target for each name; creates missing folders for what is to be several files.
-pub fn plan(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Failure> {
+pub fn plan(option: &str, path: &Path, names: &[Name], kind: Kind) -> Result<Vec<Target>, Failure> {
     let many = names.len() != 1;
     if is_stream(path) {
         return if many {
@@ -57,14 +82,14 @@ pub fn plan(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Fa
     }
     if path.is_dir() || ends_in_separator(path) || (many && path.extension().is_none()) {
         make_folder(path)?;
-        return Ok(names.iter().map(|n| Target::File(path.join(n.file_name()))).collect());
+        return Ok(names.iter().map(|n| Target::File(path.join(n.file_name(kind)))).collect());
     }
     if many {
         let frames = names.iter().any(|n| n.frame.is_some());
         let hint = if frames { " or a name such as frame_%04d.png" } else { "" };
         return Err(usage(option, path, &format!("several pictures need a folder{hint}")));
     }
-    single(option, path).map(|t| vec![t])
+    single(option, path, kind).map(|t| vec![t])
 }
 
 /// Refuses two pictures in one place.
@@ -96,14 +121,18 @@ fn stdout_target(option: &str) -> Result<Target, Failure> {
     Ok(Target::Stdout)
 }
 
-/// One file: a PNG by its name, in a folder that is there; or something special such as a device.
-fn single(option: &str, path: &Path) -> Result<Target, Failure> {
+const PNG_ONLY: &str = "pictures are written as PNG; end the name in .png";
+
+/// One file, named as its kind, in a folder that is there; or something special such as a device.
+fn single(option: &str, path: &Path, kind: Kind) -> Result<Target, Failure> {
     if is_special(path) {
         return Ok(Target::File(path.to_owned()));
     }
     let suffix = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    if suffix.as_deref() != Some("png") {
-        return Err(usage(option, path, "pictures are written as PNG; end the name in .png"));
+    if kind == Kind::Png && suffix.as_deref() != Some("png") {
+        let hint = "pictures are written as PNG; end the name in .png (drawings: .svg, .pdf, .dxf, \
+                    .hpgl, .geojson)";
+        return Err(usage(option, path, if option == "--output" { hint } else { PNG_ONLY }));
     }
     in_its_folder(path)
 }
@@ -152,10 +181,11 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 
 impl Name {
     /// `NAME.png`, or `NAME_0001.png` for a frame.
-    fn file_name(&self) -> String {
+    fn file_name(&self, kind: Kind) -> String {
+        let suffix = kind.suffix();
         match self.frame {
-            Some(frame) => format!("{}_{frame:04}.png", self.stem),
-            None => format!("{}.png", self.stem),
+            Some(frame) => format!("{}_{frame:04}.{suffix}", self.stem),
+            None => format!("{}.{suffix}", self.stem),
         }
     }
 }

@@ -3,10 +3,11 @@
 use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
 use crate::compare;
+use crate::drawing::{self, Subject};
 use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
-use crate::output::{self, Name, Target};
+use crate::output::{self, Kind, Name, Target};
 use crate::report::{self, Failed, ModelReport, PictureReport, Report};
 use crate::values::{Algorithm, Size};
 use durer::pipeline::{self, Lighting, Mask, RenderOptions, SurfaceMethod};
@@ -52,6 +53,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
 fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
+    drawing::check(args, kind(args))?;
     let Size { width, height } = args.picture.size;
     let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);
     if pixels > limit {
@@ -131,7 +133,8 @@ fn algorithm(args: &RenderArgs, scene: &Scene) -> Algorithm {
 fn tell_opaque(args: &RenderArgs, name: &str, scene: &Scene, messages: &Messages) {
     let blends = SurfaceMethod::for_scene(scene) == SurfaceMethod::ABuffer;
     let unable = |m: &SurfaceMethod| {
-        !m.composes() && !(*m == SurfaceMethod::Ray && asks_for_rays(args).is_some())
+        let by_rays = *m == SurfaceMethod::Ray && asks_for_rays(args).is_some();
+        !m.composes() && !by_rays
     };
     let methods: Vec<&str> = match algorithm(args, scene) {
         Algorithm::Surfaces(method) => {
@@ -148,9 +151,16 @@ fn tell_opaque(args: &RenderArgs, name: &str, scene: &Scene, messages: &Messages
     }
 }
 
+/// What is written: what --format says, or the name of the output.
+fn kind(args: &RenderArgs) -> Kind {
+    args.format.unwrap_or_else(|| Kind::of(&args.output))
+}
+
 /// A model and what is to be made of it.
 struct Job<'a> {
     model: &'a Path,
+    /// Its name without folder and suffix.
+    stem: String,
     pictures: Vec<Picture>,
 }
 
@@ -181,10 +191,12 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
         .flat_map(|stem| frames.iter().map(move |&frame| Name { stem: stem.clone(), frame }))
         .collect();
     let optional = |option: &str, path: &Option<PathBuf>| match path {
-        Some(path) => Ok(output::plan(option, path, &names)?.into_iter().map(Some).collect()),
+        Some(path) => {
+            Ok(output::plan(option, path, &names, Kind::Png)?.into_iter().map(Some).collect())
+        }
         None => Ok(vec![None; names.len()]),
     };
-    let color = output::plan("--output", &args.output, &names)?;
+    let color = output::plan("--output", &args.output, &names, kind(args))?;
     let item = optional("--item", &args.planes.item)?;
     let depth = optional("--depth", &args.planes.depth)?;
     let normal = optional("--normal", &args.planes.normal)?;
@@ -196,7 +208,12 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
     let jobs: Vec<Job> = args
         .models
         .iter()
-        .map(|model| Job { model, pictures: pictures.by_ref().take(frames.len()).collect() })
+        .zip(stems)
+        .map(|(model, stem)| Job {
+            model,
+            stem,
+            pictures: pictures.by_ref().take(frames.len()).collect(),
+        })
         .collect();
     let targets = || jobs.iter().flat_map(|j| &j.pictures).flat_map(Picture::targets);
     output::check_distinct(targets())?;
@@ -229,8 +246,14 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     let mut pictures = Vec::new();
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));
-        let report = render_picture(args, &model.scene, picture)
-            .map_err(|failure| with_file(&name, failure))?;
+        let report = if drawing::is_wanted(args, kind(args)) {
+            let (scene, format) = (&model.scene, model.format.as_str());
+            let subject = Subject { scene, name: &job.stem, format };
+            drawing::render(args, &subject, picture.frame, &picture.color, kind(args))
+        } else {
+            render_picture(args, &model.scene, picture)
+        };
+        let report = report.map_err(|failure| with_file(&name, failure))?;
         tell_differing(&name, &report, messages);
         messages.detail(|| describe(&report));
         messages.progress.advance();
@@ -267,6 +290,9 @@ fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], me
 }
 
 fn describe(report: &PictureReport) -> String {
+    if let Some(drawing) = &report.drawing {
+        return format!("{}: {}", report.files.join(", "), drawing.summary());
+    }
     format!(
         "{}: {}x{}, {} triangles drawn; geometry {:.4} s, raster {:.4} s, encode {:.4} s",
         report.files.join(", "),

@@ -39,12 +39,15 @@ pub struct ModelReport {
 pub struct PictureReport {
     /// Where it went; `-` is standard output.
     pub files: Vec<String>,
-    /// In pixels.
+    /// In pixels; 0 for vectors.
     pub width: u32,
-    /// In pixels.
+    /// In pixels; 0 for vectors.
     pub height: u32,
     /// Over all viewports.
     pub triangles: Triangles,
+    /// What was drawn, where it is a drawing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawing: Option<crate::drawing::report::DrawingReport>,
     /// Seconds for vertices, clipping and set-up.
     pub geometry_seconds: f64,
     /// Seconds for rasterization, shading and resolve.

@@ -1,9 +1,11 @@
 //! Numbers and vectors as options take them; every message says what would be right.
 
+use crate::output::Kind;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::SurfaceMethod;
 use durer::visibility::wireframe;
+use durer_formats::drawing::DrawingFormat;
 
 /// Width and height of a picture, in pixels, each at least 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +50,13 @@ pub fn algorithm() -> impl TypedValueParser<Value = Algorithm> {
         name if name == wireframe::INFO.name => Ok(Algorithm::Wireframe),
         name => name.parse().map(Algorithm::Surfaces),
     })
+}
+
+/// The name of an output format.
+pub fn kind() -> impl TypedValueParser<Value = Kind> {
+    let names = DrawingFormat::ALL.iter().map(|f| f.name());
+    PossibleValuesParser::new(std::iter::once("png").chain(names))
+        .map(|name| name.parse::<DrawingFormat>().map_or(Kind::Png, Kind::Drawing))
 }
 
 /// A finite number.

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod color;
+pub mod drawing;
 mod error;
 pub mod formula;
 pub mod geo;
@@ -21,6 +22,7 @@ pub mod ply;
 pub mod png;
 mod sniff;
 pub mod stl;
+pub mod svg;
 mod text;
 pub mod threemf;
 

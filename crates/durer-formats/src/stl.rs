@@ -106,9 +106,7 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Model> {
     let records = records(&mut model, data, count)?;
     check_limit(records.len() as u64, limits)?;
     let mut mesh = Mesh { positions: Vec::with_capacity(3 * records.len()), ..Mesh::default() };
-    for record in records {
-        mesh.positions.extend(vertices(record));
-    }
+    mesh.positions.extend(records.iter().flat_map(vertices));
     if let Some(colors) = facet_colors(bytes, records) {
         mesh.colors = colors;
         let range = 0..records.len() as u32;

@@ -51,7 +51,9 @@
 //! | Which pixel shows this point of a plane? | [`view::window`]: window to viewport |
 //! | Several views in one picture? | [`view::layout`] |
 //! | Can this box be seen at all? Which way does this face look? | [`view::cull`] |
+//! | What does a near camera see of this picture with depth? | [`view::warp`]: forward warping |
 //! | What lies behind this point or rectangle of the picture? | [`view::pick`] |
+//! | Where does the label of an area go, and which labels have room? | [`view::interior_point`], [`view::label`] |
 //! | Is this mesh the surface of a body, and are its faces turned outwards? | [`view::topology`] |
 //!
 //! **Which part of a line lies in the window?** [`clip::line`]
@@ -63,6 +65,7 @@
 //! | [Cyrus–Beck](clip::line::cyrus_beck) | convex polygon, convex polyhedron | windows that are no rectangles |
 //! | [Liang–Barsky](clip::line::liang_barsky) | rectangle, box, half-planes | most segments crossing the border |
 //! | [Nicholl–Lee–Nicholl](clip::line::nicholl_lee_nicholl) | rectangle | no crossing computed in vain |
+//! | [Homogeneous](clip::line::homogeneous) | rectangle | points with a w of any sign |
 //! | [Batches](clip::line::batch) | rectangle | millions of segments |
 //! | [Polylines](clip::line::polyline) | polygon with holes | chains with attributes, inside or outside part |
 //!
@@ -81,7 +84,8 @@
 //!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
 //! w; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
-//! camera transform, in clip space or after the division, with the same picture.
+//! camera transform, in clip space, after the division, in the viewport or per pixel, with the same
+//! picture.
 //!
 //! **Which pixels does it cover?** [`raster`]
 //!
@@ -111,15 +115,18 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
+//! [Wireframe](visibility::wireframe) draws all edges, hidden ones too.
+//!
 //! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
 //! letters from the [single-stroke font](curve::stroke_font).
 //!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
-//! [textures](shade::texture).
+//! [textures](shade::texture); [shadow maps](shade::shadow).
 //!
 //! **What happens before a pixel changes?** [`fragment`]: scissor, alpha test, stencil, depth,
-//! blending, dithering, logic operation, write masks.
+//! blending, dithering, logic operation, write masks. [`commands`] drives them: the classic pipeline's
+//! state, display lists, evaluators.
 //!
 //! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last
 //! argument tell it every step.
@@ -168,6 +175,8 @@ pub mod paper;
 pub mod shade;
 
 pub mod fragment;
+
+pub mod commands;
 
 pub mod visibility;
 

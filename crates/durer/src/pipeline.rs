@@ -1,5 +1,9 @@
 //! The order of the stages; nothing else knows it.
 
+mod draw;
+
+pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes};
+
 use crate::math::Vec4;
 use crate::scene::{Camera, Light, Scene};
 use crate::shade::PreparedLights;

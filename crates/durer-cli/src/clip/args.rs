@@ -112,7 +112,7 @@ pub enum TileCoordinates {
     Mercator,
 }
 
-fn window(text: &str) -> Result<Rect, String> {
+pub fn window(text: &str) -> Result<Rect, String> {
     let numbers: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
     let [xl, yb, xr, yt] = numbers[..] else {
         return Err("four numbers joined by commas are needed, e.g. -10,35,30,60".to_owned());
@@ -123,7 +123,7 @@ fn window(text: &str) -> Result<Rect, String> {
     Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
 }
 
-fn format(text: &str) -> Result<GeoFormat, String> {
+pub fn format(text: &str) -> Result<GeoFormat, String> {
     let found = GeoFormat::ALL.into_iter().find(|f| f.name() == text);
     found
         .ok_or_else(|| format!("it must be one of {}", GeoFormat::ALL.map(|f| f.name()).join(", ")))

@@ -3,11 +3,9 @@
 use super::shapes::{Area, pieces};
 use super::validity::{Touching, contains, edges_are_apart, is_valid};
 use durer::clip::line::polyline::{self, Part};
-use durer::clip::line::{ConvexPolygon, LineClipper, Segment};
+use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::rectangle::{self, ClippedLines};
-use durer::clip::polygon::{
-    BooleanOp, FillRule, PolygonClipper, Shapes, overlay, sutherland_hodgman, vatti,
-};
+use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, overlay, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 use durer_formats::geo::{Geometry, Points};
@@ -89,8 +87,6 @@ pub struct Rules {
 /// An algorithm of the library by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Algorithm {
-    Rectangle,
-    SutherlandHodgman,
     Polygon(PolygonClipper),
     Line(LineClipper),
 }
@@ -98,17 +94,14 @@ pub enum Algorithm {
 impl Algorithm {
     /// All that the command can use; midpoint subdivision works on pixels only.
     pub fn all() -> Vec<Self> {
-        let own = [Self::Rectangle, Self::SutherlandHodgman];
         let polygons = PolygonClipper::ALL.iter().map(|&a| Self::Polygon(a));
         let lines = LineClipper::ALL.iter().filter(|&&a| a != LineClipper::Midpoint);
-        own.into_iter().chain(polygons).chain(lines.map(|&a| Self::Line(a))).collect()
+        polygons.chain(lines.map(|&a| Self::Line(a))).collect()
     }
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Rectangle => rectangle::INFO.name,
-            Self::SutherlandHodgman => sutherland_hodgman::INFO.name,
             Self::Polygon(a) => a.name(),
             Self::Line(a) => a.name(),
         }
@@ -116,12 +109,18 @@ impl Algorithm {
 
     /// Whether it clips with rectangles only.
     pub fn needs_window(self) -> bool {
-        matches!(self, Self::Rectangle | Self::Line(_))
+        match self {
+            Self::Polygon(clipper) => clipper.needs_rectangle(),
+            Self::Line(_) => true,
+        }
     }
 
     /// Whether it keeps the inside only.
     pub fn needs_intersection(self) -> bool {
-        self.needs_window() || self == Self::SutherlandHodgman
+        match self {
+            Self::Polygon(clipper) => clipper.keeps_inside_only(),
+            Self::Line(_) => true,
+        }
     }
 }
 
@@ -206,8 +205,8 @@ impl Cutter {
         let area = Area::of_geometry(geometry);
         match self.algorithm {
             None | Some(Algorithm::Line(_)) => self.production(geometry, &area, bounds),
-            Some(algorithm) => {
-                let geometry = self.by_name(algorithm, &area)?.into_geometry();
+            Some(Algorithm::Polygon(clipper)) => {
+                let geometry = self.by_name(clipper, &area)?.into_geometry();
                 Ok(Cut { geometry, repaired: false })
             }
         }
@@ -237,25 +236,19 @@ impl Cutter {
         Ok(Cut { geometry: cut.into_geometry(), repaired })
     }
 
-    fn by_name(&self, algorithm: Algorithm, area: &Area) -> Result<Area> {
+    fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
         let mask = &self.mask.shapes;
-        Ok(match (algorithm, self.mask.window) {
-            (Algorithm::Rectangle, Some(window)) => clip_area(&window, area)?,
-            (Algorithm::Polygon(PolygonClipper::Overlay), _) => {
+        Ok(match (clipper, self.mask.window) {
+            (PolygonClipper::Rectangle, Some(window)) => clip_area(&window, area)?,
+            (PolygonClipper::Overlay, _) => {
                 self.rules.overlay(area, mask, self.op, self.rules.fill)?
             }
-            (Algorithm::Polygon(PolygonClipper::Vatti), _) => {
+            (PolygonClipper::Vatti, _) => {
                 let options = self.rules.options(area, mask, self.rules.fill);
                 let output = vatti::vatti(&area.shapes, mask, self.op, &options, &mut NoTrace)?;
                 area.overlaid(mask, &output, false)
             }
-            (Algorithm::Polygon(clipper), _) => {
-                Area::flat(clipper.clip(&area.shapes, mask, self.op)?)
-            }
-            (Algorithm::SutherlandHodgman, window) => {
-                Area::flat(by_half_planes(window, mask, &area.shapes)?)
-            }
-            (Algorithm::Rectangle | Algorithm::Line(_), _) => area.clone(),
+            (clipper, _) => Area::flat(clipper.clip(&area.shapes, mask, self.op)?),
         })
     }
 }
@@ -348,30 +341,6 @@ fn push(out: &mut ClippedLines, p: DVec2, segment: Segment<DVec2>, end: usize) {
     } else {
         Source::Cut { from: end - 1, to: end, t: along }
     });
-}
-
-/// Sutherland and Hodgman's clip, ring by ring; what falls apart stays joined along the border.
-fn by_half_planes(window: Option<Rect>, mask: &Shapes, shapes: &Shapes) -> Result<Shapes> {
-    let convex = match window {
-        Some(_) => None,
-        None => Some(ConvexPolygon::new(mask.ring(0))?),
-    };
-    let clip = |ring: &[DVec2]| match (&window, &convex) {
-        (Some(window), _) => sutherland_hodgman::clip(window, ring, &mut NoTrace),
-        (None, Some(convex)) => sutherland_hodgman::clip_polygon(convex, ring, &mut NoTrace),
-        (None, None) => Ok(Vec::new()),
-    };
-    let mut out = Shapes::new();
-    for polygon in shapes.polygons() {
-        for ring in polygon.rings() {
-            let ring = clip(ring)?;
-            if ring.len() > 2 {
-                out.push_ring(ring);
-            }
-        }
-        out.end_polygon();
-    }
-    Ok(out)
 }
 
 impl Rules {

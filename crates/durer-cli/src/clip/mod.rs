@@ -8,7 +8,7 @@ mod sink;
 mod tiles;
 mod validity;
 
-pub use args::{ClipArgs, EXAMPLES};
+pub use args::{ClipArgs, EXAMPLES, format, window};
 
 use crate::failure::{Failure, in_words};
 use crate::input::{display_name, is_stream};

@@ -181,7 +181,7 @@ impl Surface {
             no_data: args.surface.no_data,
             array: args.surface.array.clone(),
         };
-        let bytes = input::read_bytes(path, decoded_bytes)?;
+        let bytes = input::bytes(path, decoded_bytes)?;
         let file_name = path.file_name().unwrap_or_default().to_string_lossy();
         let map = height_map::read(&bytes, &file_name, &options)
             .map_err(|e| Failure::Data(format!("{name}: {e}")))?;

@@ -1,10 +1,14 @@
 //! The command as its users see it: the built binary, run on small models.
 
+mod algorithms;
 mod clip;
 mod conformance_clip;
 mod conformance_models;
+mod draw;
 mod faults;
+mod fill;
 mod harness;
+mod memory;
 mod options;
 mod outputs;
 mod pick;

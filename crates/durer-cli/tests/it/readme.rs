@@ -36,7 +36,7 @@ fn arguments(line: &str) -> Option<Vec<String>> {
 
 /// The same command for a small picture.
 fn made_small(mut arguments: Vec<String>) -> Vec<String> {
-    if arguments[0] != "render" {
+    if !["render", "draw"].contains(&arguments[0].as_str()) {
         return arguments;
     }
     if let Some(at) = arguments.iter().position(|a| a == "--size") {
@@ -136,6 +136,7 @@ fn links_lead_to_files() {
         "docs/performance.md",
         "docs/clip.md",
         "docs/plot.md",
+        "docs/draw.md",
         "samples/README.md",
         "peers/render/README.md",
     ];

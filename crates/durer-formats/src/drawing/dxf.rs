@@ -15,8 +15,10 @@ use durer::target::sheet::{Mark, Pen, Sheet};
 use std::io::Write;
 
 /// The line weights that the format has, in hundredths of a millimetre.
-const WEIGHTS: &[i64] =
-    &[0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211];
+const WEIGHTS: &[i64] = &[
+    0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200,
+    211,
+];
 
 /// Handles of objects that others refer to.
 const BLOCK_RECORDS: u32 = 0x1;
@@ -155,7 +157,13 @@ fn tables(tags: &mut Tags, sheet: &Sheet) {
     layers(tags, sheet);
     tags.table("STYLE", STYLES, 1);
     tags.record("STYLE", STYLES, "AcDbTextStyleTableRecord").tag(2, "Standard").int(70, 0);
-    tags.real(40, 0.0).real(41, 1.0).real(50, 0.0).int(71, 0).real(42, 2.5).tag(3, "txt").tag(4, "");
+    tags.real(40, 0.0)
+        .real(41, 1.0)
+        .real(50, 0.0)
+        .int(71, 0)
+        .real(42, 2.5)
+        .tag(3, "txt")
+        .tag(4, "");
     tags.tag(0, "ENDTAB");
     tags.table("VIEW", VIEWS, 0).tag(0, "ENDTAB");
     tags.table("UCS", UCSS, 0).tag(0, "ENDTAB");
@@ -183,7 +191,8 @@ fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.point(10, DVec2::ZERO).point(11, DVec2::ONE).point(12, sheet.size * 0.5);
     tags.point(13, DVec2::ZERO).point(14, DVec2::splat(10.0)).point(15, DVec2::splat(10.0));
     tags.point(16, DVec2::ZERO).real(36, 1.0).point3(17, DVec2::ZERO);
-    tags.real(40, sheet.size.y.max(1.0)).real(41, (sheet.size.x / sheet.size.y.max(1e-9)).max(1e-9));
+    tags.real(40, sheet.size.y.max(1.0))
+        .real(41, (sheet.size.x / sheet.size.y.max(1e-9)).max(1e-9));
     tags.real(42, 50.0).real(43, 0.0).real(44, 0.0).real(50, 0.0).real(51, 0.0);
     for code in 71..=78 {
         // Circle zoom and fast zoom have their usual values, the rest is off.

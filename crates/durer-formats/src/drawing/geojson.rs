@@ -133,8 +133,8 @@ fn inside(outer: &[DVec2], ring: &[DVec2]) -> bool {
     let Some(p) = ring.iter().find(|p| !outer.contains(p)).or(ring.first()) else { return false };
     let next = outer.iter().cycle().skip(1);
     outer.iter().zip(next).fold(false, |odd, (a, b)| {
-        let crosses = (a.y > p.y) != (b.y > p.y)
-            && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+        let crosses =
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
         odd != crosses
     })
 }

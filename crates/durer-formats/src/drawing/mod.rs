@@ -72,7 +72,11 @@ impl FromStr for DrawingFormat {
     type Err = Error;
 
     fn from_str(s: &str) -> Result<Self> {
-        Self::ALL.iter().copied().find(|f| f.name() == s).ok_or_else(|| Error::Unknown(s.to_owned()))
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|f| f.name() == s)
+            .ok_or_else(|| Error::Unknown(s.to_owned()))
     }
 }
 

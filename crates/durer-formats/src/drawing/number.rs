@@ -39,6 +39,9 @@ mod tests {
         for (value, text) in cases {
             assert_eq!(short(value, 3), text);
         }
-        assert_eq!([f64::NAN, 100.0, 1e21].map(|v| short(v, 0)), ["0", "100", "1000000000000000000000"]);
+        assert_eq!(
+            [f64::NAN, 100.0, 1e21].map(|v| short(v, 0)),
+            ["0", "100", "1000000000000000000000"]
+        );
     }
 }

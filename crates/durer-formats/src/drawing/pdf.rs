@@ -41,7 +41,8 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     let content = miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), LEVEL);
     let mut pdf = Pdf::new();
     pdf.set_version(1, 5);
-    let layers: Vec<Ref> = (0i32..).take(sheet.layers.len()).map(|i| Ref::new(FIRST_LAYER + i)).collect();
+    let layers: Vec<Ref> =
+        (0i32..).take(sheet.layers.len()).map(|i| Ref::new(FIRST_LAYER + i)).collect();
     catalog(&mut pdf, &layers);
     pdf.pages(Ref::new(PAGES)).kids([Ref::new(PAGE)]).count(1);
     page(&mut pdf, sheet, scale, user_unit, &layers, &alphas);
@@ -123,7 +124,8 @@ fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>) -> String {
     let mut state = State::default();
     if let Some(color) = sheet.background {
         set_fill(&mut text, &mut state, color, alphas);
-        text += &format!("0 0 {} {} re f\n", short(sheet.size.x, DIGITS), short(sheet.size.y, DIGITS));
+        text +=
+            &format!("0 0 {} {} re f\n", short(sheet.size.x, DIGITS), short(sheet.size.y, DIGITS));
     }
     for (i, layer) in sheet.layers.iter().enumerate() {
         text += &format!("/OC /L{i} BDC\n");
@@ -184,7 +186,12 @@ fn set_alpha(text: &mut String, state: &mut State, alpha: u8, alphas: &mut BTree
     }
 }
 
-fn set_fill(text: &mut String, state: &mut State, [r, g, b, a]: [u8; 4], alphas: &mut BTreeSet<u8>) {
+fn set_fill(
+    text: &mut String,
+    state: &mut State,
+    [r, g, b, a]: [u8; 4],
+    alphas: &mut BTreeSet<u8>,
+) {
     set_alpha(text, state, a, alphas);
     if state.fill != Some([r, g, b]) {
         color(text, [r, g, b], "rg");

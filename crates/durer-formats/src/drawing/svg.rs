@@ -25,7 +25,8 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" ",
         "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"\n ",
     ));
-    text += &format!("width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n");
+    text +=
+        &format!("width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n");
     if !sheet.title.is_empty() {
         text += &format!("<title>{}</title>\n", escaped(&sheet.title));
     }

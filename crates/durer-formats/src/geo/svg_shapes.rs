@@ -1,8 +1,8 @@
 //! The shapes of an SVG document as features.
 //!
-//! Read are `path` (all but arcs), `polygon`, `polyline`, `line` and `rect` without round corners, with
-//! the `transform`s and `id`s on them and on the groups around them. Curves become [`STEPS`] edges
-//! each. Closed parts become polygons (several of one path: by the even-odd rule of a clip), open
+//! Read are `path`, `polygon`, `polyline`, `line`, `rect`, `circle` and `ellipse`, with the
+//! `transform`s and `id`s on them and on the groups around them. Bézier curves become [`STEPS`] edges
+//! each, arcs and round corners as many per quarter turn, with all corners on the curve. Closed parts become polygons (several of one path: by the even-odd rule of a clip), open
 //! parts lines. Styles, `use`, text, clipping and nested documents are not looked at. Coordinates are
 //! those of the document turned over, so that y is up, as [`super::svg`] writes them.
 
@@ -10,8 +10,9 @@ use super::{Feature, Geometry, Points, Warnings};
 use crate::{Error, Place, Result};
 use durer::math::DVec2;
 use quick_xml::events::{BytesStart, Event};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Edges that a curve becomes.
+/// Edges that a curve, or a quarter of an ellipse, becomes.
 const STEPS: u32 = 16;
 
 /// The matrix (a, b, c, d, e, f) of SVG: x' = a·x + c·y + e, y' = b·x + d·y + f.
@@ -164,15 +165,26 @@ fn shape(element: &BytesStart<'_>, level: &Level) -> Result<Option<Geometry>, St
             path.line_to(DVec2::new(number("x1")?, number("y1")?));
             path.line_to(DVec2::new(number("x2")?, number("y2")?));
         }
-        "rect" if text("rx")?.is_empty() && text("ry")?.is_empty() => {
-            let p = DVec2::new(number("x")?, number("y")?);
-            let q = p + DVec2::new(number("width")?, number("height")?);
-            for corner in [p, DVec2::new(q.x, p.y), q, DVec2::new(p.x, q.y)] {
-                path.line_to(corner);
-            }
-            path.close();
+        "rect" => {
+            let size = DVec2::new(number("width")?, number("height")?);
+            let radius = |name: &str| {
+                let text = text(name)?;
+                let given = !matches!(text.trim(), "" | "auto");
+                Ok::<_, String>(if given { Scanner::new(&text).number()? } else { None })
+            };
+            let (rx, ry) = (radius("rx")?, radius("ry")?);
+            let radii = DVec2::new(rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0));
+            path.rectangle(DVec2::new(number("x")?, number("y")?), size, radii);
         }
-        "rect" | "circle" | "ellipse" | "text" | "use" | "image" => {
+        "circle" => {
+            let center = DVec2::new(number("cx")?, number("cy")?);
+            path.ellipse(center, DVec2::splat(number("r")?));
+        }
+        "ellipse" => {
+            let center = DVec2::new(number("cx")?, number("cy")?);
+            path.ellipse(center, DVec2::new(number("rx")?, number("ry")?));
+        }
+        "text" | "use" | "image" => {
             return Err(format!("`{}` of this kind is not read", local.as_ref()));
         }
         _ => return Ok(None),
@@ -279,7 +291,12 @@ impl Path {
                 self.curve([raise(self.at), raise(end), end], control, 2);
             }
             'Z' => self.close(),
-            'A' => return Err("arcs in paths are not read".to_owned()),
+            'A' => {
+                let (radii, angle) = (s.pair()?, s.need()?);
+                let (large, sweep) = (s.flag()?, s.flag()?);
+                let end = base + s.pair()?;
+                self.arc(radii, angle, large != sweep, sweep, end);
+            }
             _ => return Err(format!("`{letter}` is no command of a path")),
         }
         Ok(())
@@ -298,6 +315,71 @@ impl Path {
             self.line_to(if i == STEPS { p3 } else { p });
         }
         self.control = Some((control, degree));
+    }
+
+    /// An elliptical arc from the current point, by the conversion of SVG 1.1, appendix F.6.5; `differ`
+    /// tells whether its two flags, for the larger arc and for growing angles, are different.
+    fn arc(&mut self, radii: DVec2, degrees: f64, differ: bool, sweep: bool, end: DVec2) {
+        let (start, mut radii) = (self.at, radii.abs());
+        if start == end || radii.min_element() == 0.0 {
+            return self.line_to(end);
+        }
+        // In the space where the ellipse is a unit circle around c, the ends are at ±p.
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        let turned = |p: DVec2| DVec2::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y);
+        let half = (start - end) * 0.5;
+        let mut p = DVec2::new(cos * half.x + sin * half.y, cos * half.y - sin * half.x) / radii;
+        let reach = p.length();
+        if reach > 1.0 {
+            // Too small to reach: as much larger as needed.
+            (radii, p) = (radii * reach, p / reach);
+        }
+        let distance = (1.0 / p.length_squared() - 1.0).max(0.0).sqrt();
+        let c = DVec2::new(p.y, -p.x) * if differ { distance } else { -distance };
+        let angle = |v: DVec2| libm::atan2(v.y, v.x);
+        let from = angle(p - c);
+        let mut turn = angle(-p - c) - from;
+        match sweep {
+            true if turn < 0.0 => turn += TAU,
+            false if turn > 0.0 => turn -= TAU,
+            _ => {}
+        }
+        // A hair less, so that rounding adds no edge to a quarter turn.
+        let edges = libm::ceil(turn.abs() / FRAC_PI_2 * f64::from(STEPS) - 1e-6);
+        let edges = edges.clamp(1.0, f64::from(4 * STEPS)) as u32;
+        let center = start * 0.5 + end * 0.5 + turned(c * radii);
+        for i in 1..edges {
+            let (sin, cos) = libm::sincos(from + turn * f64::from(i) / f64::from(edges));
+            self.line_to(center + turned(DVec2::new(cos, sin) * radii));
+        }
+        self.line_to(end);
+    }
+
+    /// An ellipse with its axes along the coordinates'; none where a radius is not above zero.
+    fn ellipse(&mut self, center: DVec2, radii: DVec2) {
+        if radii.cmpgt(DVec2::ZERO).all() {
+            (0..4 * STEPS).for_each(|i| self.line_to(center + on_circle(i) * radii));
+            self.close();
+        }
+    }
+
+    /// A rectangle, with corners as round as its sides allow.
+    fn rectangle(&mut self, corner: DVec2, size: DVec2, radii: DVec2) {
+        if !size.cmpgt(DVec2::ZERO).all() {
+            return;
+        }
+        let radii = radii.max(DVec2::ZERO).min(size * 0.5);
+        let round = radii.min_element() > 0.0;
+        let radii = if round { radii } else { DVec2::ZERO };
+        let (low, high) = (corner + radii, corner + size - radii);
+        let centers = [high, DVec2::new(low.x, high.y), low, DVec2::new(high.x, low.y)];
+        for (center, quarter) in centers.into_iter().zip(0..) {
+            let last = if round { STEPS } else { 0 };
+            for i in 0..=last {
+                self.line_to(center + on_circle(quarter * STEPS + i) * radii);
+            }
+        }
+        self.close();
     }
 
     fn geometry(mut self, matrix: &Matrix) -> Result<Option<Geometry>, String> {
@@ -332,6 +414,14 @@ impl Path {
             (area, line) => area.or(line),
         })
     }
+}
+
+/// Point i of a unit circle of 4 · [`STEPS`]; quarters are alike to the bit.
+fn on_circle(i: u32) -> DVec2 {
+    let step = i % STEPS;
+    let (sin, cos) = libm::sincos(FRAC_PI_2 * f64::from(step) / f64::from(STEPS));
+    let point = if step == 0 { DVec2::X } else { DVec2::new(cos, sin) };
+    (0..i / STEPS % 4).fold(point, |p, _| p.perp())
 }
 
 /// Numbers and letters, parted by blanks and commas or nothing.
@@ -377,6 +467,18 @@ impl<'a> Scanner<'a> {
 
     fn need(&mut self) -> Result<f64, String> {
         self.number()?.ok_or_else(|| "a number is missing at the end".to_owned())
+    }
+
+    /// A flag of an arc, which needs nothing to part it from what follows.
+    fn flag(&mut self) -> Result<bool, String> {
+        self.skip();
+        match self.rest {
+            [flag @ (b'0' | b'1'), rest @ ..] => {
+                self.rest = rest;
+                Ok(*flag == b'1')
+            }
+            _ => Err("a flag of an arc must be 0 or 1".to_owned()),
+        }
     }
 
     fn pair(&mut self) -> Result<DVec2, String> {

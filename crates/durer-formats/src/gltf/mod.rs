@@ -30,7 +30,7 @@ mod meshopt;
 mod node;
 mod normals;
 mod primitive;
-mod uri;
+pub(crate) mod uri;
 
 use crate::{Error, Model, Place, ReadOptions, Resources, Result};
 use animation::Override;

@@ -45,7 +45,7 @@ fn strip_data_scheme(uri: &str) -> Option<&str> {
 }
 
 /// A percent-decoded path below the model's own folder, with `/` as separator.
-fn relative_path(uri: &str) -> std::result::Result<String, &'static str> {
+pub(crate) fn relative_path(uri: &str) -> std::result::Result<String, &'static str> {
     if uri.is_empty() {
         return Err("it is empty");
     }

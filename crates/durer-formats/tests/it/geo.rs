@@ -227,7 +227,7 @@ fn wkb_of_both_byte_orders_and_postgis_is_read() {
 #[test]
 fn shapes_of_svg_are_read_and_written() {
     let svg = r#"<svg xmlns="http://www.w3.org/2000/svg"><g id="g" transform="translate(10 0)">
-<path d="M0,0h4v4H0zm1,1l1 0 0 1z"/><polyline id="p" points="0,0 1,2"/><circle r="3"/>
+<path d="M0,0h4v4H0zm1,1l1 0 0 1z"/><polyline id="p" points="0,0 1,2"/><text>a</text>
 <rect x="1" y="2" width="3" height="4" transform="scale(2)"/><path d="M0 0Q1 2 2 0"/></g></svg>"#;
     let (all, warnings) = read_all(svg.as_bytes(), "").expect("read");
     let names: Vec<_> =
@@ -244,6 +244,63 @@ fn shapes_of_svg_are_read_and_written() {
     let bare = |all: &[Feature]| all.iter().map(|f| f.geometry.clone()).collect::<Vec<_>>();
     assert_eq!(bare(&again), bare(&all));
     assert!(read_all(b"<svg><g", "").expect_err("cut").to_string().contains("line 1"));
+}
+
+/// The points of the one shape of a document, y up.
+fn svg_points(shape: &str) -> Vec<DVec2> {
+    let text = format!("<svg>{shape}</svg>");
+    let (all, warnings) = read_all(text.as_bytes(), "").expect("read");
+    assert_eq!((all.len(), warnings.len()), (1, 0), "{shape}");
+    let mut points = Vec::new();
+    let geometry = all[0].geometry.as_ref().expect("a shape");
+    geometry.for_each(&mut |part| points.extend(&part.xy));
+    points
+}
+
+#[test]
+fn arcs_of_svg_lie_on_their_ellipses() {
+    // Radii (3, 2) around (5, 1), turned by 90°: y is turned over after that.
+    for flags in ["0 0", "0 1", "1 0", "1 1", "01", "11"] {
+        let points = svg_points(&format!("<path d='M5 4A3 2 90 {flags}3 1'/>"));
+        let (large, sweep) = (flags.starts_with('1'), flags.ends_with('1'));
+        assert_eq!(points.len(), if large { 49 } else { 17 }, "{flags}");
+        assert_eq!(
+            (points[0], points[points.len() - 1]),
+            (DVec2::new(5.0, -4.0), DVec2::new(3.0, -1.0))
+        );
+        // Both ends are a quarter apart on two ellipses; the flags choose one and a way around it.
+        let center = if large == sweep { DVec2::new(3.0, -4.0) } else { DVec2::new(5.0, -1.0) };
+        for p in &points {
+            let q = (*p - center) / DVec2::new(2.0, 3.0);
+            assert!((q.length() - 1.0).abs() < 1e-12, "{flags}: {p}");
+        }
+    }
+    // Radii that do not reach grow; without radii the arc is a line.
+    let half = svg_points("<path d='M0 0a1 1 0 0 1 8 0'/>");
+    assert!(
+        half.iter().all(|p| (p.distance(DVec2::new(4.0, 0.0)) - 4.0).abs() < 1e-12 && p.y > -1e-12)
+    );
+    assert_eq!(svg_points("<path d='M0 0A0 1 0 0 1 8 0'/>").len(), 2);
+    let text = "<svg><path d='M0 0A1 1 0 2 1 8 0'/></svg>";
+    assert!(
+        read_all(text.as_bytes(), "").expect("read").1[0].to_string().contains("must be 0 or 1")
+    );
+}
+
+#[test]
+fn circles_and_round_corners_of_svg_are_read() {
+    let circle = svg_points("<circle cx='1' cy='2' r='3'/>");
+    let ellipse = svg_points("<ellipse cx='1' cy='2' rx='3' ry='3'/>");
+    assert_eq!((circle.len(), &circle), (64, &ellipse));
+    assert!(circle.iter().all(|p| (p.distance(DVec2::new(1.0, -2.0)) - 3.0).abs() < 1e-12));
+    assert!(circle.contains(&DVec2::new(4.0, -2.0)) && circle.contains(&DVec2::new(1.0, -5.0)));
+    let round = svg_points("<rect x='1' y='2' width='10' height='4' rx='9' ry='1'/>");
+    let (low, high) = (DVec2::new(1.0, -6.0), DVec2::new(11.0, -2.0));
+    assert!(round.iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()), "{round:?}");
+    assert!(round.contains(&DVec2::new(1.0, -3.0)) && round.contains(&DVec2::new(6.0, -2.0)));
+    assert_eq!(svg_points("<rect width='2' height='2' rx='auto'/>").len(), 4);
+    let none = read_all(b"<svg><circle r='0'/><rect width='2'/></svg>", "").expect("read");
+    assert!(none.0.is_empty() && none.1.is_empty());
 }
 
 fn points(dimensions: Dimensions, least: usize) -> impl Strategy<Value = Points> {

@@ -4,6 +4,8 @@
 //! same bits on every machine. Curve: IEC 61966-2-1 (1999).
 
 use crate::math::{Vec3, Vec4};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, u32x8};
 
 /// Linear value of each 8-bit sRGB code, correctly rounded from double precision.
 pub static LINEAR_FROM_SRGB: [f32; 256] = linear_table();
@@ -24,6 +26,26 @@ const FIRST_BUCKET: u32 = LOWEST_EXPONENT << BUCKET_BITS;
 
 /// The code of each bucket's lower end.
 static BUCKET_CODE: [u8; BUCKETS] = bucket_table();
+
+/// Of each bucket the code of its lower end in the upper half, and in the lower half what has to be
+/// added to a number's bits below the bucket number to carry into the code where the next threshold
+/// is reached. As long as a power of two, so that no index is too large.
+static BUCKET_STEP: [u32; 2048] = step_table();
+
+const fn step_table() -> [u32; 2048] {
+    let (threshold, code) = (threshold_table(), bucket_table());
+    let mut table = [255 << 16; 2048];
+    let mut bucket = 0;
+    while bucket < BUCKETS {
+        let next = threshold[code[bucket] as usize].to_bits();
+        let within = next >> BUCKET_SHIFT == bucket as u32 + FIRST_BUCKET;
+        let carry =
+            if within { (1 << BUCKET_SHIFT) - (next & ((1 << BUCKET_SHIFT) - 1)) } else { 0 };
+        table[bucket] = ((code[bucket] as u32) << BUCKET_SHIFT) + carry;
+        bucket += 1;
+    }
+    table
+}
 
 /// Fifth root of x in 0…1 by Newton's iteration from above.
 const fn fifth_root(x: f64) -> f64 {
@@ -104,6 +126,40 @@ pub fn encode_srgb8(linear: f32) -> u8 {
     // Below 2^-13 the subtraction wraps; negative numbers and NaN land beyond the table too.
     let Some(&code) = BUCKET_CODE.get(bucket) else { return 0 };
     code + u8::from(linear >= THRESHOLD[usize::from(code)])
+}
+
+/// Eight opaque linear colours, by channel, to 8-bit sRGB: for each channel what [`encode_srgb8`] gives.
+///
+/// Cost: one look-up per channel.
+#[inline(always)]
+pub fn encode_opaque_x8<S: Simd>(simd: S, channels: &[[f32; 8]; 3]) -> [[u8; 4]; 8] {
+    let [r, g, b] = channels;
+    let (r, g, b) = (codes_x8(simd, r), codes_x8(simd, g), codes_x8(simd, b));
+    let packed = r | (g << 8u32) | (b << 16u32) | (255 << 24);
+    let packed: [u32; 8] = packed.into();
+    let mut pixels = [[0; 4]; 8];
+    for i in 0..8 {
+        pixels[i] = packed[i].to_le_bytes();
+    }
+    pixels
+}
+
+#[inline(always)]
+fn codes_x8<S: Simd>(simd: S, linear: &[f32; 8]) -> u32x8<S> {
+    // From the first bucket to the largest number below 1; NaN is not above the first.
+    let (least, most) = (f32::from_bits(FIRST_BUCKET << BUCKET_SHIFT), 1.0 - f32::EPSILON / 2.0);
+    let linear = f32x8::from_slice(simd, linear);
+    let (least, most) = (f32x8::splat(simd, least), f32x8::splat(simd, most));
+    let linear = linear.simd_gt(least).select(linear, least);
+    let linear = linear.simd_lt(most).select(linear, most);
+    let bits: u32x8<S> = linear.bitcast();
+    let buckets: [u32; 8] = ((bits >> BUCKET_SHIFT) - FIRST_BUCKET).into();
+    let mut steps = [0; 8];
+    for i in 0..8 {
+        steps[i] = BUCKET_STEP[(buckets[i] & 2047) as usize];
+    }
+    let below = bits & ((1 << BUCKET_SHIFT) - 1);
+    (u32x8::simd_from(simd, steps) + below) >> BUCKET_SHIFT
 }
 
 /// Linear RGBA to 8-bit sRGB with 8-bit linear alpha.
@@ -209,6 +265,26 @@ mod tests {
             let t = THRESHOLD[usize::from(code)];
             assert_eq!(encode_srgb8(t), code + 1);
             assert_eq!(encode_srgb8(f32::from_bits(t.to_bits() - 1)), code);
+        }
+    }
+
+    #[test]
+    fn eight_at_a_time_have_the_codes_of_one() {
+        let strange = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY, -1.0, 0.0, 1e-40, 1.0, 7.0];
+        let around = |t: f32| [t, f32::from_bits(t.to_bits() - 1), f32::from_bits(t.to_bits() + 1)];
+        let mut values: Vec<f32> = THRESHOLD[..255].iter().flat_map(|t| around(*t)).collect();
+        values.extend(strange);
+        values.extend((0..=1000).map(|i| i as f32 * 1e-3));
+        for level in crate::simd::levels() {
+            for eight in values.chunks_exact(8) {
+                let r: [f32; 8] = std::array::from_fn(|i| eight[i]);
+                let g = r.map(|v| v * 0.5);
+                let codes = fearless_simd::dispatch!(level, simd =>
+                    encode_opaque_x8(simd, &[r, g, [0.5; 8]]));
+                let half = encode_srgb8(0.5);
+                let one = |i: usize| [encode_srgb8(r[i]), encode_srgb8(g[i]), half, 255];
+                assert_eq!(codes, std::array::from_fn(one), "{eight:?}");
+            }
         }
     }
 

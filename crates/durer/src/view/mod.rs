@@ -1,10 +1,13 @@
-//! From the world to the screen: windows and viewports, projection, culling.
+//! From the world to the screen: windows and viewports, projection, culling, places for labels.
 
 pub mod cull;
+pub mod interior_point;
+pub mod label;
 pub mod layout;
 pub mod pick;
 pub mod picture_plane;
 pub mod projection;
+pub mod section;
 pub mod topology;
 pub mod warp;
 pub mod window;

@@ -227,8 +227,19 @@ pub fn fit_points(
     options: &FitOptions,
 ) -> Result<Camera> {
     let mut outermost = Outermost::new(direction, &Frame::new(options)?);
-    let finite = points.into_iter().filter(|p| p.is_finite());
-    let bounds = Aabb::around(finite.inspect(|p| outermost.add(*p)));
+    let mut finite = points.into_iter().filter(|p| p.is_finite());
+    let mut bounds: Option<Aabb> = None;
+    let mut batch = [DVec3::ZERO; BATCH];
+    loop {
+        let mut count = 0;
+        for (to, point) in batch.iter_mut().zip(&mut finite) {
+            *to = point;
+            count += 1;
+        }
+        let Some(around) = Aabb::around(batch[..count].iter().copied()) else { break };
+        outermost.add(&batch[..count], &around);
+        bounds = Some(bounds.map_or(around, |b| b.union(&around)));
+    }
     let extent = visible_extent(bounds.as_ref());
     if bounds == Some(extent) {
         fit(&outermost.points(), &extent, direction, options)
@@ -236,6 +247,9 @@ pub fn fit_points(
         fit(&extent.corners(), &extent, direction, options)
     }
 }
+
+/// Points that are looked at together: neighbours in the file mostly are neighbours in space.
+const BATCH: usize = 64;
 
 /// The outermost points of a set: along the axes of the view, and towards the sides of a frame.
 struct Outermost {
@@ -251,11 +265,19 @@ impl Outermost {
         Self { furthest: directions.map(|d| (d, f64::NEG_INFINITY, DVec3::ZERO)) }
     }
 
-    fn add(&mut self, p: DVec3) {
+    /// Adds points and the box around them; most boxes lie within what there is already.
+    fn add(&mut self, points: &[DVec3], around: &Aabb) {
         for (direction, distance, point) in &mut self.furthest {
-            let d = direction.dot(p);
-            if d > *distance {
-                (*distance, *point) = (d, p);
+            // The same products and sums as a point's, each at least as large, also when rounded.
+            let corner = DVec3::select(direction.cmpge(DVec3::ZERO), around.max, around.min);
+            if direction.dot(corner) <= *distance {
+                continue;
+            }
+            for p in points {
+                let d = direction.dot(*p);
+                if d > *distance {
+                    (*distance, *point) = (d, *p);
+                }
             }
         }
     }

@@ -92,7 +92,7 @@ fn finite_corners(mesh: &Mesh, corners: [u32; 3]) -> Option<[DVec3; 3]> {
 const WELD: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// For each vertex the number of one at the same place, the same for all of them.
-fn weld(positions: &[Vec3]) -> Vec<u32> {
+pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
     let bounds = Aabb::around(positions.iter().map(|p| p.as_dvec3()));
     let tolerance = bounds.map_or(0.0, |b| b.size().max_element() * WELD);
     let axes = [0, 1, 2].map(|axis| classes(positions, axis, tolerance));

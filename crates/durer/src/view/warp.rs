@@ -173,7 +173,11 @@ impl Layer {
                 let (to, depth) = (to.truncate(), to.z);
                 Step::Move { source: index, from: [x, y], to, depth }
             });
-            if let Some(corners) = corners(&new_from_old, center, slope) {
+            if let Some(mut corners) = corners(&new_from_old, center, slope) {
+                if depth >= 1.0 {
+                    // Background stays background, wherever the new far plane is.
+                    corners.iter_mut().for_each(|c| c.z = 1.0);
+                }
                 self.splat(&corners, rgba, t);
             }
         }

@@ -110,11 +110,15 @@ proptest! {
                 prop_assert!((1.0 / seen.w - v.inv_w).abs() < 1e-6 * v.inv_w);
             }
         }
-        let outlines: Vec<Vec<DVec2>> =
+        let mut outlines: Vec<Vec<DVec2>> =
             clipped.iter().map(|r| r.iter().map(on_screen).collect()).collect();
         let mut pictures: Vec<_> = outlines.iter().map(|o| pixels(o)).collect();
         if let Some(k) = ClipPlace::ALL.iter().position(|p| *p == ClipPlace::PerPixel) {
             pictures[k] = pixels_by_depth(&clipped[k]);
+            // What is seen of it has the outline of what the others cut.
+            if !outlines[0].is_empty() {
+                outlines[k] = outlines[0].clone();
+            }
         }
         for k in 1..ClipPlace::ALL.len() {
             for &(x, y) in pictures[0].symmetric_difference(&pictures[k]) {

@@ -7,7 +7,7 @@ use durer::trace::NoTrace;
 use serde_json::Value;
 
 use crate::overlay::cases::{ClipperCase, geojson, shared, shared_files, well_known};
-use crate::overlay::validity;
+use crate::overlay::{distance, validity};
 
 fn run(a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options) -> Output {
     overlay(a, b, op, options, &mut NoTrace).expect("finite")
@@ -50,6 +50,23 @@ fn clipper2_polygons_are_valid_and_exact() {
             (area - exact).abs() <= within + 1e-12 * exact,
             "{name}: {area} {exact} ± {within}"
         );
+    }
+}
+
+/// No point of the border lies further from the exact border than snapping moves an edge: half a
+/// cell's diagonal; nor the other way round.
+#[test]
+fn clipper2_polygons_are_near_the_exact_regions() {
+    let Some(text) = shared("geo2d/clipper2/Polygons.txt") else { return };
+    for case in ClipperCase::all(&text) {
+        let options = Options::with_rule(case.rule);
+        let out = run(&case.subject, &case.clip, case.op, &options);
+        let (inputs, off) = ([&case.subject, &case.clip], out.cell * 0.125);
+        let apart = distance::both_ways(inputs, case.op, &options, &out.shapes, off);
+        let within = out.cell * 0.5f64.sqrt() + off;
+        for (way, apart) in ["result", "exact"].iter().zip(apart) {
+            assert!(apart <= within, "case {} {way}: {apart} {}", case.number, out.cell);
+        }
     }
 }
 

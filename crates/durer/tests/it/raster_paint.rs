@@ -5,7 +5,9 @@ use durer::curve::{Contours, Path};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
-use durer::raster::paint::{Blending, Canvas, Gradient, Options, Paint, Pattern, Shape, Spread};
+use durer::raster::paint::{
+    Blending, Canvas, Gradient, MaskKind, Options, Paint, Pattern, Shape, Spread,
+};
 use durer::target::Pixels;
 use std::sync::Arc;
 
@@ -194,7 +196,8 @@ fn clearing_is_filling_before() {
 fn patterns_repeat() {
     let image = Pixels::from_data(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 255]]).unwrap();
     let transform = DAffine2::from_scale(DVec2::splat(4.0));
-    let pattern = Pattern { image: Arc::new(image), transform, repeat: true, smooth: false };
+    let pattern =
+        Pattern { image: Arc::new(image), transform, spread: Some(Spread::Repeat), smooth: false };
     let mut c = canvas(20);
     let paint = Paint::Pattern(Arc::new(pattern));
     c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &paint, 1.0);
@@ -258,6 +261,128 @@ fn empty_targets_and_strange_paints_are_defined() {
         1.0,
     );
     rendered(&c, 10, WHITE);
+}
+
+/// The area that a stroke covers, in pixels.
+fn stroked(path: &Path, stroke: &Stroke) -> f64 {
+    let mut c = canvas(40);
+    c.stroke(path, stroke, &Paint::Color([0, 0, 0, 255]), 1.0).unwrap();
+    let picture = rendered(&c, 40, [0; 4]);
+    picture.data().iter().map(|p| f64::from(p[3]) / 255.0).sum()
+}
+
+#[test]
+fn contours_and_dashes_without_length_are_dots() {
+    let at = |cap, dashes: &[f64]| Stroke {
+        width: 10.0,
+        cap,
+        dashes: dashes.to_vec(),
+        ..Stroke::default()
+    };
+    let mut point = Path::new();
+    point.move_to(20.0, 20.0).line_to(20.0, 20.0);
+    let (disk, square) = (std::f64::consts::PI * 25.0, 100.0);
+    assert!((stroked(&point, &at(Cap::Round, &[])) - disk).abs() < 0.5);
+    assert!((stroked(&point, &at(Cap::Square, &[])) - square).abs() < 0.5);
+    assert_eq!(stroked(&point, &at(Cap::Butt, &[])), 0.0);
+    let mut only_move = Path::new();
+    only_move.move_to(20.0, 20.0);
+    assert_eq!(stroked(&only_move, &at(Cap::Round, &[])), 0.0);
+    // Two dots, one at the start, one 20 further.
+    let mut line = Path::new();
+    line.move_to(10.0, 20.0).line_to(39.0, 20.0);
+    let dots = stroked(&line, &at(Cap::Round, &[0.0, 20.0]));
+    assert!((dots - 2.0 * disk).abs() < 1.0, "{dots}");
+}
+
+#[test]
+fn a_mask_restricts_what_follows_until_it_is_popped() {
+    for (kind, expected) in [(MaskKind::Alpha, [255, 255]), (MaskKind::Luminance, [255, 54])] {
+        let mut c = canvas(20);
+        c.push_clip(&Path::rectangle(0.0, 0.0, 20.0, 10.0), FillRule::NonZero);
+        c.begin_mask();
+        // Not clipped by what is around the mask, and closed by its end.
+        c.push_group();
+        for (x, color) in [(0.0, [255, 255, 255, 255]), (5.0, [255, 0, 0, 255])] {
+            let path = Path::rectangle(x, 0.0, 5.0, 20.0);
+            c.fill(&path, FillRule::NonZero, &Paint::Color(color), 1.0);
+        }
+        c.end_mask(kind);
+        let all = Path::rectangle(0.0, 0.0, 20.0, 20.0);
+        c.fill(&all, FillRule::NonZero, &Paint::Color([0, 0, 0, 255]), 1.0);
+        c.pop(1.0);
+        c.pop(1.0);
+        c.fill(
+            &Path::rectangle(15.0, 15.0, 5.0, 5.0),
+            FillRule::NonZero,
+            &Paint::Color([9, 9, 9, 255]),
+            1.0,
+        );
+        let picture = rendered(&c, 20, [0; 4]);
+        let alpha = |x, y| picture.get(x, y).unwrap()[3];
+        assert_eq!([alpha(2, 5), alpha(7, 5)], expected, "{kind:?}");
+        assert_eq!([alpha(12, 5), alpha(2, 15), alpha(17, 17)], [0, 0, 255], "{kind:?}");
+    }
+}
+
+#[test]
+fn a_group_is_clipped_once() {
+    let mut c = canvas(4);
+    c.push_clip(&Path::rectangle(0.0, 0.0, 1.5, 4.0), FillRule::NonZero);
+    c.push_group();
+    c.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &color(0, 0, 0, 255), 1.0);
+    c.pop(1.0);
+    c.pop(1.0);
+    let picture = rendered(&c, 4, [0; 4]);
+    assert_eq!(picture.row(1).iter().map(|p| p[3]).collect::<Vec<_>>(), [255, 128, 0, 0]);
+}
+
+#[test]
+fn what_is_left_open_or_closed_too_often_is_defined() {
+    let mut c = canvas(4);
+    c.pop(1.0);
+    c.end_mask(MaskKind::Alpha);
+    c.push_group();
+    c.begin_mask();
+    c.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &Paint::Color([1; 4]), 1.0);
+    assert!(rendered(&c, 4, WHITE).data().iter().all(|p| *p == WHITE));
+    c.pop(1.0);
+    c.fill(
+        &Path::rectangle(0.0, 0.0, 4.0, 4.0),
+        FillRule::NonZero,
+        &Paint::Color([1, 1, 1, 255]),
+        1.0,
+    );
+    assert!(rendered(&c, 4, WHITE).data().iter().all(|p| *p == [1, 1, 1, 255]));
+}
+
+#[test]
+fn edges_are_smoothed_or_not_command_by_command() {
+    let mut c = canvas(8);
+    for (y, smooth) in [(0.0, true), (4.0, false)] {
+        c.set_anti_alias(smooth);
+        let path = Path::rectangle(0.0, y, 2.4, 2.0);
+        c.fill(&path, FillRule::NonZero, &Paint::Color([0, 0, 0, 255]), 1.0);
+    }
+    let picture = rendered(&c, 8, [0; 4]);
+    assert_eq!([0, 4].map(|y| picture.get(2, y).unwrap()[3]), [102, 0]);
+}
+
+#[test]
+fn images_end_repeat_or_turn_at_their_border() {
+    let image = Arc::new(Pixels::from_data(2, 1, vec![[10, 0, 0, 255], [20, 0, 0, 255]]).unwrap());
+    let row = |spread| {
+        let transform = DAffine2::from_translation(DVec2::new(3.0, 0.0));
+        let pattern = Pattern { image: image.clone(), transform, spread, smooth: false };
+        let mut c = canvas(8);
+        let all = Path::rectangle(0.0, 0.0, 8.0, 8.0);
+        c.fill(&all, FillRule::NonZero, &Paint::Pattern(Arc::new(pattern)), 1.0);
+        rendered(&c, 8, [0; 4]).row(0).iter().map(|p| p[0]).collect::<Vec<_>>()
+    };
+    assert_eq!(row(None), [0, 0, 0, 10, 20, 0, 0, 0]);
+    assert_eq!(row(Some(Spread::Pad)), [10, 10, 10, 10, 20, 20, 20, 20]);
+    assert_eq!(row(Some(Spread::Repeat)), [20, 10, 20, 10, 20, 10, 20, 10]);
+    assert_eq!(row(Some(Spread::Reflect)), [20, 20, 10, 10, 20, 20, 10, 10]);
 }
 
 mod conformance_text {

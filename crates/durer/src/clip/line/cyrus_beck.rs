@@ -9,12 +9,14 @@
 //! that rounding puts outside is moved inside by a few ulp.
 
 use super::border::Canonical;
-use super::convex::{self, HalfSpace, Relation};
-use super::{ConvexPolygon, End, HalfPlane, Segment};
+use super::passage::clip_convex;
+use super::{ConvexPolygon, HalfPlane, Segment};
 use crate::Result;
 use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
+
+pub use super::passage::{Step, replay};
 
 /// The facts of Cyrus–Beck clipping.
 pub const INFO: Info = Info {
@@ -32,44 +34,6 @@ pub const INFO: Info = Info {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
 
-/// What the algorithm did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step<P> {
-    /// One border was looked at, from the lexicographically smaller end of the segment.
-    Border {
-        /// Its index in the window.
-        border: usize,
-        /// How the segment lies to it.
-        relation: Relation,
-    },
-    /// One end moves to a border.
-    Cut {
-        /// Which end.
-        end: End,
-        /// The border's index.
-        border: usize,
-        /// Where the end is now.
-        point: P,
-    },
-    /// What is left is inside.
-    Accepted,
-    /// Nothing is left.
-    Rejected,
-}
-
-/// The result that a list of steps leads to.
-pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Segment<P>> {
-    for step in steps {
-        match *step {
-            Step::Border { .. } => {}
-            Step::Cut { end, point, .. } => segment = segment.moved(end, point),
-            Step::Accepted => return Some(segment),
-            Step::Rejected => return None,
-        }
-    }
-    None
-}
-
 /// The part of a segment in the closed rectangle, taken as four half-planes.
 ///
 /// # Errors
@@ -80,7 +44,7 @@ pub fn clip(
     t: &mut impl Tracer<Step<DVec2>>,
 ) -> Result<Option<Segment<DVec2>>> {
     let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
-    Ok(run(&HalfPlane::of_rect(window), segment, &line, t))
+    Ok(clip_convex(&HalfPlane::of_rect(window), segment, &line, t))
 }
 
 /// The part of a segment in a closed convex polygon.
@@ -105,7 +69,7 @@ pub fn clip_polygon(
     t: &mut impl Tracer<Step<DVec2>>,
 ) -> Result<Option<Segment<DVec2>>> {
     let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
-    Ok(run(&window.edges(), segment, &line, t))
+    Ok(clip_convex(&window.edges(), segment, &line, t))
 }
 
 /// The part of a segment in the closed convex polyhedron that is the intersection of the positive
@@ -125,32 +89,5 @@ pub fn clip_polyhedron(
         }
     }
     let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
-    Ok(run(window, segment, &line, t))
-}
-
-fn run<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
-    spaces: &[H],
-    segment: Segment<P>,
-    line: &Canonical<N>,
-    t: &mut impl Tracer<Step<P>>,
-) -> Option<Segment<P>> {
-    let report = |border, relation| t.step(|| Step::Border { border, relation });
-    let Some(passage) = convex::passage(spaces, line, report) else {
-        t.step(|| Step::Rejected);
-        return None;
-    };
-    let mut cut = |border: Option<usize>, end: End| {
-        let point = border.map(|b| convex::crossing(spaces, b, line));
-        if let Some((border, point)) = border.zip(point) {
-            let end = end.swapped_if(line.swapped);
-            t.step(|| Step::Cut { end, border, point: point.into() });
-        }
-        point
-    };
-    let (p, q) = (cut(passage.entering, End::Start), cut(passage.leaving, End::End));
-    t.step(|| Step::Accepted);
-    if p.is_none() && q.is_none() {
-        return Some(segment);
-    }
-    Some(line.in_order(p.unwrap_or(line.p), q.unwrap_or(line.q)))
+    Ok(clip_convex(window, segment, &line, t))
 }

@@ -8,14 +8,16 @@
 //! The bounds are compared as numbers where rounding cannot matter and exactly where it could.
 
 use super::border::{Canonical, bit};
-use super::convex::{self, HalfPlane, Relation};
-use super::{ClipBox, End, Segment};
+use super::passage::{clip_convex, finish};
+use super::{ClipBox, HalfPlane, Relation, Segment};
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 use std::cmp::Ordering;
+
+pub use super::passage::{Step, replay};
 
 /// The facts of Liang–Barsky clipping.
 pub const INFO: Info = Info {
@@ -32,44 +34,6 @@ pub const INFO: Info = Info {
 /// There is nothing to choose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options;
-
-/// What the algorithm did; parameters run from the lexicographically smaller end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step<P> {
-    /// A border was crossed inwards or outwards and now bounds the parameter on that side.
-    Bound {
-        /// [`Relation::Entering`] raises the lower bound, [`Relation::Leaving`] lowers the upper.
-        relation: Relation,
-        /// The border's number: 2·axis, plus 1 for the larger coordinate; or the half-plane's index.
-        border: usize,
-    },
-    /// One end moves to the border that bounds it.
-    Cut {
-        /// Which end.
-        end: End,
-        /// The border's number.
-        border: usize,
-        /// Where the end is now.
-        point: P,
-    },
-    /// What is left is inside.
-    Accepted,
-    /// The lower bound passed the upper, or a border has both ends beyond it.
-    Rejected,
-}
-
-/// The result that a list of steps leads to.
-pub fn replay<P: Copy>(mut segment: Segment<P>, steps: &[Step<P>]) -> Option<Segment<P>> {
-    for step in steps {
-        match *step {
-            Step::Bound { .. } => {}
-            Step::Cut { end, point, .. } => segment = segment.moved(end, point),
-            Step::Accepted => return Some(segment),
-            Step::Rejected => return None,
-        }
-    }
-    None
-}
 
 /// The part of a segment in the closed rectangle.
 ///
@@ -124,17 +88,7 @@ pub fn clip_half_planes(
         }
     }
     let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
-    let passage = convex::passage(window, &line, |border, relation| {
-        if matches!(relation, Relation::Entering | Relation::Leaving) {
-            t.step(|| Step::Bound { relation, border });
-        }
-    });
-    let Some(passage) = passage else {
-        t.step(|| Step::Rejected);
-        return Ok(None);
-    };
-    let cut = |border: Option<usize>| border.map(|b| (b, convex::crossing(window, b, &line)));
-    Ok(Some(finish(segment, &line, cut(passage.entering), cut(passage.leaving), t)))
+    Ok(clip_convex(window, segment, &line, t))
 }
 
 #[inline]
@@ -180,31 +134,9 @@ fn tightest<const N: usize, P>(
     let relation = if wanted == Ordering::Greater { Relation::Entering } else { Relation::Leaving };
     for border in (0..2 * N).filter(|&b| code.contains(bit(b >> 1, b & 1))) {
         if best.is_none_or(|b| line.compare_parameters(at(border), at(b)) == wanted) {
-            t.step(|| Step::Bound { relation, border });
+            t.step(|| Step::Border { border, relation });
             best = Some(border);
         }
     }
     best
-}
-
-/// Puts the cut points in place of the ends, in the caller's direction.
-#[inline]
-fn finish<const N: usize, P: From<[f64; N]>>(
-    segment: Segment<P>,
-    line: &Canonical<N>,
-    lower: Option<(usize, [f64; N])>,
-    upper: Option<(usize, [f64; N])>,
-    t: &mut impl Tracer<Step<P>>,
-) -> Segment<P> {
-    for (cut, end) in [(lower, End::Start), (upper, End::End)] {
-        if let Some((border, point)) = cut {
-            let end = end.swapped_if(line.swapped);
-            t.step(|| Step::Cut { end, border, point: point.into() });
-        }
-    }
-    t.step(|| Step::Accepted);
-    match (lower, upper) {
-        (None, None) => segment,
-        (p, q) => line.in_order(p.map_or(line.p, |p| p.1), q.map_or(line.q, |q| q.1)),
-    }
 }

@@ -24,13 +24,16 @@ pub(crate) mod border;
 pub mod cohen_sutherland;
 pub(crate) mod convex;
 pub mod cyrus_beck;
+pub mod homogeneous;
 pub mod liang_barsky;
 pub mod midpoint;
 pub mod nicholl_lee_nicholl;
+mod passage;
 pub mod polyline;
 
 pub use border::{ClipBox, End};
-pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace, Relation};
+pub use convex::{ConvexPolygon, Edge, HalfPlane, HalfSpace};
+pub use passage::Relation;
 
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
@@ -70,6 +73,8 @@ crate::info::family! {
         LiangBarsky => liang_barsky::INFO,
         /// Regions around the first end point.
         NichollLeeNicholl => nicholl_lee_nicholl::INFO,
+        /// Boundary coordinates before the division by w.
+        Homogeneous => homogeneous::INFO,
     }
 }
 
@@ -86,6 +91,7 @@ impl LineClipper {
             Self::CyrusBeck => cyrus_beck::clip(window, segment, t),
             Self::LiangBarsky => liang_barsky::clip(window, segment, t),
             Self::NichollLeeNicholl => nicholl_lee_nicholl::clip(window, segment, t),
+            Self::Homogeneous => homogeneous::clip(window, segment, t),
             Self::Midpoint => Err(Error::Unsupported {
                 what: "midpoint subdivision on floating-point coordinates",
                 instead: "call midpoint::clip with integer pixels, or choose another algorithm",

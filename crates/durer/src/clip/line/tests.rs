@@ -7,11 +7,12 @@ use crate::trace::Recorder;
 use proptest::prelude::*;
 use std::cmp::Ordering;
 
-const FLOAT: [LineClipper; 4] = [
+const FLOAT: [LineClipper; 5] = [
     LineClipper::CohenSutherland,
     LineClipper::CyrusBeck,
     LineClipper::LiangBarsky,
     LineClipper::NichollLeeNicholl,
+    LineClipper::Homogeneous,
 ];
 
 /// Coordinates of one family: a tiny grid where everything touches, or numbers of every size.
@@ -98,7 +99,7 @@ proptest! {
                     prop_assert_eq!(p.to_array().map(f64::to_bits), original.to_array().map(f64::to_bits));
                 }
             }
-            if a != LineClipper::CyrusBeck {
+            if !matches!(a, LineClipper::CyrusBeck | LineClipper::Homogeneous) {
                 prop_assert_eq!(bits(Some(got)), bits(Some(reference)), "{}", a);
             }
         }
@@ -134,6 +135,58 @@ proptest! {
         let mut steps = Recorder::default();
         let got = nicholl_lee_nicholl::clip(&w, s, &mut steps).unwrap();
         prop_assert_eq!(bits(nicholl_lee_nicholl::replay(s, steps.steps())), bits(got));
+        let mut steps = Recorder::default();
+        let got = homogeneous::clip(&w, s, &mut steps).unwrap();
+        let lifted = Segment::new(s.start.extend(1.0), s.end.extend(1.0));
+        let rebuilt = homogeneous::replay(lifted, steps.steps());
+        let places = rebuilt.map(|s| Segment::new(s.start.truncate(), s.end.truncate()));
+        prop_assert_eq!(bits(places), bits(got));
+    }
+
+    /// Points of any positive weight stand for the same places; exact where weights are powers of two.
+    #[test]
+    fn weights_do_not_move_places((w, s) in case(), k in prop::array::uniform2(-3i32..=3)) {
+        let weights = k.map(|k| libm::scalbn(1.0, k));
+        let lift = |p: DVec2, w: f64| (p * w).extend(w);
+        let lifted = Segment::new(lift(s.start, weights[0]), lift(s.end, weights[1]));
+        let scaled_back = (lifted.start / weights[0]).truncate() == s.start && (lifted.end / weights[1]).truncate() == s.end;
+        if !scaled_back {
+            return Ok(());
+        }
+        let expected = LineClipper::CyrusBeck.clip(&w, s).unwrap();
+        let got = homogeneous::clip_homogeneous(&w, lifted, &mut NoTrace).unwrap();
+        prop_assert_eq!(got.is_some(), expected.is_some());
+        let Some((got, expected)) = got.zip(expected) else { return Ok(()) };
+        for (p, q) in [(got.start, expected.start), (got.end, expected.end)] {
+            prop_assert!(p.z > 0.0);
+            let place = p.truncate() * (0.25 / p.z);
+            prop_assert!((place - q * 0.25).abs().max_element() <= 16.0 * tolerance(&w, &s), "{} {}", p, q);
+        }
+    }
+
+    /// Of a segment that ends behind the eye, what is seen leads to the infinite.
+    #[test]
+    fn what_runs_behind_the_eye_is_a_ray((w, s) in case()) {
+        let direction = s.end;
+        let sizes = [w.min(), w.max(), s.start, s.end].map(|p| p.abs().max_element());
+        // Where start and direction cancel, the segment leads to the null vector, which is no place.
+        if sizes.iter().any(|&size| size > 1e6) || s.start == -direction {
+            return Ok(());
+        }
+        let lifted = Segment::new(s.start.extend(1.0), direction.extend(-1.0));
+        let got = homogeneous::clip_homogeneous(&w, lifted, &mut NoTrace).unwrap();
+        // The place at t is (start + t (direction − start)) / (1 − 2t), before t = ½.
+        let ray = HalfPlane::of_rect(&w);
+        let far = s.start + (s.start + direction) * 1e9;
+        let expected = liang_barsky::clip_half_planes(&ray, Segment::new(s.start, far), &mut NoTrace).unwrap();
+        // Rounding of the far end may decide at a corner.
+        if let Some((got, expected)) = got.zip(expected) {
+            for (p, q) in [(got.start, expected.start), (got.end, expected.end)] {
+                let size = tolerance(&w, &Segment::new(s.start, far));
+                prop_assert!((p.truncate() / p.z - q).abs().max_element() <= 16.0 * size, "{} {}", p, q);
+            }
+        }
+        prop_assert!(!w.contains(s.start) || got.is_some());
     }
 }
 

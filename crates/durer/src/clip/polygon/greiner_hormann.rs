@@ -4,11 +4,14 @@
 //! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019.
 
 use super::cyclic::{Lists, finish, link};
-use super::locate::{Place, group, locate};
+use super::locate::{Place, locate};
+use super::walk::with_xor;
 use super::{BooleanOp, Shapes};
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
+
+pub use super::walk::{Options, Step, replay};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -22,43 +25,6 @@ pub const INFO: Info = Info {
     limits: "polygons whose rings are simple and do not touch one another; \
              crossings are rounded to f64",
 };
-
-/// There is nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options {}
-
-/// What happens, step by step.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Step {
-    /// The borders cross here; the subject enters or leaves the clip.
-    Crossing {
-        /// Where.
-        at: DVec2,
-        /// Whether the subject enters.
-        entry: bool,
-    },
-    /// A ring of the result is complete.
-    Ring {
-        /// Its points, in the order of the walk.
-        points: Vec<DVec2>,
-        /// Whether it is of the second half of an xor: clip without subject.
-        swapped: bool,
-    },
-}
-
-/// Rebuilds the result from its steps.
-pub fn replay(steps: &[Step]) -> Shapes {
-    let half = |second: bool| {
-        let rings = steps.iter().filter_map(move |step| match step {
-            Step::Ring { points, swapped } if *swapped == second => Some(points.clone()),
-            _ => None,
-        });
-        group(rings.collect())
-    };
-    let mut shapes = half(false);
-    shapes.append(&half(true));
-    shapes
-}
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
 ///
@@ -79,12 +45,7 @@ pub fn greiner_hormann(
     _options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Shapes {
-    if op != BooleanOp::Xor {
-        return walk(subject, clip, op, false, t);
-    }
-    let mut shapes = walk(subject, clip, BooleanOp::Difference, false, t);
-    shapes.append(&walk(clip, subject, BooleanOp::Difference, true, t));
-    shapes
+    with_xor([subject, clip], op, |[a, b], op, swapped| walk(a, b, op, swapped, t))
 }
 
 fn walk(
@@ -150,13 +111,15 @@ fn entries(lists: &Lists, other: &[Vec<DVec2>]) -> Vec<bool> {
     entries
 }
 
-/// Walks from a crossing of the subject until it comes back.
+/// Walks from a crossing of the subject until it comes back. Rings that are not simple may lead a walk
+/// into a circle without crossings: then there is no ring.
 fn trace(
     lists: [&Lists; 2],
     entries: &[Vec<bool>; 2],
     start: usize,
     visited: &mut [bool],
 ) -> Vec<DVec2> {
+    let all = lists[0].vertices.len() + lists[1].vertices.len();
     let mut points = Vec::new();
     let (mut k, mut v) = (0, start);
     loop {
@@ -167,6 +130,9 @@ fn trace(
         }
         let forward = entries[k][v];
         loop {
+            if points.len() > all {
+                return Vec::new();
+            }
             points.push(lists[k].vertices[v].at);
             let vertex = &lists[k].vertices[v];
             v = if forward { vertex.next } else { vertex.previous };

@@ -12,14 +12,24 @@ pub mod rectangle;
 mod shapes;
 pub mod sutherland_hodgman;
 pub mod vatti;
+mod walk;
 pub mod weiler_atherton;
 
 pub use overlay::overlay;
 pub use shapes::{Polygon, Ring, Shapes, signed_area};
 
+use crate::clip::line::ConvexPolygon;
+use crate::math::Rect;
+use crate::trace::NoTrace;
+use crate::{Error, Result};
+
 crate::info::family! {
     /// The algorithms that clip polygons with polygons.
     pub enum PolygonClipper {
+        /// [`rectangle`]
+        Rectangle => rectangle::INFO,
+        /// [`sutherland_hodgman`]
+        SutherlandHodgman => sutherland_hodgman::INFO,
         /// [`weiler_atherton`]
         WeilerAtherton => weiler_atherton::INFO,
         /// [`vatti`]
@@ -36,14 +46,42 @@ impl PolygonClipper {
     ///
     /// # Errors
     /// As [`overlay()`]; the walks of Weiler–Atherton and Greiner–Hormann take only finite points
-    /// too, and are right only where their limits are kept.
-    pub fn clip(self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> crate::Result<Shapes> {
-        let t = &mut crate::trace::NoTrace;
+    /// too, and are right only where their limits are kept. [`Error::Unsupported`] for the rectangle
+    /// clip and Sutherland–Hodgman with an operation other than intersection, and where the clip is
+    /// not one rectangle, or one ring; [`Error::Parameter`] where that ring is not convex.
+    pub fn clip(self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {
+        let t = &mut NoTrace;
         let points = || subject.points().iter().chain(clip.points());
         if let Some(index) = points().position(|p| !p.is_finite()) {
-            return Err(crate::Error::NonFinite { what: "point", index });
+            return Err(Error::NonFinite { what: "point", index });
+        }
+        if self.keeps_inside_only() && op != BooleanOp::Intersection {
+            return Err(Error::Unsupported {
+                what: "an operation other than intersection by this algorithm",
+                instead: "choose overlay, vatti, weiler-atherton or greiner-hormann",
+            });
         }
         Ok(match self {
+            Self::Rectangle => {
+                let window = as_rectangle(clip).ok_or(Error::Unsupported {
+                    what: "a clip polygon that is no axis-parallel rectangle",
+                    instead: "choose another algorithm",
+                })?;
+                rectangle::clip(&window, subject, &Default::default(), t)?
+            }
+            Self::SutherlandHodgman => match (as_rectangle(clip), clip.ring_count()) {
+                (Some(window), _) => sutherland_hodgman::clip_shapes(&window, subject, t)?,
+                (None, 1) => {
+                    let window = ConvexPolygon::new(clip.ring(0))?;
+                    sutherland_hodgman::clip_shapes_with_polygon(&window, subject, t)?
+                }
+                _ => {
+                    return Err(Error::Unsupported {
+                        what: "a clip polygon that is not one ring",
+                        instead: "choose another algorithm",
+                    });
+                }
+            },
             Self::WeilerAtherton => {
                 weiler_atherton::weiler_atherton(subject, clip, op, &Default::default(), t)
             }
@@ -54,6 +92,25 @@ impl PolygonClipper {
             Self::Overlay => overlay(subject, clip, op, &Default::default(), t)?.shapes,
         })
     }
+
+    /// Whether intersection is the only operation.
+    pub const fn keeps_inside_only(self) -> bool {
+        matches!(self, Self::Rectangle | Self::SutherlandHodgman)
+    }
+
+    /// Whether the clip must be an axis-parallel rectangle.
+    pub const fn needs_rectangle(self) -> bool {
+        matches!(self, Self::Rectangle)
+    }
+}
+
+/// The rectangle that the shapes are, if they are one ring of its four corners.
+fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
+    let [a, b, c, d] = *shapes.points() else { return None };
+    let upright = a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y;
+    let lying = a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x;
+    let one = shapes.ring_count() == 1 && (upright || lying);
+    one.then(|| Rect::around([a, c])).flatten()
 }
 
 /// Which points a set of closed curves encloses, told by the winding number w around the point.
@@ -151,21 +208,21 @@ impl std::fmt::Display for BooleanOp {
 }
 
 impl std::str::FromStr for FillRule {
-    type Err = crate::Error;
+    type Err = Error;
 
-    fn from_str(s: &str) -> crate::Result<Self> {
+    fn from_str(s: &str) -> Result<Self> {
         let expected = "even-odd, non-zero, positive or negative";
         let found = Self::ALL.iter().copied().find(|r| r.name() == s);
-        found.ok_or_else(|| crate::Error::parameter("fill rule", s, expected))
+        found.ok_or_else(|| Error::parameter("fill rule", s, expected))
     }
 }
 
 impl std::str::FromStr for BooleanOp {
-    type Err = crate::Error;
+    type Err = Error;
 
-    fn from_str(s: &str) -> crate::Result<Self> {
+    fn from_str(s: &str) -> Result<Self> {
         let expected = "intersection, union, difference or xor";
         let found = Self::ALL.iter().copied().find(|op| op.name() == s);
-        found.ok_or_else(|| crate::Error::parameter("operation", s, expected))
+        found.ok_or_else(|| Error::parameter("operation", s, expected))
     }
 }

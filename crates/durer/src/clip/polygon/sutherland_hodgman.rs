@@ -13,6 +13,7 @@
 //! Which side of a border a vertex is on is decided exactly. Cuts are computed from the
 //! lexicographically smaller end of an edge, so polygons that share an edge share its cuts.
 
+use super::Shapes;
 use crate::clip::line::border::Canonical;
 use crate::clip::line::convex::{self, HalfSpace};
 use crate::clip::line::{ClipBox, ConvexPolygon, HalfPlane};
@@ -273,6 +274,47 @@ pub fn clip_polygon<V: Vertex<2>>(
     t: &mut impl Tracer<Step<V>>,
 ) -> Result<Vec<V>> {
     run(window.edges(), ring, t)
+}
+
+/// The parts of all rings in a rectangle; rings of which nothing is left are left out.
+///
+/// # Errors
+/// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
+pub fn clip_shapes(
+    window: &Rect,
+    shapes: &Shapes,
+    t: &mut impl Tracer<Step<DVec2>>,
+) -> Result<Shapes> {
+    map_rings(shapes, |ring| clip(window, ring, t))
+}
+
+/// The parts of all rings in a convex polygon; rings of which nothing is left are left out.
+///
+/// # Errors
+/// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
+pub fn clip_shapes_with_polygon(
+    window: &ConvexPolygon,
+    shapes: &Shapes,
+    t: &mut impl Tracer<Step<DVec2>>,
+) -> Result<Shapes> {
+    map_rings(shapes, |ring| clip_polygon(window, ring, t))
+}
+
+fn map_rings(
+    shapes: &Shapes,
+    mut clip: impl FnMut(&[DVec2]) -> Result<Vec<DVec2>>,
+) -> Result<Shapes> {
+    let mut out = Shapes::new();
+    for polygon in shapes.polygons() {
+        for ring in polygon.rings() {
+            let ring = clip(ring)?;
+            if ring.len() > 2 {
+                out.push_ring(ring);
+            }
+        }
+        out.end_polygon();
+    }
+    Ok(out)
 }
 
 /// The part of a planar polygon of space in a box: left, right, bottom, top, and the two planes in

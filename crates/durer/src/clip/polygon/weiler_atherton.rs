@@ -6,11 +6,13 @@
 //! Foster, Hormann and Popa (2019), and give union and difference by the same lists.
 
 use super::cyclic::{Linked, finish, link};
-use super::locate::group;
+use super::walk::with_xor;
 use super::{BooleanOp, Shapes};
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
+
+pub use super::walk::{Options, Step, replay};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -24,43 +26,6 @@ pub const INFO: Info = Info {
     limits: "polygons whose rings are simple and do not touch one another; \
              crossings are rounded to f64",
 };
-
-/// There is nothing to choose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options {}
-
-/// What happens, step by step.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Step {
-    /// The walk turns from one border to the other.
-    Turn {
-        /// Where.
-        at: DVec2,
-        /// Whether it goes on along the subject.
-        to_subject: bool,
-    },
-    /// A ring of the result is complete.
-    Ring {
-        /// Its points, in the order of the walk.
-        points: Vec<DVec2>,
-        /// Whether it is of the second half of an xor: clip without subject.
-        swapped: bool,
-    },
-}
-
-/// Rebuilds the result from its steps.
-pub fn replay(steps: &[Step]) -> Shapes {
-    let half = |second: bool| {
-        let rings = steps.iter().filter_map(move |step| match step {
-            Step::Ring { points, swapped } if *swapped == second => Some(points.clone()),
-            _ => None,
-        });
-        group(rings.collect())
-    };
-    let mut shapes = half(false);
-    shapes.append(&half(true));
-    shapes
-}
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
 ///
@@ -81,12 +46,7 @@ pub fn weiler_atherton(
     _options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Shapes {
-    if op != BooleanOp::Xor {
-        return walk(subject, clip, op, false, t);
-    }
-    let mut shapes = walk(subject, clip, BooleanOp::Difference, false, t);
-    shapes.append(&walk(clip, subject, BooleanOp::Difference, true, t));
-    shapes
+    with_xor([subject, clip], op, |[a, b], op, swapped| walk(a, b, op, swapped, t))
 }
 
 fn walk(
@@ -112,7 +72,8 @@ fn walk(
 }
 
 /// Walks from a crossing of the subject until it comes back. Orientation is the same all around,
-/// so only difference walks the clip backwards.
+/// so only difference walks the clip backwards. Rings that are not simple may lead a walk into a circle
+/// without crossings: then there is no ring.
 fn trace(
     linked: &Linked,
     op: BooleanOp,
@@ -121,6 +82,7 @@ fn trace(
     t: &mut impl Tracer<Step>,
 ) -> Vec<DVec2> {
     let (subject, clip) = (&linked.subject.vertices, &linked.clip.vertices);
+    let all = subject.len() + clip.len();
     let mut points = Vec::new();
     let mut v = start;
     loop {
@@ -129,6 +91,9 @@ fn trace(
         loop {
             points.push(subject[v].at);
             v = subject[v].next;
+            if points.len() > all {
+                return Vec::new();
+            }
             if subject[v].crosses {
                 break;
             }
@@ -137,6 +102,9 @@ fn trace(
         t.step(|| Step::Turn { at: clip[w].at, to_subject: false });
         loop {
             points.push(clip[w].at);
+            if points.len() > all {
+                return Vec::new();
+            }
             w = if op == BooleanOp::Difference { clip[w].previous } else { clip[w].next };
             if clip[w].crosses {
                 break;

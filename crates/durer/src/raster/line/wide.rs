@@ -60,6 +60,10 @@ impl Default for Stroke {
 /// No contour gets more dashes than this; with more the line is drawn solid, as it looks anyway.
 const MAX_DASHES: f64 = 100_000.0;
 
+/// Dots — dashes and contours without length, with round or square caps — are lines as long as this share
+/// of the width: too short to be seen, long enough to have a direction.
+const DOT: f64 = 1e-4;
+
 /// The outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is
 /// at most `tolerance`. Elements with points that are not finite are left out.
 ///
@@ -80,6 +84,7 @@ pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
     if stroke.width == 0.0 || source.elements().is_empty() {
         return Ok(Path::new());
     }
+    let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
     let style = style(stroke, &source);
     let tolerance = tolerance.max(1e-3);
     Ok(from_kurbo(&kurbo::stroke(source, &style, &StrokeOpts::default(), tolerance)))
@@ -106,11 +111,52 @@ fn style(stroke: &Stroke, source: &BezPath) -> kurbo::Stroke {
     if period > 0.0 && reach / period < MAX_DASHES {
         // SVG repeats a list of odd length, so that dashes and gaps change places.
         let twice = if stroke.dashes.len() % 2 == 1 { 2 } else { 1 };
-        let dashes: Vec<f64> = (0..twice).flat_map(|_| stroke.dashes.iter().copied()).collect();
+        let mut dashes: Vec<f64> = (0..twice).flat_map(|_| stroke.dashes.iter().copied()).collect();
+        if stroke.cap != Cap::Butt {
+            if dashes.iter().step_by(2).all(|d| *d == 0.0) {
+                // Dots at corners have none themselves.
+                style = style.with_join(kurbo::Join::Round);
+            }
+            lengthen_dots(&mut dashes, stroke.width * DOT);
+        }
         let offset = stroke.dash_offset.rem_euclid(dashes.iter().sum());
         style = style.with_dashes(offset, dashes);
     }
     style
+}
+
+/// Dashes without length get one, at the cost of the gap after them, where it has enough.
+fn lengthen_dots(dashes: &mut [f64], length: f64) {
+    for pair in dashes.chunks_exact_mut(2).filter(|p| p[0] == 0.0 && p[1] > length) {
+        pair[0] += length;
+        pair[1] -= length;
+    }
+}
+
+/// The path with contours that stay in one point made a line as long as a dot, along x, as SVG wants it;
+/// what only moves makes no dot.
+fn with_dots(path: &BezPath, width: f64) -> BezPath {
+    let mut out = BezPath::new();
+    let elements = path.elements();
+    let starts = |e: &PathEl| matches!(e, PathEl::MoveTo(_));
+    for contour in elements.chunk_by(|_, next| !starts(next)) {
+        let start = contour.first().and_then(PathEl::end_point);
+        let stays = |p: Point| start.is_some_and(|s| s == p);
+        let dot = contour.iter().all(|e| match *e {
+            PathEl::MoveTo(p) | PathEl::LineTo(p) => stays(p),
+            PathEl::QuadTo(a, p) => stays(a) && stays(p),
+            PathEl::CurveTo(a, b, p) => stays(a) && stays(b) && stays(p),
+            PathEl::ClosePath => true,
+        });
+        match start {
+            Some(p) if dot && contour.len() > 1 => {
+                out.move_to((p.x - 0.5 * DOT * width, p.y));
+                out.line_to((p.x + 0.5 * DOT * width, p.y));
+            }
+            _ => out.extend(contour.iter().copied()),
+        }
+    }
+    out
 }
 
 fn to_kurbo(path: &Path) -> BezPath {

@@ -4,7 +4,9 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
 
 use super::color::Space;
-use super::{Canvas, Color, Prepared, Source};
+use super::command::{Prepared, sort_into_bands};
+use super::source::Source;
+use super::{Canvas, Color, MaskKind};
 use crate::raster::coverage::Overlap;
 use crate::raster::coverage::band::{BandFiller, PathEdges};
 use crate::raster::coverage::cells::BAND_ROWS;
@@ -22,7 +24,7 @@ pub(super) fn render<P: Space>(
     if target.data().is_empty() {
         return;
     }
-    let by_band = sort_into_bands(commands, target.height());
+    let by_band = sort_into_bands(commands, target.height(), BAND_ROWS);
     let rows_per_band = width * BAND_ROWS as usize;
     let paint = |painter: &mut Option<Painter<P>>, (band, rows): (usize, &mut [Color])| {
         let painter = painter.get_or_insert_with(|| Painter::new(canvas));
@@ -45,36 +47,19 @@ pub(super) fn render<P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
-/// For each band the indices of the commands that concern it: fills of their rows, everything else in all.
-fn sort_into_bands<P>(commands: &[Prepared<'_, P>], height: u32) -> Vec<Vec<u32>> {
-    let count = (height as usize).div_ceil(BAND_ROWS as usize);
-    let mut bands = vec![Vec::new(); count];
-    for (i, command) in commands.iter().enumerate() {
-        let range = match command {
-            Prepared::Fill { path, .. } => {
-                let last = ((path.rows.1 - 1) / BAND_ROWS) as usize + 1;
-                (path.rows.0 / BAND_ROWS) as usize..last.min(count)
-            }
-            _ => 0..count,
-        };
-        for band in bands.get_mut(range).into_iter().flatten() {
-            band.push(i as u32);
-        }
-    }
-    bands
-}
-
 /// Buffers of one thread.
 struct Painter<P> {
     filler: BandFiller,
     width: usize,
     exact: bool,
-    anti_alias: bool,
     background: Option<Color>,
     /// A layer for each open group.
     layers: Vec<Vec<P>>,
-    /// Coverage of the open clip paths, each multiplied with those below it.
+    /// Coverage of the open clip paths, each multiplied with those below it in the same layer.
     clips: Vec<Vec<u8>>,
+    /// For each layer how many clip paths were open when it was begun: they do not clip what is painted
+    /// onto it, but the layer as a whole, or edges would be thinned twice.
+    floors: Vec<usize>,
     coverage: Vec<u32>,
     colors: Vec<P>,
     /// Whether what was popped can be used again.
@@ -88,10 +73,10 @@ impl<P: Space> Painter<P> {
             filler: BandFiller::new(canvas.width),
             width,
             exact: canvas.options.overlap == Overlap::Exact,
-            anti_alias: canvas.options.anti_alias,
             background: canvas.background,
             layers: Vec::new(),
             clips: Vec::new(),
+            floors: Vec::new(),
             coverage: vec![0; width],
             colors: vec![P::CLEAR; width],
             spare: Vec::new(),
@@ -142,20 +127,18 @@ impl<P: Space> Painter<P> {
     {
         for command in commands {
             match command {
-                Prepared::Fill { path, rule, source } => {
-                    dispatch!(level, simd => self.fill(simd, path, *rule, source, (top, &mut *base)));
+                Prepared::Fill { path, rule, source, smooth } => {
+                    let at = (top, *smooth, &mut *base);
+                    dispatch!(level, simd => self.fill(simd, path, *rule, source, at));
                 }
-                Prepared::PushClip { path, rule } => {
-                    dispatch!(level, simd => self.push_clip(simd, path, *rule, top));
+                Prepared::PushClip { path, rule, smooth } => {
+                    dispatch!(level, simd => self.push_clip(simd, path, *rule, (top, *smooth)));
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
-                Prepared::PushGroup => {
-                    let mut layer = self.spare.pop().unwrap_or_default();
-                    layer.clear();
-                    layer.resize(base.len(), P::CLEAR);
-                    self.layers.push(layer);
-                }
+                Prepared::PushGroup => self.push_group(base.len()),
                 Prepared::PopGroup { opacity } => self.pop_group(*opacity, base),
+                Prepared::BeginMask => self.push_group(base.len()),
+                Prepared::EndMask { kind } => self.end_mask(*kind),
             }
         }
     }
@@ -166,12 +149,12 @@ impl<P: Space> Painter<P> {
         path: &PathEdges,
         rule: super::FillRule,
         source: &Source<P>,
-        (top, base): (i32, &mut [P]),
+        (top, anti_alias, base): (i32, bool, &mut [P]),
     ) {
-        let Self { filler, layers, clips, coverage, colors, .. } = self;
-        let (width, anti_alias) = (self.width, self.anti_alias);
+        let Self { filler, layers, clips, floors, coverage, colors, .. } = self;
+        let width = self.width;
         let layer = layers.last_mut().map_or(base, |l| l.as_mut_slice());
-        let clip = clips.last();
+        let clip = clip_in_force(clips, floors);
         let color = source.color();
         let paint = |simd: S, row: i32, runs: &[Run], own: &[u32]| {
             let start = row as usize * width;
@@ -212,9 +195,15 @@ impl<P: Space> Painter<P> {
         BandFiller::fill(simd, filler, path, top, rule, self.exact, paint);
     }
 
-    fn push_clip<S: Simd>(&mut self, simd: S, path: &PathEdges, rule: super::FillRule, top: i32) {
+    fn push_clip<S: Simd>(
+        &mut self,
+        simd: S,
+        path: &PathEdges,
+        rule: super::FillRule,
+        (top, anti_alias): (i32, bool),
+    ) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
-        let (width, below, anti_alias) = (self.width, self.clips.last(), self.anti_alias);
+        let (width, below) = (self.width, clip_in_force(&self.clips, &self.floors));
         if !path.misses(top) {
             let write = |_: S, row: i32, runs: &[Run], own: &[u32]| {
                 let start = row as usize * width;
@@ -232,11 +221,37 @@ impl<P: Space> Painter<P> {
         self.clips.push(clip);
     }
 
+    fn push_group(&mut self, len: usize) {
+        let mut layer = self.spare.pop().unwrap_or_default();
+        layer.clear();
+        layer.resize(len, P::CLEAR);
+        self.layers.push(layer);
+        self.floors.push(self.clips.len());
+    }
+
+    /// Makes a clip of the last layer.
+    fn end_mask(&mut self, kind: MaskKind) {
+        let Some(layer) = self.layers.pop() else { return };
+        self.floors.pop();
+        let below = clip_in_force(&self.clips, &self.floors);
+        let own = |pixel: &P| match kind {
+            MaskKind::Alpha => pixel.alpha(),
+            MaskKind::Luminance => pixel.luminance(),
+        };
+        let within = |(i, pixel): (usize, &P)| {
+            multiplied(u32::from(own(pixel)), below.map_or(255, |b| b[i])) as u8
+        };
+        let clip = layer.iter().enumerate().map(within).collect();
+        self.clips.push(clip);
+        self.spare.push(layer);
+    }
+
     /// Lays the last layer over the one below it, within the clip paths that are open.
     fn pop_group(&mut self, opacity: u8, base: &mut [P]) {
         let Some(layer) = self.layers.pop() else { return };
         let below = self.layers.last_mut().map_or(base, |l| l.as_mut_slice());
-        let clip = self.clips.last();
+        self.floors.pop();
+        let clip = clip_in_force(&self.clips, &self.floors);
         for (i, (pixel, below)) in layer.iter().zip(below.iter_mut()).enumerate() {
             if *pixel != P::CLEAR {
                 let mask = clip.map_or(255, |c| c[i]);
@@ -245,6 +260,11 @@ impl<P: Space> Painter<P> {
         }
         self.spare.push(layer);
     }
+}
+
+/// The coverage that what is painted now is multiplied with.
+fn clip_in_force<'a>(clips: &'a [Vec<u8>], floors: &[usize]) -> Option<&'a Vec<u8>> {
+    clips.last().filter(|_| clips.len() > floors.last().copied().unwrap_or(0))
 }
 
 /// Coverage times the clip path's.

@@ -32,6 +32,10 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     }
     /// Whether nothing behind shines through.
     fn is_opaque(self) -> bool;
+    /// How opaque it is, 0 … 255.
+    fn alpha(self) -> u8;
+    /// How bright it is over black, 0 … 255 (ITU-R BT.709).
+    fn luminance(self) -> u8;
     /// Whether that holds for all pixels.
     fn all_opaque(pixels: &[Self]) -> bool {
         pixels.iter().all(|p| p.is_opaque())
@@ -55,6 +59,11 @@ pub(crate) fn premultiply<P: Space>(color: [u8; 4], opacity: f64) -> P {
 #[inline(always)]
 fn div255(x: u32) -> u32 {
     (x + 128 + ((x + 128) >> 8)) >> 8
+}
+
+/// Brightness of red, green and blue 0 … 255 (ITU-R BT.709), times 2¹⁶, with a half for rounding.
+fn luminance([r, g, b]: [u32; 3]) -> u32 {
+    r * 13_933 + g * 46_871 + b * 4_732 + (1 << 15)
 }
 
 /// A pixel of sRGB bytes, premultiplied.
@@ -106,6 +115,14 @@ impl Space for Srgb {
     #[inline(always)]
     fn is_opaque(self) -> bool {
         self[3] == 255
+    }
+
+    fn alpha(self) -> u8 {
+        self[3]
+    }
+
+    fn luminance(self) -> u8 {
+        (luminance([self[0], self[1], self[2]].map(u32::from)) >> 16) as u8
     }
 
     fn all_opaque(pixels: &[Self]) -> bool {
@@ -255,6 +272,15 @@ impl Space for Linear {
 
     fn is_opaque(self) -> bool {
         self.0[3] == 65_535
+    }
+
+    fn alpha(self) -> u8 {
+        ((u32::from(self.0[3]) + 128) / 257) as u8
+    }
+
+    fn luminance(self) -> u8 {
+        let [r, g, b, _] = self.0.map(|c| (u32::from(c) + 128) / 257);
+        (luminance([r, g, b]) >> 16) as u8
     }
 
     fn scaled(self, coverage: u8) -> Self {

@@ -6,6 +6,7 @@
 
 mod bands;
 mod color;
+mod command;
 mod source;
 
 pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
@@ -20,7 +21,17 @@ use crate::math::DAffine2;
 use crate::target::Pixels;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
-use source::Source;
+use command::{Command, Open, Prepared};
+
+/// What of a picture becomes the coverage of a mask.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum MaskKind {
+    /// How opaque it is.
+    #[default]
+    Alpha,
+    /// How bright it is: 0.2126 R + 0.7152 G + 0.0722 B of the colours as they are mixed, over black.
+    Luminance,
+}
 
 /// In which space colours are mixed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -43,6 +54,7 @@ pub struct Options {
     /// 13/255 of coverage where a curve bends most; cost grows with its inverse square root.
     pub tolerance: f64,
     /// Whether edges are smoothed; otherwise a pixel is painted when at least half of it is covered.
+    /// [`Canvas::set_anti_alias`] changes it for what follows.
     pub anti_alias: bool,
 }
 
@@ -50,43 +62,6 @@ impl Default for Options {
     fn default() -> Self {
         Self { blending: Blending::Srgb, overlap: Overlap::Exact, tolerance: 0.1, anti_alias: true }
     }
-}
-
-/// One thing to do, in order.
-#[derive(Debug)]
-enum Command {
-    Fill { path: PathEdges, rule: FillRule, paint: Paint, opacity: f64, transform: DAffine2 },
-    PushClip { path: PathEdges, rule: FillRule },
-    PopClip,
-    PushGroup,
-    PopGroup { opacity: f64 },
-}
-
-impl Command {
-    fn prepared<P: Space>(&self) -> Prepared<'_, P> {
-        match self {
-            Self::Fill { path, rule, paint, opacity, transform } => Prepared::Fill {
-                path,
-                rule: *rule,
-                source: Source::new(paint, *transform, *opacity),
-            },
-            Self::PushClip { path, rule } => Prepared::PushClip { path, rule: *rule },
-            Self::PopClip => Prepared::PopClip,
-            Self::PushGroup => Prepared::PushGroup,
-            Self::PopGroup { opacity } => {
-                Prepared::PopGroup { opacity: (opacity.clamp(0.0, 1.0) * 255.0 + 0.5) as u8 }
-            }
-        }
-    }
-}
-
-/// A command with its paint made ready for one colour space.
-enum Prepared<'a, P> {
-    Fill { path: &'a PathEdges, rule: FillRule, source: Source<P> },
-    PushClip { path: &'a PathEdges, rule: FillRule },
-    PopClip,
-    PushGroup,
-    PopGroup { opacity: u8 },
 }
 
 /// A list of things to paint onto a target of a given size.
@@ -115,8 +90,9 @@ pub struct Canvas {
     /// What every pixel is set to first; `None` keeps the target's.
     background: Option<Color>,
     commands: Vec<Command>,
-    /// Clips and groups that are open, in order of opening: `true` for a group.
-    open: Vec<bool>,
+    /// Clips, groups and masks that are open, in order of opening.
+    open: Vec<Open>,
+    anti_alias: bool,
 }
 
 impl Canvas {
@@ -128,7 +104,23 @@ impl Canvas {
         check_size(width, height)?;
         let transform = DAffine2::IDENTITY;
         let (background, commands, open) = (None, vec![], vec![]);
-        Ok(Self { width, height, options, transform, background, commands, open })
+        let anti_alias = options.anti_alias;
+        Ok(Self { width, height, options, transform, background, commands, open, anti_alias })
+    }
+
+    /// Width of the target in pixels.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height of the target in pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// How it paints.
+    pub fn options(&self) -> &Options {
+        &self.options
     }
 
     /// Forgets what has been painted so far and sets every pixel to one colour instead, cheaper than
@@ -142,6 +134,11 @@ impl Canvas {
     /// Sets the map from the space of paths and paints to pixels, for what follows.
     pub fn set_transform(&mut self, pixel_from_path: DAffine2) {
         self.transform = pixel_from_path;
+    }
+
+    /// Whether the edges of what follows are smoothed; at first as the options say.
+    pub fn set_anti_alias(&mut self, smooth: bool) {
+        self.anti_alias = smooth;
     }
 
     /// Fills a path; open contours are closed. `opacity` 0 … 1 multiplies the paint's own.
@@ -177,29 +174,55 @@ impl Canvas {
         let path = PathEdges::new(contours, self.width, self.height);
         if path.rows.0 < path.rows.1 {
             let (paint, transform) = (paint.clone(), self.transform);
-            self.commands.push(Command::Fill { path, rule, paint, opacity, transform });
+            let smooth = self.anti_alias;
+            self.commands.push(Command::Fill { path, rule, paint, opacity, transform, smooth });
         }
     }
 
     /// Restricts what follows to the inside of a path, within the clip paths already in force.
     pub fn push_clip(&mut self, path: &Path, rule: FillRule) {
         let path = PathEdges::new(&self.flattened(path), self.width, self.height);
-        self.commands.push(Command::PushClip { path, rule });
-        self.open.push(false);
+        self.commands.push(Command::PushClip { path, rule, smooth: self.anti_alias });
+        self.open.push(Open::Clip);
     }
 
     /// Starts a group: what follows is painted onto an empty layer.
     pub fn push_group(&mut self) {
         self.commands.push(Command::PushGroup);
-        self.open.push(true);
+        self.open.push(Open::Group);
     }
 
-    /// Ends the clip path or group opened last; the layer of a group is laid over what is below it with
-    /// the given opacity 0 … 1. Without anything open nothing happens.
+    /// Starts a mask: what follows is not shown, but painted onto a layer of its own, free of the clip
+    /// paths in force, until [`Canvas::end_mask`].
+    pub fn begin_mask(&mut self) {
+        self.commands.push(Command::BeginMask);
+        self.open.push(Open::Mask);
+    }
+
+    /// Ends the mask begun last, and what is still open inside: from here on what has been painted since
+    /// restricts what follows, as a clip path does, until it is popped. Where no mask is open nothing
+    /// happens.
+    pub fn end_mask(&mut self, kind: MaskKind) {
+        if !self.open.contains(&Open::Mask) {
+            return;
+        }
+        while self.open.last().is_some_and(|open| *open != Open::Mask) {
+            self.pop(1.0);
+        }
+        self.open.pop();
+        self.commands.push(Command::EndMask { kind });
+        self.open.push(Open::Clip);
+    }
+
+    /// Ends the clip path, mask or group opened last; the layer of a group is laid over what is below it
+    /// with the given opacity 0 … 1. Without anything open nothing happens.
     pub fn pop(&mut self, opacity: f64) {
+        if self.open.last() == Some(&Open::Mask) {
+            self.end_mask(MaskKind::Alpha);
+        }
         match self.open.pop() {
-            Some(true) => self.commands.push(Command::PopGroup { opacity }),
-            Some(false) => self.commands.push(Command::PopClip),
+            Some(Open::Group) => self.commands.push(Command::PopGroup { opacity }),
+            Some(Open::Clip | Open::Mask) => self.commands.push(Command::PopClip),
             None => {}
         }
     }
@@ -235,10 +258,7 @@ impl Canvas {
 
     fn prepared<P: Space>(&self) -> Vec<Prepared<'_, P>> {
         // What was left open is closed.
-        let close = |group: &bool| {
-            if *group { Prepared::PopGroup { opacity: 255 } } else { Prepared::PopClip }
-        };
-        let closing = self.open.iter().rev().map(close);
+        let closing = self.open.iter().rev().flat_map(Open::closing);
         self.commands.iter().map(Command::prepared).chain(closing).collect()
     }
 }

@@ -57,15 +57,15 @@ pub struct Gradient {
     pub transform: DAffine2,
 }
 
-/// An image, repeated over the plane.
+/// An image, as it is or spread over the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// The pixels; straight alpha.
     pub image: Arc<Pixels<Color>>,
     /// From the image's pixels to the path's space.
     pub transform: DAffine2,
-    /// Whether the image is repeated; otherwise outside it nothing is painted.
-    pub repeat: bool,
+    /// What is outside the image: the pixels at its border, or the image again; `None` = nothing.
+    pub spread: Option<Spread>,
     /// Whether four pixels are mixed, instead of taking the nearest.
     pub smooth: bool,
 }
@@ -240,20 +240,28 @@ fn spread_over(spread: Spread, t: f64) -> f64 {
     }
 }
 
+/// The column or row of an image of `n` that stands at place `at`.
+fn within(at: i64, n: i64, pattern: &Pattern) -> Option<u32> {
+    let at = match pattern.spread {
+        None if (0..n).contains(&at) => at,
+        None => return None,
+        Some(Spread::Pad) => at.clamp(0, n - 1),
+        Some(Spread::Repeat) => at.rem_euclid(n),
+        Some(Spread::Reflect) => {
+            let at = at.rem_euclid(2 * n);
+            at.min(2 * n - 1 - at)
+        }
+    };
+    u32::try_from(at).ok()
+}
+
 /// The pattern's straight colour in 0 … 255 at a point in its pixels.
 fn texel(pattern: &Pattern, p: DVec2) -> [f64; 4] {
     let size = (i64::from(pattern.image.width()), i64::from(pattern.image.height()));
     let at = |x: f64, y: f64| {
-        let (x, y) = (x as i64, y as i64);
-        let inside = x >= 0 && y >= 0 && x < size.0 && y < size.1;
-        let (x, y) = if pattern.repeat {
-            (x.rem_euclid(size.0), y.rem_euclid(size.1))
-        } else if inside {
-            (x, y)
-        } else {
-            return [0.0; 4];
-        };
-        pattern.image.get(x as u32, y as u32).unwrap_or([0; 4]).map(f64::from)
+        let place = [(x as i64, size.0), (y as i64, size.1)].map(|(at, n)| within(at, n, pattern));
+        let [Some(x), Some(y)] = place else { return [0.0; 4] };
+        pattern.image.get(x, y).unwrap_or([0; 4]).map(f64::from)
     };
     if !pattern.smooth {
         return at(p.x.floor(), p.y.floor());

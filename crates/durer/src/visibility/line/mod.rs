@@ -1,3 +1,18 @@
 //! Visible lines: what of the edges of a scene can be seen, as exact drawings.
 
+mod arrange;
+mod chain;
+pub mod edge_lines;
 pub mod floating_horizon;
+pub mod hidden_line;
+mod intersection;
+mod method;
+mod overlap;
+mod page;
+mod pen_order;
+mod simplify;
+mod smooth_silhouette;
+pub mod wireframe;
+
+pub use edge_lines::{ClassSet, Intersections};
+pub use method::LineMethod;

@@ -71,6 +71,19 @@ impl Edges {
         self.from_vertices(0..self.starts.len().saturating_sub(1) as u32)
     }
 
+    /// The triangles at the edge between two vertices, the smaller first; none where there is no such
+    /// edge.
+    pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {
+        let Some([from, to]) = self.starts.get(a as usize..).and_then(|s| s.first_chunk::<2>())
+        else {
+            return &[];
+        };
+        let sides = &self.sides[*from as usize..*to as usize];
+        let start = sides.partition_point(|s| s.other < b);
+        let end = sides.partition_point(|s| s.other <= b);
+        &sides[start..end]
+    }
+
     /// The edges whose smaller vertex lies in a range.
     pub fn from_vertices(
         &self,

@@ -20,7 +20,6 @@ use crate::view::View;
 use crate::visibility::surface::Cull;
 use paint::Paint;
 use shadow::{Lamps, World};
-use std::ops::Range;
 use weiler_atherton::faces::{Face, Frame};
 use weiler_atherton::merge;
 
@@ -54,7 +53,7 @@ pub enum Fill {
 }
 
 /// What to draw.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// Which faces are left out.
     pub cull: Cull,
@@ -65,8 +64,8 @@ pub struct Options {
     /// Whether faces cast shadows: light that another face keeps off is left out, and
     /// [`crate::target::drawing::LineClass::Shadow`] lines are given.
     pub shadows: bool,
-    /// The items that are caps of a section (`view::section`).
-    pub caps: Range<u32>,
+    /// The material of the caps of a section ([`crate::view::section::Section::cap_material`]).
+    pub cap_material: Option<usize>,
 }
 
 /// What of a scene is visible from a view, as filled regions.

@@ -10,6 +10,7 @@ use crate::parallel;
 use crate::scene::Scene;
 use crate::shade::color::encode_rgba8;
 use crate::shade::{PreparedLights, PreparedMaterials};
+use crate::simd::Level;
 use crate::target::drawing::{Line, LineClass, Region, RegionKind};
 use crate::view::View;
 use crate::visibility::surface::lit::{Lighting, Lit};
@@ -144,18 +145,19 @@ impl Paint {
 }
 
 fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>) -> Key {
-    let kind = if options.caps.contains(&item) {
+    let run = world.run(item);
+    let material = run.and_then(|r| r.material);
+    let kind = if material.is_some() && material == options.cap_material {
         RegionKind::Cap
     } else if mask != LIT {
         RegionKind::Shadow
     } else {
         RegionKind::Surface
     };
-    let run = world.run(item);
     let of = match options.merge {
         Merge::Face => Some(u64::from(item)),
         Merge::Part => run.map(|r| r.instance as u64),
-        Merge::Shade | Merge::Material => run.and_then(|r| r.material).map(|m| m as u64),
+        Merge::Shade | Merge::Material => material.map(|m| m as u64),
     };
     Key { kind, of: of.unwrap_or(u64::MAX), color }
 }
@@ -166,7 +168,15 @@ fn colors(scene: &Scene, view: &View, lights: &PreparedLights, shown: &[Shown]) 
     let materials = PreparedMaterials::new(scene);
     // Flat light is computed by hand, for the lights that reach the face.
     let shading = None;
-    let shared = Lighting { scene, view, runs: &runs, materials: &materials, lights, shading };
+    let shared = Lighting {
+        scene,
+        view,
+        runs: &runs,
+        materials: &materials,
+        lights,
+        shading,
+        level: Level::new(),
+    };
     let parts = parallel::map(shown.chunks(TASK).collect(), |part| {
         let mut lit = Lit::new(shared);
         let mut some = (LIT, lights.clone());

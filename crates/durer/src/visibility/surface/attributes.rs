@@ -4,13 +4,15 @@
 //! (M. Olano, T. Greer, *Triangle scan conversion using 2D homogeneous coordinates*, 1997), so
 //! triangles that were cut at the near plane need no special care.
 
-use crate::math::{DMat4, DVec3, Mat3, Vec3, Vec4};
+use crate::math::{DMat4, DVec2, DVec3, Mat3, Vec3, Vec4};
 use crate::scene::{Mesh, Scene, Topology};
+use crate::simd::Level;
 use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, dispatch, f32x8, f64x4};
+use fearless_simd_macros::simd;
 
 /// What all triangles of a run share.
 #[derive(Debug, Clone, Copy)]
@@ -152,6 +154,7 @@ pub struct Triangles<'a> {
     scene: &'a Scene,
     view: &'a View,
     runs: &'a [Run],
+    level: Level,
     transform: Option<RunTransform>,
     cache: Vec<VisibleTriangle>,
 }
@@ -160,8 +163,9 @@ pub struct Triangles<'a> {
 const CACHE: usize = 256;
 
 impl<'a> Triangles<'a> {
-    pub fn new(scene: &'a Scene, view: &'a View, runs: &'a [Run]) -> Self {
-        Self { scene, view, runs, transform: None, cache: vec![VisibleTriangle::default(); CACHE] }
+    pub fn new(scene: &'a Scene, view: &'a View, runs: &'a [Run], level: Level) -> Self {
+        let cache = vec![VisibleTriangle::default(); CACHE];
+        Self { scene, view, runs, level, transform: None, cache }
     }
 
     /// The triangle of an item that the rasterizer has drawn.
@@ -174,60 +178,126 @@ impl<'a> Triangles<'a> {
         &self.cache[slot]
     }
 
-    fn transform_of(&mut self, run: usize) -> RunTransform {
-        match self.transform {
-            Some(t) if t.run == run => t,
-            _ => {
-                let t = RunTransform::new(run, &self.runs[run], self.scene, self.view);
-                self.transform = Some(t);
-                t
-            }
-        }
-    }
-
     #[inline(never)]
     fn prepare(&mut self, item: u32, run_index: usize, slot: usize) {
-        let t = self.transform_of(run_index);
         let run = &self.runs[run_index];
         let mesh = &self.scene.meshes[run.mesh];
-        let primitive = (run.range.start + (item - run.first_item)) as usize;
-        let is_triangle = mesh.topology == Topology::Triangles;
-        let corners = if is_triangle {
-            mesh.triangle(primitive)
-        } else {
-            let [a, b] = mesh.line_or_point(primitive);
-            [a, b, a]
-        };
-        let points = corners.map(|c| mesh.positions[c as usize].as_dvec3());
-        let at_eye = points.map(|p| t.eye_from_mesh.transform_point3(p));
-        let [a, b, c] = at_eye;
-        let face = (b - a).cross(c - a) * f64::from(t.handedness);
-        let face_normal = face.normalize_or_zero().as_vec3();
-        let normals = if mesh.normals.is_empty() {
-            [face_normal; 3]
-        } else {
-            corners.map(|c| t.normal_from_mesh * mesh.normals[c as usize])
-        };
-        let mut on_screen = points.map(|p| t.screen_from_mesh * p.extend(1.0));
-        if !is_triangle {
-            // A third corner beside the line, so that coordinates along it can be found.
-            let [a, b, c] = &mut on_screen;
-            let along = b.truncate().truncate() * a.w - a.truncate().truncate() * b.w;
-            let side = along.perp().normalize_or_zero() * a.w;
-            (c.x, c.y) = (a.x + side.x, a.y + side.y);
+        if self.transform.as_ref().is_none_or(|t| t.run != run_index) {
+            self.transform = Some(RunTransform::new(run_index, run, self.scene, self.view));
         }
-        let (origin, edges) = edges(on_screen);
-        self.cache[slot] = VisibleTriangle {
-            item,
-            corners,
-            positions: at_eye.map(DVec3::as_vec3),
-            normals,
-            face_normal,
-            world_from_mesh: t.world_from_mesh,
-            origin,
-            edges,
-        };
+        let Some(t) = &self.transform else { return };
+        let primitive = (run.range.start + (item - run.first_item)) as usize;
+        let to = &mut self.cache[slot];
+        to.item = item;
+        dispatch!(self.level, simd => prepare(simd, t, mesh, primitive, to));
     }
+}
+
+/// Makes a primitive of a mesh ready to be interpolated, its three vertices side by side.
+#[simd]
+fn prepare<S: Simd>(
+    simd: S,
+    t: &RunTransform,
+    mesh: &Mesh,
+    primitive: usize,
+    to: &mut VisibleTriangle,
+) {
+    let is_triangle = mesh.topology == Topology::Triangles;
+    let corners = if is_triangle {
+        mesh.triangle(primitive)
+    } else {
+        let [a, b] = mesh.line_or_point(primitive);
+        [a, b, a]
+    };
+    let [a, b, c] = corners;
+    let p = [mesh.positions[a as usize], mesh.positions[b as usize], mesh.positions[c as usize]];
+    let px = lanes(simd, [p[0].x.into(), p[1].x.into(), p[2].x.into()]);
+    let py = lanes(simd, [p[0].y.into(), p[1].y.into(), p[2].y.into()]);
+    let pz = lanes(simd, [p[0].z.into(), p[1].z.into(), p[2].z.into()]);
+    let m = &t.eye_from_mesh;
+    let ex: [f64; 4] = (px * m.x_axis.x + py * m.y_axis.x + pz * m.z_axis.x + m.w_axis.x).into();
+    let ey: [f64; 4] = (px * m.x_axis.y + py * m.y_axis.y + pz * m.z_axis.y + m.w_axis.y).into();
+    let ez: [f64; 4] = (px * m.x_axis.z + py * m.y_axis.z + pz * m.z_axis.z + m.w_axis.z).into();
+    let (a, b, c) = (
+        DVec3::new(ex[0], ey[0], ez[0]),
+        DVec3::new(ex[1], ey[1], ez[1]),
+        DVec3::new(ex[2], ey[2], ez[2]),
+    );
+    to.positions = [a.as_vec3(), b.as_vec3(), c.as_vec3()];
+    let face = (b - a).cross(c - a) * f64::from(t.handedness);
+    to.face_normal = face.normalize_or_zero().as_vec3();
+    to.normals = [to.face_normal; 3];
+    if !mesh.normals.is_empty() {
+        for (normal, corner) in to.normals.iter_mut().zip(corners) {
+            *normal = t.normal_from_mesh * mesh.normals[corner as usize];
+        }
+    }
+    to.corners = corners;
+    to.world_from_mesh = t.world_from_mesh;
+
+    let m = &t.screen_from_mesh;
+    let sx = px * m.x_axis.x + py * m.y_axis.x + pz * m.z_axis.x + m.w_axis.x;
+    let sy = px * m.x_axis.y + py * m.y_axis.y + pz * m.z_axis.y + m.w_axis.y;
+    let sw = px * m.x_axis.w + py * m.y_axis.w + pz * m.z_axis.w + m.w_axis.w;
+    let (mut x, mut y, w): ([f64; 4], [f64; 4], [f64; 4]) = (sx.into(), sy.into(), sw.into());
+    if !is_triangle {
+        // A third corner beside the line, so that coordinates along it can be found.
+        let along = DVec2::new(x[1], y[1]) * w[0] - DVec2::new(x[0], y[0]) * w[1];
+        let side = along.perp().normalize_or_zero() * w[0];
+        (x[2], y[2]) = (x[0] + side.x, y[0] + side.y);
+    }
+    edges(simd, [x[0], x[1], x[2]], [y[0], y[1], y[2]], [w[0], w[1], w[2]], to);
+}
+
+/// Three numbers, and the first again.
+#[inline(always)]
+fn lanes<S: Simd>(simd: S, [a, b, c]: [f64; 3]) -> f64x4<S> {
+    f64x4::simd_from(simd, [a, b, c, a])
+}
+
+/// Edge functions of a triangle in homogeneous screen space, positive inside, that sum up to 1/w;
+/// and the pixel from whose centre they are counted.
+#[inline(always)]
+fn edges<S: Simd>(simd: S, x: [f64; 3], y: [f64; 3], w: [f64; 3], to: &mut VisibleTriangle) {
+    // Count from the vertex nearest to the eye's side that has a place on the screen.
+    let mut anchor = 0;
+    for i in 0..3 {
+        if w[i] > 0.0 && w[i] > w[anchor] {
+            anchor = i;
+        }
+    }
+    let (ox, oy) = (pixel(x[anchor] / w[anchor]), pixel(y[anchor] / w[anchor]));
+    to.origin = [ox as i32, oy as i32];
+    let (lx, ly) = (
+        [x[0] - (ox + 0.5) * w[0], x[1] - (ox + 0.5) * w[1], x[2] - (ox + 0.5) * w[2]],
+        [y[0] - (oy + 0.5) * w[0], y[1] - (oy + 0.5) * w[1], y[2] - (oy + 0.5) * w[2]],
+    );
+    // The cross products of the vertices after each and before it.
+    let (ux, vx) = (lanes(simd, [lx[1], lx[2], lx[0]]), lanes(simd, [lx[2], lx[0], lx[1]]));
+    let (uy, vy) = (lanes(simd, [ly[1], ly[2], ly[0]]), lanes(simd, [ly[2], ly[0], ly[1]]));
+    let (uw, vw) = (lanes(simd, [w[1], w[2], w[0]]), lanes(simd, [w[2], w[0], w[1]]));
+    let cross_x = uy * vw - vy * uw;
+    let cross_y = uw * vx - vw * ux;
+    let cross_w = ux * vy - vx * uy;
+    let (first_x, first_y, first_w): ([f64; 4], [f64; 4], [f64; 4]) =
+        (cross_x.into(), cross_y.into(), cross_w.into());
+    let determinant = lx[0] * first_x[0] + ly[0] * first_y[0] + w[0] * first_w[0];
+    if determinant == 0.0 {
+        to.edges = [[1.0, 0.0, 0.0]; 3];
+        return;
+    }
+    let inverse = 1.0 / determinant;
+    let (constant, dx, dy): ([f64; 4], [f64; 4], [f64; 4]) =
+        ((cross_w * inverse).into(), (cross_x * inverse).into(), (cross_y * inverse).into());
+    for i in 0..3 {
+        to.edges[i] = [constant[i] as f32, dx[i] as f32, dy[i] as f32];
+    }
+}
+
+/// The pixel that holds a coordinate.
+#[inline(always)]
+fn pixel(v: f64) -> f64 {
+    if v.is_finite() { v.floor().clamp(-1e6, 1e6) } else { 0.0 }
 }
 
 impl RunTransform {
@@ -254,22 +324,4 @@ impl RunTransform {
             handedness: sign as f32,
         }
     }
-}
-
-/// Edge functions of a triangle in homogeneous screen space, positive inside, that sum up to 1/w;
-/// and the pixel from whose centre they are counted.
-fn edges(p: [glam::DVec4; 3]) -> ([i32; 2], [[f32; 3]; 3]) {
-    // Count from the vertex nearest to the eye's side that has a place on the screen.
-    let anchor = p.iter().filter(|p| p.w > 0.0).fold(p[0], |a, b| if b.w > a.w { *b } else { a });
-    let pixel = |v: f64| if v.is_finite() { v.floor().clamp(-1e6, 1e6) } else { 0.0 };
-    let (ox, oy) = (pixel(anchor.x / anchor.w), pixel(anchor.y / anchor.w));
-    let local = p.map(|p| DVec3::new(p.x - (ox + 0.5) * p.w, p.y - (oy + 0.5) * p.w, p.w));
-    let [a, b, c] = local;
-    let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
-    let determinant = a.dot(bc);
-    let inverse = if determinant != 0.0 { 1.0 / determinant } else { 0.0 };
-    let edge = |e: DVec3| [e.z * inverse, e.x * inverse, e.y * inverse].map(|v| v as f32);
-    let edges =
-        if determinant == 0.0 { [[1.0, 0.0, 0.0]; 3] } else { [edge(bc), edge(ca), edge(ab)] };
-    ([ox as i32, oy as i32], edges)
 }

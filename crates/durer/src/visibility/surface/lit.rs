@@ -7,6 +7,7 @@ use crate::shade::{
     Batch, Points, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Shading,
     Surface, TexCoord, shade, shade_face, shade_points, shade_vertex, shade_x8,
 };
+use crate::simd::Level;
 use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::attributes::{
@@ -27,6 +28,8 @@ pub struct Lighting<'a> {
     pub materials: &'a PreparedMaterials<'a>,
     pub lights: &'a PreparedLights,
     pub shading: Option<Shading>,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
 }
 
 /// What is the same for all items of a run.
@@ -75,7 +78,7 @@ impl<'a> Lit<'a> {
             Projection::Perspective { .. } => None,
             Projection::Orthographic { .. } => Some(camera.axes()[2].as_vec3()),
         };
-        let triangles = Triangles::new(shared.scene, shared.view, shared.runs);
+        let triangles = Triangles::new(shared.scene, shared.view, shared.runs, shared.level);
         Self { shared, triangles, latest: None, parallel_view, reflected: None }
     }
 
@@ -347,25 +350,28 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Adds a pixel to a batch of one plain run, if the item belongs to such a run and to that of
-    /// the batch, if it has one; gives the run's key.
+    /// Whether an item can be shaded in the batch of a queue.
     #[inline(always)]
-    pub fn add_to_batch(&mut self, item: u32, [x, y]: [i32; 2], queue: &mut Queue) -> bool {
+    pub fn batch_of(&mut self, item: u32, queue: &Queue) -> Batched {
         let info = self.run_info(item);
-        if !info.plain || (queue.count > 0 && queue.first_item != info.first_item) {
-            return false;
+        if !info.plain {
+            Batched::Never
+        } else if queue.count > 0 && queue.first_item != info.first_item {
+            Batched::Later
+        } else {
+            Batched::Now
         }
+    }
+
+    /// Adds a pixel to a batch of one plain run, for which [`Self::batch_of`] has said `Now`.
+    #[inline(always)]
+    pub fn add_to_batch(&mut self, item: u32, [x, y]: [i32; 2], queue: &mut Queue) {
+        let info = self.run_info(item);
         queue.first_item = info.first_item;
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, info.run);
         set_point(&mut queue.batch, queue.count, t, [x, y], parallel);
         queue.count += 1;
-        true
-    }
-
-    /// Whether an item can be shaded in batches.
-    pub fn is_plain(&mut self, item: u32) -> bool {
-        self.run_info(item).plain
     }
 
     /// Shades a batch that [`Self::add_to_batch`] has filled.
@@ -374,6 +380,17 @@ impl<'a> Lit<'a> {
         let info = self.run_info(queue.first_item);
         shade_x8(simd, &queue.batch, info.material, self.shared.lights, info.shading)
     }
+}
+
+/// Whether an item fits into a batch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Batched {
+    /// It does.
+    Now,
+    /// The batch is of another run and has to be shaded first.
+    Later,
+    /// The item has to be shaded alone.
+    Never,
 }
 
 /// Up to eight pixels of one plain run, from anywhere.

@@ -2,7 +2,7 @@
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, unpremultiply};
-use crate::visibility::surface::lit::{Lit, Queue};
+use crate::visibility::surface::lit::{Batched, Lit, Queue};
 use fearless_simd::Simd;
 
 /// The sums of colours of pixels so far, and what still waits to be lit.
@@ -38,15 +38,16 @@ impl Mixed {
         weight: f32,
         at: [i32; 2],
     ) {
-        if !lit.is_plain(item) {
-            let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
-            self.sums[index as usize] += color * weight;
-            return;
+        match lit.batch_of(item, &self.queue) {
+            Batched::Now => {}
+            Batched::Later => self.flush(simd, lit),
+            Batched::Never => {
+                let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
+                self.sums[index as usize] += color * weight;
+                return;
+            }
         }
-        if !lit.add_to_batch(item, at, &mut self.queue) {
-            self.flush(simd, lit);
-            lit.add_to_batch(item, at, &mut self.queue);
-        }
+        lit.add_to_batch(item, at, &mut self.queue);
         self.waiting[self.queue.count - 1] = (index, weight);
         if self.queue.count == 8 {
             self.flush(simd, lit);

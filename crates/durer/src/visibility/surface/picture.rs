@@ -64,6 +64,7 @@ impl<'a> Picture<'a> {
             materials,
             lights,
             shading: options.shading,
+            level: options.level,
         };
         Self::with_lighting(lighting, options, framebuffer)
     }

@@ -111,6 +111,7 @@ pub fn with_lighting<R>(
         materials: &materials,
         lights,
         shading: look.shading,
+        level: look.level,
     })
 }
 

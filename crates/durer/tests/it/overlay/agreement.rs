@@ -70,6 +70,29 @@ proptest! {
         }
     }
 
+    /// In a rectangle all members of the family give one region; in a triangle all but the first.
+    #[test]
+    fn the_whole_family_clips_to_convex_masks(
+        a in star(), x in (-12..=4, 1..=14), y in (-12..=4, 1..=14),
+    ) {
+        let at = |u: i32, v: i32| DVec2::new(f64::from(x.0 + u), f64::from(y.0 + v));
+        let corners = [at(0, 0), at(x.1, 0), at(x.1, y.1), at(0, y.1)];
+        for mask in [Shapes::from_rings([corners]), Shapes::from_rings([&corners[..3]])] {
+            let expected = PolygonClipper::Overlay.clip(&a, &mask, BooleanOp::Intersection).expect("finite");
+            for &clipper in PolygonClipper::ALL {
+                let region = clipper.clip(&a, &mask, BooleanOp::Intersection);
+                if clipper.needs_rectangle() && mask.points().len() == 3 {
+                    prop_assert!(region.is_err());
+                    continue;
+                }
+                let region = region.expect("a convex mask");
+                let difference = overlay(&region, &expected, BooleanOp::Xor, &Options::default(), &mut NoTrace);
+                let apart = difference.expect("finite").shapes.area();
+                prop_assert!(apart < 1e-4, "{clipper}: {apart}");
+            }
+        }
+    }
+
     #[test]
     fn steps_rebuild_the_results(a in star(), b in star()) {
         let mut steps = Recorder::default();
@@ -93,6 +116,21 @@ proptest! {
         let by_sweep = vatti::vatti(&a, &b, op, &options, &mut steps).expect("finite");
         prop_assert_eq!(&by_parts, &by_sweep);
         prop_assert_eq!(vatti::replay(steps.steps()), by_sweep.shapes);
+    }
+}
+
+#[test]
+fn what_an_algorithm_cannot_do_is_an_error() {
+    let square =
+        Shapes::from_rings([[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from)]);
+    let two = Shapes::from_rings([square.points(), square.points()]);
+    for &clipper in PolygonClipper::ALL {
+        for &op in BooleanOp::ALL {
+            let able = op == BooleanOp::Intersection || !clipper.keeps_inside_only();
+            assert_eq!(clipper.clip(&square, &square, op).is_ok(), able, "{clipper} {op}");
+        }
+        let able = !clipper.keeps_inside_only();
+        assert_eq!(clipper.clip(&square, &two, BooleanOp::Intersection).is_ok(), able, "{clipper}");
     }
 }
 

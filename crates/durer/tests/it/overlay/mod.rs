@@ -2,5 +2,7 @@
 
 mod agreement;
 pub mod cases;
+pub mod distance;
+mod hard;
 mod laws;
 pub mod validity;

@@ -2,6 +2,7 @@
 //! all: so every question asks only what is near, and nothing behind what hides everything (after
 //! Warnock 1969).
 
+use super::edges::CLEARLY;
 use super::faces::{Face, Place, float};
 use crate::math::DVec2;
 
@@ -78,7 +79,7 @@ impl Cells {
                         continue;
                     }
                     if over == Over::All {
-                        self.covers[cell] = self.covers[cell].min(far + face.error);
+                        self.covers[cell] = self.covers[cell].min(far + CLEARLY * face.error);
                     }
                     entries.push((cell as u32, i));
                 }

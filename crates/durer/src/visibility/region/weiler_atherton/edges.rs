@@ -141,37 +141,56 @@ fn segment(f: &Face, g: &Face) -> Option<Edge> {
     let value = f.plane.depth(origin) - g.plane.depth(origin);
     let foot = origin - slope * (value / (length * length));
     let along = slope.perp() / length;
-    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    let (mut from, mut to) = ((f64::NEG_INFINITY, 0.0), (f64::INFINITY, 0.0));
     for (a, b) in f.sides().into_iter().chain(g.sides()) {
         let (a, b) = (float(a), float(b));
         let (side, change) = ((b - a).perp_dot(foot - a), (b - a).perp_dot(along));
-        if change > 0.0 {
-            from = from.max(-side / change);
-        } else if change < 0.0 {
-            to = to.min(-side / change);
-        } else if side < 0.0 {
+        let beyond = OVERSHOOT * a.distance(b) / change.abs();
+        if change > 0.0 && -side / change > from.0 {
+            from = (-side / change, beyond);
+        } else if change < 0.0 && -side / change < to.0 {
+            to = (-side / change, beyond);
+        } else if change == 0.0 && side < 0.0 {
             return None;
         }
     }
-    if !(to - from > 0.0 && from.is_finite() && to.is_finite()) {
+    if !(to.0 - from.0 > 0.0 && from.0.is_finite() && to.0.is_finite()) {
         return None;
     }
     // A little further on both sides, so that it surely meets the sides that bound it.
-    let ends = [foot + along * (from - OVERSHOOT), foot + along * (to + OVERSHOOT)].map(nearest);
+    let (from, to) = (from.0 - from.1.min(FARTHEST), to.0 + to.1.min(FARTHEST));
+    let ends = [foot + along * from, foot + along * to].map(nearest);
     let (a, b) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     let depths = [a, b].map(|p| f.depth(float(p)).min(g.depth(float(p))));
     (a != b).then_some(Edge { a, b, depths, error: f.error + g.error })
 }
 
-/// Grid steps by which visible pieces reach under what hides the rest. A division too much does no
-/// harm, for both its sides show the same face; one that ended a step too early would join what is apart.
-const OVERSHOOT: f64 = 2.0;
+/// How far visible pieces reach under what hides the rest, in grid steps from the side that they pass. A
+/// division too much does no harm, for both its sides show the same face; one that ends, its corners being
+/// rounded, before it meets the next would join what is apart.
+const OVERSHOOT: f64 = 3.0;
+
+/// Nothing reaches further than this along a side that it hardly leaves.
+const FARTHEST: f64 = 65_536.0;
+
+/// For the same reason, what is to be hidden lies behind by this many times what depths can be wrong.
+pub const CLEARLY: f64 = 4.0;
 
 /// Hidden parts closer than this, in grid steps, are one: rounding at the borders of cells.
 const GAP: f64 = 1e-3;
 
 /// Edges that one task looks at.
 const EDGES: usize = 1 << 13;
+
+/// A part of an edge that something lies before, and how far the visible part beside it reaches in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Hidden {
+    from: f64,
+    to: f64,
+    /// Parts of the edge's length.
+    after_from: f64,
+    before_to: f64,
+}
 
 /// The pieces of the edges that no face hides, as segments of the grid.
 pub fn visible(edges: &[Edge], faces: &[Face], cells: &Cells) -> Vec<(Place, Place)> {
@@ -188,7 +207,7 @@ pub fn visible(edges: &[Edge], faces: &[Face], cells: &Cells) -> Vec<(Place, Pla
 }
 
 /// Where faces lie before an edge, as parts of its length.
-fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<(f64, f64)>) {
+fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<Hidden>) {
     hidden.clear();
     let (a, b) = (float(edge.a), float(edge.b));
     let [da, db] = edge.depths;
@@ -198,8 +217,8 @@ fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<(f6
             let (d, e) = (depth(from), depth(to));
             (d.min(e), d.max(e))
         };
-        if near - edge.error > cells.cover(cell) {
-            hidden.push((from, to));
+        if near - CLEARLY * edge.error > cells.cover(cell) {
+            hidden.push(Hidden { from, to, after_from: 0.0, before_to: 0.0 });
             return;
         }
         for &i in cells.items(cell) {
@@ -207,11 +226,18 @@ fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<(f6
             if face.near > far {
                 break;
             }
-            let Some((s, e)) = inside(edge, face) else { continue };
-            let Some((s, e)) = behind(edge, face, a, b, s.max(from), e.min(to)) else { continue };
-            hidden.push((s, e));
-            if s <= from && e >= to {
-                break;
+            let Some(mut part) = inside(edge, face) else { continue };
+            if part.from < from {
+                (part.from, part.after_from) = (from, 0.0);
+            }
+            if part.to > to {
+                (part.to, part.before_to) = (to, 0.0);
+            }
+            if behind(edge, face, a, b, &mut part) {
+                hidden.push(part);
+                if part.from <= from && part.to >= to {
+                    break;
+                }
             }
         }
     });
@@ -219,8 +245,8 @@ fn hidden_parts(edge: &Edge, faces: &[Face], cells: &Cells, hidden: &mut Vec<(f6
 
 /// The part of an edge strictly inside a face, in the picture; which sides it crosses is exact.
 #[inline]
-fn inside(edge: &Edge, face: &Face) -> Option<(f64, f64)> {
-    let (mut from, mut to) = (0.0f64, 1.0f64);
+fn inside(edge: &Edge, face: &Face) -> Option<Hidden> {
+    let mut part = Hidden { from: 0.0, to: 1.0, after_from: 0.0, before_to: 0.0 };
     for (p, q) in face.sides() {
         let (a, b) = (cross(p, q, edge.a), cross(p, q, edge.b));
         if a <= 0 && b <= 0 {
@@ -229,43 +255,50 @@ fn inside(edge: &Edge, face: &Face) -> Option<(f64, f64)> {
         if a >= 0 && b >= 0 {
             continue;
         }
-        let t = a as f64 / (a as f64 - b as f64);
-        if a < 0 {
-            from = from.max(t);
-        } else {
-            to = to.min(t);
+        let (a, b) = (a as f64, b as f64);
+        let t = a / (a - b);
+        // Cross products over the side's length are distances from it.
+        let beyond = || OVERSHOOT * float(p).distance(float(q)) / (a - b).abs();
+        if a < 0.0 && t > part.from {
+            (part.from, part.after_from) = (t, beyond());
+        } else if b < 0.0 && t < part.to {
+            (part.to, part.before_to) = (t, beyond());
         }
     }
-    (from < to).then_some((from, to))
+    (part.from < part.to).then_some(part)
 }
 
-/// The part of `from..to` where the edge lies behind the face by more than rounding.
+/// Keeps of a part what lies clearly behind the face; whether anything is left.
 #[inline]
-fn behind(edge: &Edge, face: &Face, a: DVec2, b: DVec2, from: f64, to: f64) -> Option<(f64, f64)> {
+fn behind(edge: &Edge, face: &Face, a: DVec2, b: DVec2, part: &mut Hidden) -> bool {
+    let (from, to) = (part.from, part.to);
     if from >= to {
-        return None;
+        return false;
     }
     let [da, db] = edge.depths;
-    let over = |t: f64| da + (db - da) * t - face.depth(a + (b - a) * t) - face.error - edge.error;
+    let tolerance = CLEARLY * (face.error + edge.error);
+    let over = |t: f64| da + (db - da) * t - face.depth(a + (b - a) * t) - tolerance;
     let (s, e) = (over(from), over(to));
+    let change = || from + (to - from) * (s / (s - e));
     match (s > 0.0, e > 0.0) {
-        (false, false) => None,
-        (true, true) => Some((from, to)),
-        (true, false) => Some((from, from + (to - from) * (s / (s - e)))),
-        (false, true) => Some((from + (to - from) * (s / (s - e)), to)),
+        (false, false) => return false,
+        (true, true) => {}
+        (true, false) => (part.to, part.before_to) = (change(), 0.0),
+        (false, true) => (part.from, part.after_from) = (change(), 0.0),
     }
+    true
 }
 
 /// What is left of an edge.
-fn visible_parts(edge: &Edge, hidden: &mut [(f64, f64)], pieces: &mut Vec<(Place, Place)>) {
+fn visible_parts(edge: &Edge, hidden: &mut [Hidden], pieces: &mut Vec<(Place, Place)>) {
     if hidden.is_empty() {
         pieces.push((edge.a, edge.b));
         return;
     }
-    hidden.sort_unstable_by(|h, k| h.0.total_cmp(&k.0).then(h.1.total_cmp(&k.1)));
+    hidden.sort_unstable_by(|h, k| h.from.total_cmp(&k.from).then(h.to.total_cmp(&k.to)));
     let (a, b) = (float(edge.a), float(edge.b));
     let length = (b - a).length();
-    let (gap, overshoot) = (GAP / length, OVERSHOOT / length);
+    let (gap, least) = (GAP / length, OVERSHOOT / length);
     let mut emit = |from: f64, to: f64| {
         let at = |t: f64| nearest(a + (b - a) * t);
         let p = if from <= 0.0 { edge.a } else { at(from) };
@@ -274,14 +307,37 @@ fn visible_parts(edge: &Edge, hidden: &mut [(f64, f64)], pieces: &mut Vec<(Place
             pieces.push((p.min(q), p.max(q)));
         }
     };
-    let mut reached = 0.0;
-    for &(from, to) in hidden.iter() {
-        if from > reached + gap {
-            emit(reached - overshoot, (from + overshoot).min(1.0));
+    // The visible part that began last, if it has not ended.
+    let mut start = Some(0.0);
+    let mut rest = hidden.iter().peekable();
+    while let Some(&first) = rest.next() {
+        // All that follows without a gap is one part; who begins or ends it tells how far to reach in.
+        let mut whole = first;
+        while let Some(next) = rest.next_if(|next| next.from <= whole.to + gap) {
+            if next.from <= whole.from + least {
+                whole.after_from = whole.after_from.max(next.after_from);
+            }
+            if next.to > whole.to + least {
+                whole.before_to = next.before_to;
+            } else if next.to > whole.to - least {
+                whole.before_to = whole.before_to.max(next.before_to);
+            }
+            whole.to = whole.to.max(next.to);
         }
-        reached = to.max(reached);
+        let from = if whole.from <= gap { 0.0 } else { whole.from + whole.after_from.max(least) };
+        let to = if whole.to >= 1.0 - gap { 1.0 } else { whole.to - whole.before_to.max(least) };
+        if from >= to {
+            continue;
+        }
+        if let Some(start) = start.take().filter(|_| from > 0.0) {
+            emit(start, from);
+        }
+        start = (to < 1.0).then_some(to);
+        if start.is_none() {
+            return;
+        }
     }
-    if reached < 1.0 - gap {
-        emit(reached - overshoot, 1.0);
+    if let Some(start) = start {
+        emit(start, 1.0);
     }
 }

@@ -174,7 +174,7 @@ impl Planar {
             let [a, b] = ends(half);
             let middle = (a + b) * 0.5;
             let inward = (b - a).perp().normalize_or_zero();
-            let others = border.iter().filter(|&&other| other != half);
+            let others = border.iter().filter(|&&other| other / 2 != half / 2);
             let reach = others
                 .filter_map(|&other| hit(middle, inward, ends(other)))
                 .fold(f64::INFINITY, f64::min);

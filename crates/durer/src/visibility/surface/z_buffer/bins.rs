@@ -64,8 +64,9 @@ impl Bins {
         level: Level,
     ) -> Self {
         let mut assembler = Assembler::new(scene, view, filter, level);
-        let mut triangles = Vec::new();
-        let mut touched = Vec::new();
+        let most = job.pieces.iter().map(|(_, range)| range.len()).sum();
+        let mut triangles = Vec::with_capacity(most);
+        let mut touched = Vec::with_capacity(most);
         let screen = TileGrid::new(view.width(), view.height());
         for (run, range) in &job.pieces {
             assembler.primitives(&runs[*run], range.clone(), |triangle| {

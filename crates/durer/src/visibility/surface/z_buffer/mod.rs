@@ -10,6 +10,7 @@
 //! pixel.
 
 mod bins;
+mod rasterize;
 mod resolve;
 mod tile;
 
@@ -27,8 +28,9 @@ use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
+use rasterize::{AllPass, FragmentTest, rasterize};
 use resolve::{Area, Fragments, MaskTest, Output, resolve};
-use tile::{AllPass, FragmentTest, SamplePlane, TILE};
+use tile::{SamplePlane, TILE};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -115,6 +117,7 @@ pub fn render(
         materials: &materials,
         lights,
         shading: options.shading,
+        level: options.level,
     };
     let triangle_count = scene.triangle_count() as u32;
     let frame = Frame { view, options, lighting, bins: &bins, triangle_count };
@@ -180,8 +183,8 @@ impl Frame<'_> {
         let offsets = self.options.samples.offsets();
         let wants_center = band.depth.is_some() || band.item.is_some() || band.normal.is_some();
         let mut scratch = Scratch {
-            planes: offsets.iter().map(|&o| SamplePlane::new(o)).collect(),
-            center: wants_center.then(|| SamplePlane::new([0; 2])).into_iter().collect(),
+            planes: SamplePlane::of(offsets),
+            center: if wants_center { SamplePlane::of(&[[0; 2]]) } else { Vec::new() },
             fragments: Fragments::new(offsets),
             mixed: Mixed::new(tile::TILE_PIXELS),
             lit: Lit::new(self.lighting),
@@ -213,7 +216,7 @@ impl Frame<'_> {
             let triangles = bins.of_tile(index);
             let test = test.as_deref_mut();
             dispatch!(self.options.level, simd =>
-                tile::rasterize(simd, planes, area, triangles, test));
+                rasterize(simd, planes, area, triangles, test));
         }
     }
 
@@ -259,7 +262,7 @@ impl Frame<'_> {
         for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
             let from = (y * TILE + x) as usize;
             let to = y as usize * band.width + (tile[0] + x) as usize;
-            let item = plane.items()[from];
+            let item = plane.items(from)[0];
             if let Some(depth) = &mut band.depth {
                 depth[to] = plane.depth(from);
             }

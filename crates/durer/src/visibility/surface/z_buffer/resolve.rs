@@ -1,15 +1,20 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
-use super::tile::{FragmentTest, SamplePlane, TILE};
+use super::rasterize::FragmentTest;
+use super::tile::{SamplePlane, TILE};
 use crate::math::Vec4;
-use crate::shade::color::{encode_srgb8, premultiply};
+use crate::shade::color::{encode_opaque_x8, premultiply};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::ScreenTriangle;
-use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, u32x8};
 use fearless_simd_macros::simd;
+
+/// Samples that a pixel has at most.
+const MOST_SAMPLES: usize = 16;
 
 /// A fragment of a blended surface, in tile-local pixels.
 #[derive(Debug, Clone, Copy)]
@@ -139,18 +144,23 @@ fn resolve_opaque<S: Simd>(
     area: &Area<'_>,
     output: &mut Output<'_>,
 ) {
-    for y in 0..area.size[1] {
+    let mut rows = [(Vec4::ZERO, [0; 4]); TILE as usize];
+    for (y, row) in (0..area.size[1]).zip(&mut rows) {
         let behind = premultiply((area.background)(area.tile[1] + y));
-        let encoded = encode(behind);
-        let start = y as usize * output.stride;
-        let row = &mut output.color[start..start + area.size[0] as usize];
-        for (eight, out) in row.chunks_mut(8).enumerate() {
-            let x = 8 * eight as i32;
+        *row = (behind, encode(behind));
+    }
+    // Column by column of eight pixels: the next row shows mostly the same triangles.
+    for x in (0..area.size[0]).step_by(8) {
+        let width = 8.min(area.size[0] - x) as usize;
+        for (y, &(behind, encoded)) in (0..area.size[1]).zip(&rows) {
             let index = (y * TILE + x) as usize;
             let at = [area.tile[0] + x, area.tile[1] + y];
-            resolve_eight(simd, out, planes, index, lit, encoded, at);
-            if planes.len() > 1 {
-                add_mixed(simd, planes, index, mixed, lit, behind, at, out.len());
+            let start = y as usize * output.stride + x as usize;
+            let out = &mut output.color[start..start + width];
+            let (whole, differs) = whole_pixels(simd, planes, index);
+            resolve_eight(simd, out, &whole, lit, encoded, at);
+            if differs != [0; 8] {
+                add_mixed(simd, planes, index, &differs[..width], mixed, lit, behind, at);
             }
         }
     }
@@ -161,31 +171,39 @@ fn resolve_opaque<S: Simd>(
     }
 }
 
+/// Of eight pixels in a row the item that they show at all samples, [`NO_ITEM`] where there is none;
+/// and a number that is 0 only where all samples show the same.
+#[inline(always)]
+fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> ([u32; 8], [u32; 8]) {
+    let [first, mut differs] = planes[0].eight(simd, index);
+    for plane in &planes[1..] {
+        let [other, differs_there] = plane.eight(simd, index);
+        differs |= differs_there | (first ^ other);
+    }
+    // All bits of NO_ITEM are set.
+    let mixed: u32x8<S> = {
+        let same = differs.simd_eq(u32x8::splat(simd, 0));
+        same.select(first, u32x8::splat(simd, NO_ITEM))
+    };
+    (mixed.into(), differs.into())
+}
+
 /// Of eight pixels in a row, those that show one item at all samples.
 #[inline(always)]
 fn resolve_eight<S: Simd>(
     simd: S,
     out: &mut [[u8; 4]],
-    planes: &[SamplePlane],
-    index: usize,
+    whole: &[u32; 8],
     lit: &mut Lit<'_>,
     behind: [u8; 4],
     [x, y]: [i32; 2],
 ) {
-    let mut whole = [NO_ITEM; 8];
-    whole.copy_from_slice(&planes[0].items()[index..index + 8]);
-    for plane in &planes[1..] {
-        let items = &plane.items()[index..index + 8];
-        for i in 0..8 {
-            whole[i] = if items[i] == whole[i] { whole[i] } else { NO_ITEM };
-        }
-    }
-    if whole == [NO_ITEM; 8] {
+    if *whole == [NO_ITEM; 8] {
         return out.fill(behind);
     }
     let mut colors = [[0.0; 8]; 3];
-    lit.colors_x8(simd, &whole, x, y, &mut colors);
-    let encoded = encode_eight(&colors);
+    lit.colors_x8(simd, whole, x, y, &mut colors);
+    let encoded = encode_opaque_x8(simd, &colors);
     if whole.iter().all(|&item| item != NO_ITEM) {
         out.copy_from_slice(&encoded[..out.len()]);
         return;
@@ -193,16 +211,6 @@ fn resolve_eight<S: Simd>(
     for (i, out) in out.iter_mut().enumerate() {
         *out = if whole[i] != NO_ITEM { encoded[i] } else { behind };
     }
-}
-
-/// Opaque linear colours to 8-bit sRGB.
-#[inline(always)]
-fn encode_eight([r, g, b]: &[[f32; 8]; 3]) -> [[u8; 4]; 8] {
-    let mut encoded = [[0; 4]; 8];
-    for i in 0..8 {
-        encoded[i] = [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255];
-    }
-    encoded
 }
 
 /// Of eight pixels in a row, those that show several items, or one and the background: each item is
@@ -213,37 +221,25 @@ fn add_mixed<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
     index: usize,
+    differs: &[u32],
     mixed: &mut Mixed,
     lit: &mut Lit<'_>,
     behind: Vec4,
     [x, y]: [i32; 2],
-    count: usize,
 ) {
-    let share = 1.0 / planes.len() as f32;
-    let first = &planes[0].items()[index..index + 8];
-    let mut differs = [false; 8];
-    for plane in &planes[1..] {
-        let items = &plane.items()[index..index + 8];
-        for i in 0..8 {
-            differs[i] |= items[i] != first[i];
-        }
-    }
-    if differs == [false; 8] {
-        return;
-    }
-    for i in (0..count).filter(|&i| differs[i]) {
+    for i in (0..differs.len()).filter(|&i| differs[i] != 0) {
         let pixel = (index + i) as u32;
         mixed.pixels.push(pixel);
         mixed.sums[pixel as usize] = Vec4::ZERO;
-        let mut seen = 0u32;
-        for (s, plane) in planes.iter().enumerate() {
+        let (items, count) = sample_items(planes, index + i);
+        let (share, mut seen) = (1.0 / count as f32, 0u32);
+        for (s, &item) in items[..count].iter().enumerate() {
             if seen >> s & 1 == 1 {
                 continue;
             }
-            let item = plane.items()[index + i];
             let mut same = 0u32;
-            for (j, other) in planes.iter().enumerate().skip(s) {
-                same |= u32::from(other.items()[index + i] == item) << j;
+            for (j, other) in items[..count].iter().enumerate() {
+                same |= u32::from(*other == item) << j;
             }
             seen |= same;
             let weight = same.count_ones() as f32 * share;
@@ -256,6 +252,19 @@ fn add_mixed<S: Simd>(
     }
 }
 
+/// The items at all samples of a pixel, and how many samples there are.
+#[inline(always)]
+fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
+    let (mut items, mut count) = ([NO_ITEM; MOST_SAMPLES], 0);
+    for plane in planes {
+        for &item in plane.items(pixel) {
+            items[count] = item;
+            count += 1;
+        }
+    }
+    (items, count)
+}
+
 /// The colour at each sample of a pixel; each item is lit once.
 fn sample_colors(
     planes: &[SamplePlane],
@@ -263,20 +272,20 @@ fn sample_colors(
     lit: &mut Lit<'_>,
     behind: Vec4,
     [x, y]: [i32; 2],
-) -> [Vec4; 16] {
-    let mut colors = [behind; 16];
-    for i in 0..planes.len() {
-        let item = planes[i].items()[index];
+) -> ([Vec4; MOST_SAMPLES], usize) {
+    let mut colors = [behind; MOST_SAMPLES];
+    let (items, count) = sample_items(planes, index);
+    for (i, &item) in items[..count].iter().enumerate() {
         if item == NO_ITEM {
             continue;
         }
-        let earlier = (0..i).find(|&j| planes[j].items()[index] == item);
+        let earlier = (0..i).find(|&j| items[j] == item);
         colors[i] = match earlier {
             Some(j) => colors[j],
             None => lit.color(item, x, y).truncate().extend(1.0),
         };
     }
-    colors
+    (colors, count)
 }
 
 fn average(colors: &[Vec4]) -> Vec4 {
@@ -296,14 +305,14 @@ fn blended(
     let (x, y) = (area.tile[0] + x, area.tile[1] + y);
     let index = fragments[0].pixel as usize;
     let behind = premultiply((area.background)(y));
-    let mut colors = sample_colors(planes, index, lit, behind, [x, y]);
+    let (mut colors, count) = sample_colors(planes, index, lit, behind, [x, y]);
     for fragment in fragments {
         let over = premultiply(lit.color(fragment.item, x, y));
-        for (i, under) in colors[..planes.len()].iter_mut().enumerate() {
+        for (i, under) in colors[..count].iter_mut().enumerate() {
             if fragment.samples >> i & 1 == 1 {
                 *under = over + *under * (1.0 - over.w);
             }
         }
     }
-    average(&colors[..planes.len()])
+    average(&colors[..count])
 }

@@ -1,0 +1,173 @@
+//! The options of `durer draw`.
+
+use super::layers::Layers;
+use crate::args::{Compression, RunningArgs};
+use crate::{color, values};
+use clap::{Args, ValueEnum, ValueHint};
+use durer::math::Rect;
+use durer::view::window::PixelRect;
+use durer_formats::geo::GeoFormat;
+use std::path::PathBuf;
+
+pub const EXAMPLES: &str = "\
+Examples:
+  durer draw tiger.svg -o tiger.png
+  durer draw tiger.svg -o tiger.png --size 2048x --background white
+  durer draw page.svg -o page.png --font fonts/
+  durer draw countries.geojson -o world.png --size 1600x --label NAME
+  durer draw land.geojson --fill '#f4efe6' --stroke none rivers.geojson --stroke '#4a7fb5' \\
+      cities.geojson --marker-size 5 --fill '#b03030' --label name -o map.png \\
+      --background '#cfe2f0' --window -10,35,30,60
+  durer clip roads.geojson --window 5,45,11,48 -o - | durer draw - -o alps.png
+
+Map layers are drawn in the order given. Options of the style follow the layer that they are for; \
+those before the first layer are for all layers.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer draw`.
+#[derive(Debug, Args)]
+pub struct DrawArgs {
+    /// What is drawn.
+    #[command(flatten)]
+    pub layers: Layers,
+    /// Where the picture goes
+    ///
+    /// A .png file, or `-` for standard output. A file is replaced only by a whole picture.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub output: PathBuf,
+    /// What the picture is like.
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// Which fonts there are.
+    #[command(flatten)]
+    pub fonts: FontArgs,
+    /// The format of the map layers [default: by their content, then by their suffix]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Reading")]
+    pub from: Option<GeoFormat>,
+    /// Refuse files of more bytes; k, M, G are understood
+    #[arg(long, value_name = "BYTES", allow_hyphen_values = true, default_value = "4G", value_parser = values::bytes, help_heading = "Reading")]
+    pub max_bytes: u64,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+    /// Write a report on standard output, in JSON: sizes, counts, seconds, warnings
+    #[arg(long, help_heading = "Running")]
+    pub json: bool,
+}
+
+/// The shape of the output.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Picture")]
+pub struct PictureArgs {
+    /// Width and height in pixels [default: an SVG's own; 1024 on the longer side of a map]
+    ///
+    /// WxH; one side may be left out, `800x` or `x600`, and follows from the other. What has another
+    /// shape is drawn as large as it fits, in the middle.
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = sides)]
+    pub size: Option<Sides>,
+    /// Smooth edges: by the exact area covered, or none
+    #[arg(long, value_name = "HOW", default_value = "coverage")]
+    pub aa: Smoothing,
+    /// A colour, or `transparent` [default: transparent for an SVG, white for a map]
+    #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
+    pub background: Option<[u8; 4]>,
+    /// What is shown: left, lower, right and upper border, in the coordinates of the file
+    ///
+    /// Of an SVG, whose y grows downwards, the smaller y first. [default: all]
+    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = crate::clip::window)]
+    pub window: Option<Rect>,
+    /// Where it is shown, in pixels from the upper left corner [default: the whole picture]
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = viewport)]
+    pub viewport: Option<PixelRect>,
+    /// How small the PNG is to be: `fast` or `small`
+    #[arg(long, value_name = "HOW", default_value = "fast")]
+    pub compression: Compression,
+    /// Refuse pictures of more pixels; the default is 16384x16384
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
+    pub max_pixels: u64,
+}
+
+/// Fonts.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Text")]
+pub struct FontArgs {
+    /// A font, or a folder of fonts: TrueType, OpenType; the first is that of labels
+    ///
+    /// Fonts that are not given are not used, so the picture is the same on every machine. DejaVu Sans
+    /// (Latin, Greek, Cyrillic) is always there and used for what else is missing.
+    #[arg(long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
+    pub font: Vec<PathBuf>,
+    /// Use the fonts that are installed, too; pictures then depend on the machine
+    #[arg(long)]
+    pub system_fonts: bool,
+}
+
+/// `--aa`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Smoothing {
+    /// Pixels are painted or not, by half of their area
+    None,
+    /// Pixels are painted as much as they are covered
+    Coverage,
+}
+
+/// A size of which one side may be open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sides {
+    pub width: Option<u32>,
+    pub height: Option<u32>,
+}
+
+fn sides(text: &str) -> Result<Sides, String> {
+    let wrong = || {
+        "a size is WIDTHxHEIGHT in whole pixels from 1, e.g. 1920x1080; one side may be left out, \
+         e.g. 1920x or x1080"
+            .to_owned()
+    };
+    let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
+    let side = |side: &str| match side.trim() {
+        "" => Ok(None),
+        digits => digits.parse().ok().filter(|n| *n > 0).map(Some).ok_or_else(wrong),
+    };
+    let sides = Sides { width: side(width)?, height: side(height)? };
+    if sides.width.or(sides.height).is_some() { Ok(sides) } else { Err(wrong()) }
+}
+
+fn viewport(text: &str) -> Result<PixelRect, String> {
+    let wrong = || "a viewport is X,Y,W,H in whole pixels, e.g. 0,0,640,480".to_owned();
+    let numbers: Vec<i32> =
+        text.split(',').map(|n| n.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let [x, y, w, h] = numbers[..] else { return Err(wrong()) };
+    if x < 0 || y < 0 || w < 1 || h < 1 {
+        return Err("a viewport starts at 0,0 or later and is 1x1 at least".to_owned());
+    }
+    let (right, bottom) =
+        (x.checked_add(w).ok_or_else(wrong)?, y.checked_add(h).ok_or_else(wrong)?);
+    PixelRect::new(x, y, right, bottom).map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_side_may_be_open() {
+        let both = |w, h| Ok(Sides { width: w, height: h });
+        assert_eq!(sides("800x600"), both(Some(800), Some(600)));
+        assert_eq!(sides("800x"), both(Some(800), None));
+        assert_eq!(sides("x600"), both(None, Some(600)));
+        assert_eq!(sides("64"), both(Some(64), Some(64)));
+        for wrong in ["", "x", "0x", "x-1", "1.5x", "axb", "1x2x3"] {
+            assert!(sides(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn viewports_have_a_place_and_an_extent() {
+        assert_eq!(viewport("1,2,3,4"), Ok(PixelRect::new(1, 2, 4, 6).unwrap()));
+        for wrong in ["", "1,2,3", "-1,0,3,3", "0,0,0,3", "2147483647,0,1,1", "a,b,c,d"] {
+            assert!(viewport(wrong).is_err(), "{wrong}");
+        }
+    }
+}

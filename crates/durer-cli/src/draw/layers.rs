@@ -1,0 +1,259 @@
+//! Layers on the command line, each with the style that follows it.
+
+use crate::{color, values};
+use clap::error::Error;
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum, ValueHint};
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// A colour, or none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ink(pub Option<[u8; 4]>);
+
+/// Lengths of dashes and gaps; none for a solid line.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Dashes(pub Vec<f64>);
+
+/// `--marker`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Marker {
+    /// A disk
+    Circle,
+    /// A square
+    Square,
+    /// A triangle that points upwards
+    Triangle,
+    /// An upright cross, in the colour of the stroke
+    Cross,
+}
+
+/// How a layer of a map looks; lengths in pixels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    pub fill: Option<[u8; 4]>,
+    pub stroke: Option<[u8; 4]>,
+    pub stroke_width: f64,
+    pub dashes: Vec<f64>,
+    pub opacity: f64,
+    pub marker: Marker,
+    pub marker_size: f64,
+    /// The property that labels show.
+    pub label: Option<String>,
+    pub label_size: f64,
+    pub label_color: [u8; 4],
+    pub label_halo: Option<[u8; 4]>,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            fill: Some([0xe3, 0xe7, 0xe0, 255]),
+            stroke: Some([0x55, 0x60, 0x6b, 255]),
+            stroke_width: 1.0,
+            dashes: Vec::new(),
+            opacity: 1.0,
+            marker: Marker::Circle,
+            marker_size: 6.0,
+            label: None,
+            label_size: 12.0,
+            label_color: [0x22, 0x22, 0x22, 255],
+            label_halo: Some([255; 4]),
+        }
+    }
+}
+
+/// A file and how it looks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    pub input: PathBuf,
+    pub style: Style,
+    /// Whether an option of the style was given for it.
+    pub styled: bool,
+}
+
+/// What is drawn, from the bottom to the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layers(pub Vec<Layer>);
+
+/// The same as the parser knows it: values without their layers. Only its declarations are used.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Style of map layers")]
+#[allow(dead_code)]
+struct LayerArgs {
+    /// SVG; or layers of a map: GeoJSON, WKT, WKB; `-` reads standard input
+    #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath, help_heading = None)]
+    input: Vec<PathBuf>,
+    /// The colour of areas and markers, or `none` [default: #e3e7e0]
+    #[arg(long, value_name = "COLOR", value_parser = ink)]
+    fill: Vec<Ink>,
+    /// The colour of lines and borders, or `none` [default: #55606b]
+    #[arg(long, value_name = "COLOR", value_parser = ink)]
+    stroke: Vec<Ink>,
+    /// The width of lines and borders in pixels [default: 1]
+    #[arg(long, value_name = "PX", allow_hyphen_values = true, value_parser = values::not_negative)]
+    stroke_width: Vec<f64>,
+    /// Lengths of dashes and gaps in turn, in pixels, e.g. 4,2; or `none`
+    #[arg(long, value_name = "PX,PX,…", allow_hyphen_values = true, value_parser = dashes)]
+    dashes: Vec<Dashes>,
+    /// How opaque the layer is, 0 to 1 [default: 1]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = share)]
+    opacity: Vec<f64>,
+    /// What stands for a point [default: circle]
+    #[arg(long, value_name = "SHAPE")]
+    marker: Vec<Marker>,
+    /// The width of markers in pixels [default: 6]
+    #[arg(long, value_name = "PX", allow_hyphen_values = true, value_parser = values::not_negative)]
+    marker_size: Vec<f64>,
+    /// Label features by this property
+    ///
+    /// Within areas, at the middle of lines, beside points. Labels do not overlap: those of upper
+    /// layers come first, then those of larger features; what finds no room is left out.
+    #[arg(long, value_name = "FIELD")]
+    label: Vec<String>,
+    /// The size of labels in pixels [default: 12]
+    #[arg(long, value_name = "PX", allow_hyphen_values = true, value_parser = values::positive)]
+    label_size: Vec<f64>,
+    /// The colour of labels [default: #222]
+    #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
+    label_color: Vec<[u8; 4]>,
+    /// The colour around labels, or `none` [default: white]
+    #[arg(long, value_name = "COLOR", value_parser = ink)]
+    label_halo: Vec<Ink>,
+}
+
+fn ink(text: &str) -> Result<Ink, String> {
+    match text {
+        "none" => Ok(Ink(None)),
+        color => color::bytes(color).map(|c| Ink(Some(c))).map_err(|e| format!("{e}; or none")),
+    }
+}
+
+fn dashes(text: &str) -> Result<Dashes, String> {
+    if text == "none" {
+        return Ok(Dashes::default());
+    }
+    let lengths: Vec<f64> = text.split(',').map(values::not_negative).collect::<Result<_, _>>()?;
+    if lengths.iter().sum::<f64>() > 0.0 {
+        Ok(Dashes(lengths))
+    } else {
+        Err("one of the lengths must be above 0".to_owned())
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let inside = |n: &f64| (0.0..=1.0).contains(n);
+    values::number(text).and_then(|n| Some(n).filter(inside).ok_or("it must lie in 0 to 1".into()))
+}
+
+impl Args for Layers {
+    fn augment_args(command: Command) -> Command {
+        LayerArgs::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        LayerArgs::augment_args_for_update(command)
+    }
+}
+
+impl FromArgMatches for Layers {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let inputs: Vec<PathBuf> =
+            matches.get_many("input").into_iter().flatten().cloned().collect();
+        let places: Vec<usize> = matches.indices_of("input").into_iter().flatten().collect();
+        let first = places.first().copied().unwrap_or(usize::MAX);
+        let mut common = Style::default();
+        apply(matches, 0..first, &mut common);
+        let ends = places.iter().skip(1).copied().chain([usize::MAX]);
+        let layers =
+            inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
+                let mut style = common.clone();
+                let styled = apply(matches, *start..end, &mut style) || style != Style::default();
+                Layer { input, style, styled }
+            });
+        Ok(Self(layers.collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// Sets what is said in a part of the command line; tells whether anything is.
+fn apply(matches: &ArgMatches, place: Range<usize>, style: &mut Style) -> bool {
+    let mut any = false;
+    macro_rules! set {
+        ($($name:literal: $type:ty => |$value:ident| $to:expr;)+) => {
+            $(if let Some($value) = last::<$type>(matches, $name, &place) {
+                any = true;
+                $to;
+            })+
+        };
+    }
+    set! {
+        "fill": Ink => |ink| style.fill = ink.0;
+        "stroke": Ink => |ink| style.stroke = ink.0;
+        "stroke_width": f64 => |width| style.stroke_width = width;
+        "dashes": Dashes => |dashes| style.dashes = dashes.0;
+        "opacity": f64 => |opacity| style.opacity = opacity;
+        "marker": Marker => |marker| style.marker = marker;
+        "marker_size": f64 => |size| style.marker_size = size;
+        "label": String => |field| style.label = Some(field);
+        "label_size": f64 => |size| style.label_size = size;
+        "label_color": [u8; 4] => |color| style.label_color = color;
+        "label_halo": Ink => |ink| style.label_halo = ink.0;
+    }
+    any
+}
+
+/// The last value of an option within a part of the command line.
+fn last<T: Clone + Send + Sync + 'static>(
+    matches: &ArgMatches,
+    name: &str,
+    place: &Range<usize>,
+) -> Option<T> {
+    let values = matches.get_many::<T>(name)?;
+    let placed = matches.indices_of(name)?.zip(values);
+    placed.filter(|(index, _)| place.contains(index)).last().map(|(_, value)| value.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        layers: Layers,
+        #[arg(short)]
+        output: Option<String>,
+    }
+
+    fn layers(text: &str) -> Vec<Layer> {
+        let line = Line::try_parse_from(text.split(' ')).map_err(|e| e.to_string()).unwrap();
+        let _ = line.output;
+        line.layers.0
+    }
+
+    #[test]
+    fn a_style_follows_its_layer_and_what_comes_first_is_for_all() {
+        let found = layers("x --stroke none a --fill red -o z b --stroke #00f c");
+        let look = |l: &Layer| (l.input.to_str().map(str::to_owned), l.style.fill, l.style.stroke);
+        let grey = Style::default().fill;
+        let name = |n: &str| Some(n.to_owned());
+        assert_eq!(look(&found[0]), (name("a"), Some([255, 0, 0, 255]), None));
+        assert_eq!(look(&found[1]), (name("b"), grey, Some([0, 0, 255, 255])));
+        assert_eq!(look(&found[2]), (name("c"), grey, None));
+        let plain = layers("x a");
+        assert!(!plain[0].styled && plain[0].style == Style::default());
+    }
+
+    #[test]
+    fn wrong_styles_are_refused() {
+        for wrong in ["--fill reddish", "--opacity 2", "--dashes 0,0", "--stroke-width -1"] {
+            assert!(Line::try_parse_from(format!("x a {wrong}").split(' ')).is_err(), "{wrong}");
+        }
+        assert!(Line::try_parse_from(["x"]).is_err(), "no layer");
+    }
+}

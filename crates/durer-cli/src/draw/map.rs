@@ -1,0 +1,291 @@
+//! A map of layers.
+
+use super::label::{Anchor, Label};
+use super::layers::{Marker, Style};
+use super::report::MapCounts;
+use super::{Given, Job, MAP_SIDE, fonts, frame, sides};
+use crate::failure::Failure;
+use crate::input::display_name;
+use durer::curve::Path;
+use durer::math::{DVec2, Rect};
+use durer::raster::coverage::FillRule;
+use durer::raster::line::wide::{Cap, Join, Stroke};
+use durer::raster::paint::{Canvas, Paint};
+use durer::view::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
+use durer_formats::geo::{Feature, Geometry, Points, Reader};
+use std::time::Instant;
+
+/// Room around what is shown, as a share of it, where no window is given.
+const MARGIN: f64 = 0.02;
+
+/// Points of a line that are nearer to the one before in pixels are left out: the coverage of no pixel
+/// changes by more than 1/255 for it.
+const NEAR: f64 = 1.0 / 256.0;
+
+/// So many names of properties are listed where a label's is not there.
+const LISTED: usize = 12;
+
+impl Job<'_> {
+    /// Everything that the layers want painted.
+    pub(super) fn map(&mut self, given: &[Given<'_>]) -> Result<Canvas, Failure> {
+        let start = Instant::now();
+        let mut layers = Vec::new();
+        for layer in given {
+            layers.push(self.features(layer)?);
+        }
+        self.report.read_seconds += start.elapsed().as_secs_f64();
+        let window = match self.args.picture.window {
+            Some(window) => window,
+            None => extent(&layers).ok_or_else(|| {
+                Failure::Data(format!("{}: there is nothing to draw", names(given)))
+            })?,
+        };
+        let usage = |e: durer::Error| Failure::Usage(e.to_string());
+        let natural = window.size() * (MAP_SIDE / window.size().max_element());
+        let size = sides(self.args.picture.size, natural);
+        let canvas = self.canvas(size, [255; 4])?;
+        let viewport = self.viewport(size)?;
+        let (lo, hi) = (window.min(), window.max());
+        let window = Window::new(lo.x, hi.x, lo.y, hi.y).map_err(usage)?;
+        let screen = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
+        let mut map = Map { canvas, screen, seen: seen(&viewport)?, counts: MapCounts::default() };
+        map.canvas.push_clip(&frame(&viewport), FillRule::NonZero);
+        let mut labels = Vec::new();
+        for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
+            let name = display_name(&layer.layer.input);
+            self.messages.progress.stage(|| format!("drawing {name}"));
+            let style = &layer.layer.style;
+            map.counts = MapCounts { features: features.len() as u64, ..MapCounts::default() };
+            let fade = style.opacity < 1.0;
+            if fade {
+                map.canvas.push_group();
+            }
+            features.iter().try_for_each(|f| map.feature(f, style)).map_err(usage)?;
+            if fade {
+                map.canvas.pop(style.opacity);
+            }
+            if let Some(field) = &style.label {
+                let mut own = map.labels(features, field, index);
+                if own.is_empty() && !features.iter().any(|f| has(f, field)) {
+                    return Err(Failure::Data(format!("{name}: {}", no_field(features, field))));
+                }
+                labels.append(&mut own);
+            }
+            self.report.layers[index].map = Some(map.counts);
+        }
+        if !labels.is_empty() {
+            self.messages.progress.stage(|| "placing labels".to_owned());
+            let fonts = fonts::load(&self.args.fonts)?;
+            let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
+            let placed = super::label::draw(&mut map.canvas, &map.seen, labels, &styles, &fonts)?;
+            for (layer, (drawn, left_out)) in self.report.layers.iter_mut().zip(placed) {
+                if let Some(counts) = &mut layer.map {
+                    (counts.labels, counts.labels_left_out) = (drawn, left_out);
+                }
+            }
+        }
+        Ok(map.canvas)
+    }
+
+    fn features(&mut self, given: &Given<'_>) -> Result<Vec<Feature>, Failure> {
+        let name = display_name(&given.layer.input);
+        let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
+        self.messages.progress.stage(|| format!("reading {name}"));
+        let mut reader = Reader::new(given.format, &given.bytes[..]).map_err(fail)?;
+        let mut features = Vec::new();
+        while let Some(feature) = reader.next_feature().map_err(fail)? {
+            features.push(feature);
+        }
+        self.warn(&name, reader.warnings());
+        let more = reader.further_warnings();
+        if more > 0 {
+            self.report.warnings.push(format!("and {more} more"));
+        }
+        Ok(features)
+    }
+}
+
+fn names(given: &[Given<'_>]) -> String {
+    let names: Vec<String> = given.iter().map(|g| display_name(&g.layer.input)).collect();
+    names.join(", ")
+}
+
+/// The rectangle around all features, with some room; a point gets one of side 1.
+fn extent(layers: &[Vec<Feature>]) -> Option<Rect> {
+    let all = layers.iter().flatten().filter_map(|f| f.geometry.as_ref()?.bounds());
+    let bounds = Rect::around(all.flat_map(|b| [b.min(), b.max()]))?;
+    let size = bounds.size();
+    let least = if size.max_element() > 0.0 { size.max_element() * MARGIN } else { 0.5 };
+    let room = (size * MARGIN).max(DVec2::splat(least));
+    Rect::new(bounds.min() - room, bounds.max() + room).ok()
+}
+
+fn seen(viewport: &Viewport) -> Result<Rect, Failure> {
+    let p = viewport.pixels();
+    let corner = |x: i32, y: i32| DVec2::new(x.into(), y.into());
+    Rect::new(corner(p.x0(), p.y0()), corner(p.x1(), p.y1()))
+        .map_err(|e| Failure::Usage(e.to_string()))
+}
+
+/// The properties of a feature.
+fn properties(feature: &Feature) -> Option<serde_json::Map<String, serde_json::Value>> {
+    serde_json::from_str(feature.properties.as_deref()?).ok()
+}
+
+fn has(feature: &Feature, field: &str) -> bool {
+    properties(feature).is_some_and(|p| p.contains_key(field))
+}
+
+fn no_field(features: &[Feature], field: &str) -> String {
+    let mut known: Vec<String> = Vec::new();
+    for name in features.iter().filter_map(properties).flat_map(|p| p.into_iter().map(|m| m.0)) {
+        if known.len() <= LISTED && !known.contains(&name) {
+            known.push(name);
+        }
+    }
+    if known.len() > LISTED {
+        known[LISTED] = "…".to_owned();
+    }
+    let there = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    format!("--label {field}: no feature has this property; there are: {there}")
+}
+
+/// What a label says: text, numbers, true and false; nothing for null and what has parts.
+fn text_of(feature: &Feature, field: &str) -> Option<String> {
+    let text = match properties(feature)?.remove(field)? {
+        serde_json::Value::String(text) => text,
+        serde_json::Value::Number(number) => number.to_string(),
+        serde_json::Value::Bool(value) => value.to_string(),
+        _ => return None,
+    };
+    (!text.trim().is_empty()).then_some(text)
+}
+
+/// The map while it is drawn.
+struct Map {
+    canvas: Canvas,
+    screen: WindowToViewport,
+    /// The viewport.
+    seen: Rect,
+    counts: MapCounts,
+}
+
+impl Map {
+    fn feature(&mut self, feature: &Feature, style: &Style) -> durer::Result<()> {
+        match &feature.geometry {
+            Some(geometry) => self.geometry(geometry, style),
+            None => Ok(()),
+        }
+    }
+
+    fn geometry(&mut self, geometry: &Geometry, style: &Style) -> durer::Result<()> {
+        match geometry {
+            Geometry::Point(points) | Geometry::MultiPoint(points) => self.markers(points, style),
+            Geometry::LineString(line) => self.lines(std::slice::from_ref(line), style),
+            Geometry::MultiLineString(lines) => self.lines(lines, style),
+            Geometry::Polygon(rings) => self.polygons(std::slice::from_ref(rings), style),
+            Geometry::MultiPolygon(polygons) => self.polygons(polygons, style),
+            Geometry::Collection(parts) => parts.iter().try_for_each(|p| self.geometry(p, style)),
+        }
+    }
+
+    /// A run of positions on the screen, if a part of it may be seen with a pen of this width.
+    fn run(&self, points: &Points, width: f64) -> Option<Vec<DVec2>> {
+        let mut run: Vec<DVec2> = Vec::with_capacity(points.len());
+        for (i, p) in points.xy.iter().enumerate() {
+            let p = self.screen.to_screen(*p);
+            let near = run.last().is_some_and(|last| last.distance_squared(p) < NEAR * NEAR);
+            if !near || i + 1 == points.len() {
+                run.push(p);
+            }
+        }
+        let bounds = Rect::around(run.iter().copied())?;
+        // Miters are round, so a pen reaches half its width.
+        let reach = DVec2::splat(width * 0.5 + 1.0);
+        let reached = Rect::new(bounds.min() - reach, bounds.max() + reach).ok()?;
+        reached.overlaps(&self.seen).then_some(run)
+    }
+
+    fn stroke(&mut self, path: &Path, style: &Style) -> durer::Result<()> {
+        let Some(color) = style.stroke else { return Ok(()) };
+        let cap = if style.dashes.is_empty() { Cap::Round } else { Cap::Butt };
+        let (width, dashes) = (style.stroke_width, style.dashes.clone());
+        let stroke = Stroke { width, cap, join: Join::Round, dashes, ..Stroke::default() };
+        self.canvas.stroke(path, &stroke, &Paint::Color(color), 1.0)
+    }
+
+    fn lines(&mut self, lines: &[Points], style: &Style) -> durer::Result<()> {
+        let mut path = Path::new();
+        for line in lines {
+            if let Some(run) = self.run(line, style.stroke_width) {
+                self.counts.lines += 1;
+                path.extend(&Path::polyline(run));
+            }
+        }
+        self.stroke(&path, style)
+    }
+
+    fn polygons(&mut self, polygons: &[Vec<Points>], style: &Style) -> durer::Result<()> {
+        let mut path = Path::new();
+        for rings in polygons {
+            let outer = rings.first().and_then(|ring| self.run(ring, style.stroke_width));
+            let Some(outer) = outer else { continue };
+            self.counts.polygons += 1;
+            path.extend(&Path::polygon(outer));
+            for hole in rings[1..].iter().filter_map(|r| self.run(r, style.stroke_width)) {
+                path.extend(&Path::polygon(hole));
+            }
+        }
+        if let Some(fill) = style.fill {
+            self.canvas.fill(&path, FillRule::EvenOdd, &Paint::Color(fill), 1.0);
+        }
+        self.stroke(&path, style)
+    }
+
+    fn markers(&mut self, points: &Points, style: &Style) -> durer::Result<()> {
+        let reach = DVec2::splat(style.marker_size + style.stroke_width);
+        for p in &points.xy {
+            let p = self.screen.to_screen(*p);
+            let around = Rect::around([p - reach, p + reach]);
+            if !around.is_some_and(|r| r.overlaps(&self.seen)) {
+                continue;
+            }
+            self.counts.points += 1;
+            let path = marker(style.marker, p, style.marker_size * 0.5);
+            if let Some(fill) = style.fill.filter(|_| style.marker != Marker::Cross) {
+                self.canvas.fill(&path, FillRule::NonZero, &Paint::Color(fill), 1.0);
+            }
+            self.stroke(&path, &Style { dashes: Vec::new(), ..style.clone() })?;
+        }
+        Ok(())
+    }
+
+    /// What is to be written, and where.
+    fn labels(&self, features: &[Feature], field: &str, layer: usize) -> Vec<Label> {
+        let label = |feature: &Feature| {
+            let text = text_of(feature, field)?;
+            let anchor = Anchor::of(feature.geometry.as_ref()?, &self.screen, &self.seen)?;
+            Some(Label { text, anchor, layer })
+        };
+        features.iter().filter_map(label).collect()
+    }
+}
+
+/// A marker's outline.
+fn marker(marker: Marker, p: DVec2, r: f64) -> Path {
+    match marker {
+        Marker::Circle => Path::circle(p, r),
+        Marker::Square => Path::rectangle(p.x - r, p.y - r, 2.0 * r, 2.0 * r),
+        Marker::Triangle => {
+            // Equilateral, its middle on the point.
+            let corners = [(0.0, -1.0), (0.866_025_403_784, 0.5), (-0.866_025_403_784, 0.5)];
+            Path::polygon(corners.map(|(x, y)| p + r * DVec2::new(x, y)))
+        }
+        Marker::Cross => {
+            let mut path = Path::new();
+            path.move_to(p.x - r, p.y).line_to(p.x + r, p.y);
+            path.move_to(p.x, p.y - r).line_to(p.x, p.y + r);
+            path
+        }
+    }
+}

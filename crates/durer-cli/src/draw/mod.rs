@@ -1,0 +1,192 @@
+//! `durer draw`.
+
+mod args;
+mod fonts;
+mod label;
+mod layers;
+mod map;
+mod report;
+mod svg;
+
+pub use args::{DrawArgs, EXAMPLES};
+
+use crate::failure::Failure;
+use crate::input::{self, display_name, is_stream};
+use crate::messages::Messages;
+use crate::output::{self, Name, Target};
+use args::{Sides, Smoothing};
+use durer::math::DVec2;
+use durer::raster::paint::{Canvas, Options};
+use durer::target::Pixels;
+use durer::view::window::{PixelRect, Viewport};
+use durer_formats::geo::GeoFormat;
+use durer_formats::{Warning, png};
+use layers::Layer;
+use report::{LayerReport, Report};
+use std::time::Instant;
+
+/// The longer side of a map in pixels, where no size is given.
+const MAP_SIDE: f64 = 1024.0;
+
+/// Draws one picture.
+pub fn run(args: &DrawArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    let target = check(args)?;
+    let messages = Messages::new(&args.running, 1);
+    let mut report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        output: target.to_string(),
+        ..Report::default()
+    };
+    let mut job = Job { args, messages: &messages, report: &mut report };
+    let picture = job.draw()?;
+    messages.progress.stage(|| format!("writing {target}"));
+    let encode = Instant::now();
+    let compression = args.picture.compression.into();
+    output::deliver(&target, |out| png::write_color(out, &picture, compression))?;
+    drop(messages);
+    report.encode_seconds = encode.elapsed().as_secs_f64();
+    report.total_seconds = start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = crate::report::peak_memory();
+    if args.json { crate::report::print(&report) } else { Ok(()) }
+}
+
+/// What the parser does not know to be wrong; where the picture goes.
+fn check(args: &DrawArgs) -> Result<Target, Failure> {
+    let inputs: Vec<_> = args.layers.0.iter().map(|l| &l.input).collect();
+    input::check_streams(&inputs)?;
+    let names = output::stems(&inputs).into_iter().take(1);
+    let names: Vec<Name> = names.map(|stem| Name { stem, frame: None }).collect();
+    let target = output::plan("--output", &args.output, &names, output::Kind::Png)?;
+    let Some(target) = target.into_iter().next() else {
+        return Err(Failure::Usage("nothing to draw".to_owned()));
+    };
+    if args.json && target == Target::Stdout {
+        let message = "--json: the report goes to standard output, where the picture goes too";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(target)
+}
+
+/// One run.
+struct Job<'a> {
+    args: &'a DrawArgs,
+    messages: &'a Messages,
+    report: &'a mut Report,
+}
+
+/// A file that has been read.
+struct Given<'a> {
+    layer: &'a Layer,
+    format: GeoFormat,
+    bytes: Vec<u8>,
+}
+
+impl Job<'_> {
+    /// Warnings, told and noted.
+    fn warn(&mut self, name: &str, warnings: &[Warning]) {
+        self.messages.warnings(name, warnings);
+        self.report.warnings.extend(warnings.iter().map(ToString::to_string));
+    }
+
+    fn draw(&mut self) -> Result<Pixels<[u8; 4]>, Failure> {
+        let start = Instant::now();
+        let args = self.args;
+        let mut given = Vec::new();
+        for layer in &args.layers.0 {
+            given.push(self.read(layer)?);
+        }
+        let drawing = given.iter().find(|g| g.format == GeoFormat::Svg);
+        let canvas = match (drawing, &given[..]) {
+            (Some(_), [one]) => self.drawing(one)?,
+            (Some(drawing), _) => {
+                let name = display_name(&drawing.layer.input);
+                let message = format!("{name}: an SVG is drawn alone; only map data make layers");
+                return Err(Failure::Usage(message));
+            }
+            (None, _) => self.map(&given)?,
+        };
+        drop(given);
+        self.messages.progress.stage(|| "painting".to_owned());
+        let mut picture = Pixels::new(canvas.width(), canvas.height(), [0; 4]);
+        canvas.render(&mut picture).map_err(|e| Failure::Data(e.to_string()))?;
+        self.report.draw_seconds = start.elapsed().as_secs_f64() - self.report.read_seconds;
+        (self.report.width, self.report.height) = (picture.width(), picture.height());
+        Ok(picture)
+    }
+
+    fn read<'a>(&mut self, layer: &'a Layer) -> Result<Given<'a>, Failure> {
+        let name = display_name(&layer.input);
+        self.messages.progress.stage(|| format!("reading {name}"));
+        let start = Instant::now();
+        let bytes = input::bytes(&layer.input, self.args.max_bytes)?;
+        self.report.read_seconds += start.elapsed().as_secs_f64();
+        let by_name = || GeoFormat::of_name(&layer.input.to_string_lossy());
+        let svg = GeoFormat::of_content(&bytes) == Some(GeoFormat::Svg);
+        let told = self.args.from.filter(|_| !svg);
+        let format = told.or_else(|| GeoFormat::of_content(&bytes)).or_else(by_name);
+        let Some(format) = format else {
+            let what = if bytes.is_empty() { "the file is empty" } else { "not a known format" };
+            let message = format!("{name}: {what}; drawn are SVG, GeoJSON, WKT and WKB");
+            return Err(Failure::Data(message));
+        };
+        let (input, map) = (name, None);
+        self.report.layers.push(LayerReport { input, format: format.name(), map });
+        Ok(Given { layer, format, bytes })
+    }
+
+    /// An empty canvas.
+    fn canvas(&self, (width, height): (u32, u32), background: [u8; 4]) -> Result<Canvas, Failure> {
+        let picture = &self.args.picture;
+        let (pixels, limit) = (u64::from(width) * u64::from(height), picture.max_pixels);
+        if pixels > limit {
+            let message = format!(
+                "the size {width}x{height}: {pixels} pixels are above the limit of {limit}; \
+                 --max-pixels raises it"
+            );
+            return Err(Failure::Usage(message));
+        }
+        let anti_alias = picture.aa == Smoothing::Coverage;
+        let options = Options { anti_alias, ..Options::default() };
+        let canvas = Canvas::new(width, height, options);
+        let mut canvas = canvas.map_err(|e| Failure::Usage(format!("--size: {e}")))?;
+        canvas.clear(picture.background.unwrap_or(background));
+        Ok(canvas)
+    }
+
+    /// The part of a picture to draw in.
+    fn viewport(&self, (width, height): (u32, u32)) -> Result<Viewport, Failure> {
+        let usage = |e: durer::Error| Failure::Usage(e.to_string());
+        let whole = PixelRect::of_size(width, height).map_err(usage)?;
+        let pixels = self.args.picture.viewport.unwrap_or(whole);
+        if pixels.intersection(&whole) != pixels {
+            let message = format!("--viewport reaches beyond the picture of {width}x{height}");
+            return Err(Failure::Usage(message));
+        }
+        Viewport::new(pixels).map_err(usage)
+    }
+}
+
+/// Whole sides for something of a given shape, which by itself would have the size `natural`.
+fn sides(given: Option<Sides>, natural: DVec2) -> (u32, u32) {
+    let whole = |side: f64| side.round().clamp(1.0, f64::from(u32::MAX)) as u32;
+    let other = |side: u32, ratio: f64| whole(f64::from(side) * ratio);
+    match given.map(|s| (s.width, s.height)) {
+        Some((Some(width), Some(height))) => (width, height),
+        Some((Some(width), None)) => (width, other(width, natural.y / natural.x)),
+        Some((None, Some(height))) => (other(height, natural.x / natural.y), height),
+        _ => (whole(natural.x.ceil()), whole(natural.y.ceil())),
+    }
+}
+
+/// The rectangle of a viewport as a path.
+fn frame(viewport: &Viewport) -> durer::curve::Path {
+    let p = viewport.pixels();
+    let (x, y) = (f64::from(p.x0()), f64::from(p.y0()));
+    durer::curve::Path::rectangle(x, y, f64::from(p.width()), f64::from(p.height()))
+}
+
+/// Whether a layer is a file, which has a folder, and not standard input.
+fn has_folder(layer: &Layer) -> bool {
+    !is_stream(&layer.input)
+}

@@ -1,0 +1,54 @@
+//! What `durer draw --json` says.
+
+use serde::Serialize;
+
+/// The whole report.
+#[derive(Debug, Default, Serialize)]
+pub struct Report {
+    /// The version of durer.
+    pub version: &'static str,
+    /// As on the command line.
+    pub output: String,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// From the bottom to the top.
+    pub layers: Vec<LayerReport>,
+    /// What was repaired, replaced or left out.
+    pub warnings: Vec<String>,
+    /// Seconds for reading and decoding.
+    pub read_seconds: f64,
+    /// Seconds for outlines and pixels.
+    pub draw_seconds: f64,
+    /// Seconds for making and writing the PNG.
+    pub encode_seconds: f64,
+    /// From start to end.
+    pub total_seconds: f64,
+    /// The most memory that the process held, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+}
+
+/// One file.
+#[derive(Debug, Default, Serialize)]
+pub struct LayerReport {
+    /// As on the command line.
+    pub input: String,
+    /// The format found.
+    pub format: &'static str,
+    /// Of a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub map: Option<MapCounts>,
+}
+
+/// What was drawn of a layer of a map: parts that touch the window.
+#[derive(Debug, Default, Clone, Copy, Serialize)]
+pub struct MapCounts {
+    pub features: u64,
+    pub points: u64,
+    pub lines: u64,
+    pub polygons: u64,
+    pub labels: u64,
+    /// Labels that found no room.
+    pub labels_left_out: u64,
+}

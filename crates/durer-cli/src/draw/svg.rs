@@ -1,0 +1,65 @@
+//! A drawing in SVG.
+
+use super::layers::Style;
+use super::{Given, Job, fonts, frame, has_folder, sides};
+use crate::failure::Failure;
+use crate::input::display_name;
+use crate::resources::Folder;
+use durer::math::{DAffine2, DVec2, Rect};
+use durer::raster::coverage::FillRule;
+use durer::raster::paint::Canvas;
+use durer::view::window::{Aspect, Window, WindowToViewport, YAxis};
+use durer_formats::svg::{Drawing, ReadOptions};
+use durer_formats::{Limits, NoResources};
+use std::time::Instant;
+
+impl Job<'_> {
+    /// Everything that the drawing wants painted.
+    pub(super) fn drawing(&mut self, given: &Given<'_>) -> Result<Canvas, Failure> {
+        let name = display_name(&given.layer.input);
+        let fail = |what: String| Failure::Data(format!("{name}: {what}"));
+        if given.layer.styled || given.layer.style != Style::default() {
+            let message = "--fill, --stroke and other styles are for map data; an SVG has its own";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        let start = Instant::now();
+        let fonts = fonts::load(&self.args.fonts)?;
+        let folder = Folder::of(&given.layer.input).ok().filter(|_| has_folder(given.layer));
+        let limits = Limits { decoded_bytes: self.args.max_bytes, ..Limits::default() };
+        let mut options = ReadOptions { fonts: &fonts, resources: &NoResources, limits };
+        if let Some(folder) = &folder {
+            options.resources = folder;
+        }
+        self.messages.progress.stage(|| format!("reading {name}"));
+        let drawing = Drawing::read(&given.bytes, &options).map_err(|e| fail(e.to_string()))?;
+        self.report.read_seconds += start.elapsed().as_secs_f64();
+        self.warn(&name, drawing.warnings());
+
+        self.messages.progress.stage(|| format!("drawing {name}"));
+        let picture = &self.args.picture;
+        let whole = Rect::new(DVec2::ZERO, drawing.size()).map_err(|e| fail(e.to_string()))?;
+        let shown = picture.window.unwrap_or(whole);
+        let size = sides(picture.size, shown.size());
+        let mut canvas = self.canvas(size, [0; 4])?;
+        let viewport = self.viewport(size)?;
+        let (lo, hi) = (shown.min(), shown.max());
+        let window =
+            Window::new(lo.x, hi.x, lo.y, hi.y).map_err(|e| Failure::Usage(e.to_string()))?;
+        // Rows grow with the drawing's y.
+        let map = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Up);
+        let [a, b, c, d] = map.coefficients();
+        let pixel_from_drawing =
+            DAffine2::from_cols(DVec2::new(a, 0.0), DVec2::new(0.0, c), DVec2::new(b, d));
+        canvas.push_clip(&frame(&viewport), FillRule::NonZero);
+        if picture.window.is_none() {
+            // Nothing is seen beyond the drawing's own frame.
+            canvas.set_transform(pixel_from_drawing);
+            let size = drawing.size();
+            let own = durer::curve::Path::rectangle(0.0, 0.0, size.x, size.y);
+            canvas.push_clip(&own, FillRule::NonZero);
+        }
+        let warnings = drawing.draw(&mut canvas, pixel_from_drawing);
+        self.warn(&name, &warnings);
+        Ok(canvas)
+    }
+}

@@ -1,0 +1,209 @@
+//! What can be said of drawings.
+
+use crate::values;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
+use durer::paper::{self, Page, Pens, Scale};
+use durer::pipeline::{DrawStyle, line_classes};
+use durer::visibility::line::ClassSet;
+use durer::visibility::region;
+
+/// Exact drawings: lines and areas, as vectors or painted.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Drawing")]
+pub struct DrawingArgs {
+    /// What a drawing shows [default for vector files: hidden-line]
+    #[arg(long, value_name = "STYLE", value_parser = style())]
+    pub style: Option<DrawStyle>,
+    /// What becomes of hidden lines
+    #[arg(long, value_name = "HOW", default_value = "drop")]
+    pub hidden: Hidden,
+    /// Edges whose faces turn by more degrees are drawn as creases
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
+    pub crease: f64,
+    /// Which lines are drawn, joined by commas [default: all but wire and shadow]
+    ///
+    /// silhouette, crease, border, non-manifold, material, intersection, section, shadow, wire; `all` is
+    /// all but the last two.
+    #[arg(long, value_name = "CLASSES", value_parser = |s: &str| line_classes(s).map_err(|e| e.to_string()))]
+    pub lines: Option<ClassSet>,
+    /// Widths of strokes in millimetres: WIDTH[,CLASS=WIDTH…]
+    ///
+    /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first is for all that are not named. Classes are those
+    /// of --lines, and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines 0.25 wide.
+    #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
+    pub pen: Option<Pens>,
+    /// Whether areas are hatched instead of filled [default: shade for .hpgl, else none]
+    #[arg(long, value_name = "HOW")]
+    pub hatch: Option<Hatch>,
+    /// Which neighbouring areas become one [default: shade; face for .geojson]
+    #[arg(long, value_name = "HOW")]
+    pub merge: Option<Merge>,
+    /// Put lines in an order with short ways for a pen
+    #[arg(long)]
+    pub pen_order: bool,
+    /// The paper: A0 … A6, letter, legal, tabloid, WxH in millimetres, or fit [default: fit]
+    ///
+    /// Named sizes are turned as the drawing needs; A4-landscape and A4-portrait are not.
+    #[arg(long, value_name = "PAGE", value_parser = parsed::<Page>)]
+    pub page: Option<Page>,
+    /// Free space at each side of the paper, in millimetres [default: 10 with --page or --sheet, else 5]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = values::not_negative)]
+    pub margin: Option<f64>,
+    /// How large things are on the paper: 1:10, 2:1, …, or auto
+    ///
+    /// `auto` takes the largest of 1:1, 1:2, 1:5, 1:10 … and 2:1, 5:1, 10:1 … that fits, and is the default
+    /// for parallel views with --page or --sheet; otherwise the paper is filled.
+    #[arg(long, value_name = "SCALE", value_parser = parsed::<Scale>)]
+    pub scale: Option<Scale>,
+    /// What a unit of the model is [default: m for glTF, else mm]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
+    /// Four views on one page with a title block
+    #[arg(long, value_name = "KIND")]
+    pub sheet: Option<SheetKind>,
+    /// What the title says [default: the model's name]
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
+    /// A date for the title block; there is none where it is not given
+    #[arg(long, value_name = "TEXT", requires = "sheet")]
+    pub date: Option<String>,
+}
+
+/// The options above by name, for those that mean nothing without a drawing.
+pub const NAMES: &[&str] = &[
+    "hidden",
+    "crease",
+    "lines",
+    "pen",
+    "hatch",
+    "merge",
+    "pen_order",
+    "page",
+    "margin",
+    "scale",
+    "unit",
+    "title",
+];
+
+fn style() -> impl TypedValueParser<Value = DrawStyle> {
+    let help = |style: DrawStyle| match style {
+        DrawStyle::HiddenLine => "The edges that can be seen, and those that cannot, told apart",
+        DrawStyle::Wireframe => "All edges, whatever lies in front",
+        DrawStyle::Regions => "The visible parts of surfaces in flat colours",
+        DrawStyle::RegionsAndLines => "The same with lines on top",
+        DrawStyle::Shadows => "The same with exact shadows",
+    };
+    let names = DrawStyle::ALL.iter().map(|s| PossibleValue::new(s.name()).help(help(*s)));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<DrawStyle>())
+}
+
+fn parsed<T: std::str::FromStr<Err = durer::Error>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|e: durer::Error| e.to_string())
+}
+
+fn crease(text: &str) -> Result<f64, String> {
+    let inside = |n: &f64| (0.0..=180.0).contains(n);
+    values::number(text)
+        .and_then(|n| Some(n).filter(inside).ok_or("it must lie between 0 and 180 degrees".into()))
+}
+
+/// `--hidden`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Hidden {
+    /// They are left out
+    Drop,
+    /// Dashed, in layers of their own
+    Dashed,
+    /// Thin and grey, in layers by the number of surfaces in front of them
+    Layer,
+}
+
+/// `--hatch`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Hatch {
+    /// Lines, the closer the darker
+    Shade,
+    /// Areas are filled
+    None,
+}
+
+/// `--merge`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Merge {
+    /// None: each area shows one face
+    Face,
+    /// Those of one material and shade
+    Shade,
+    /// Those of one material
+    Material,
+    /// Those of one part
+    Part,
+}
+
+/// `--unit`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Unit {
+    /// Millimetres
+    Mm,
+    /// Centimetres
+    Cm,
+    /// Metres
+    M,
+    /// Inches
+    In,
+    /// Feet
+    Ft,
+}
+
+/// `--sheet`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SheetKind {
+    /// Front, top, right and isometric view
+    ThirdAngle,
+}
+
+impl Unit {
+    /// Its length in millimetres.
+    pub const fn millimetres(self) -> f64 {
+        match self {
+            Self::Mm => 1.0,
+            Self::Cm => 10.0,
+            Self::M => 1000.0,
+            Self::In => 25.4,
+            Self::Ft => 304.8,
+        }
+    }
+
+    /// As on drawings.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mm => "mm",
+            Self::Cm => "cm",
+            Self::M => "m",
+            Self::In => "in",
+            Self::Ft => "ft",
+        }
+    }
+}
+
+impl From<Hidden> for paper::Hidden {
+    fn from(hidden: Hidden) -> Self {
+        match hidden {
+            Hidden::Drop => Self::Drop,
+            Hidden::Dashed => Self::Dashed,
+            Hidden::Layer => Self::Layer,
+        }
+    }
+}
+
+impl From<Merge> for region::Merge {
+    fn from(merge: Merge) -> Self {
+        match merge {
+            Merge::Face => Self::Face,
+            Merge::Shade => Self::Shade,
+            Merge::Material => Self::Material,
+            Merge::Part => Self::Part,
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! `durer render` to drawings: vector files, and pictures painted from drawings.
+
+pub mod args;
+pub mod report;
+
+use crate::args::RenderArgs;
+use crate::camera::{self, Ortho, Shot};
+use crate::failure::Failure;
+use crate::fit;
+use crate::output::{self, Kind, Target};
+use crate::report::PictureReport;
+use crate::values::Size;
+use args::{Hatch, Hidden, Merge, NAMES, Unit};
+use durer::math::{DVec3, Vec4};
+use durer::paper::{self, Frame, LaidOut, Page, Scale, TitleBlock, Views};
+use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
+use durer::scene::{Camera, Projection, Scene};
+use durer::target::drawing::Drawing;
+use durer::view::projection::NamedView;
+use durer::visibility::line::hidden_line;
+use durer_formats::drawing::DrawingFormat;
+use durer_formats::png;
+use report::DrawingReport;
+use std::time::Instant;
+
+/// Distance of hatching lines in the darkest tone, millimetres.
+const HATCH_SPACING: f64 = 0.7;
+
+/// Free space on paper, millimetres: on pages, and around drawings without one.
+const PAGE_MARGIN: f64 = 10.0;
+const MARGIN: f64 = 5.0;
+
+/// The longer side of the paper behind a painted picture, millimetres: pens are as wide in it as on a
+/// sheet of this size.
+const PAINTED_SIDE: f64 = 190.0;
+
+/// Options that are about pixels, and what to use for drawings.
+const OF_PIXELS: &[(&str, &str)] = &[
+    ("algorithm", "it finds the surfaces of pixels; --style says what a drawing shows"),
+    ("aa", "vectors have no samples; leave it out, or write a .png"),
+    ("shading", "areas of drawings have one colour each; leave it out, and give lights by --light"),
+    ("shadows", "--style shadows draws them exactly"),
+    ("shadow_map", "--style shadows draws shadows exactly, without a map"),
+    ("bounces", "drawings show no reflections; leave it out"),
+    ("viewports", "use --sheet third-angle, or a file for each --view"),
+    ("item", "areas of a .geojson with --style regions have the property `item`"),
+    ("depth", "write it beside a .png without --style"),
+    ("normal", "write it beside a .png without --style"),
+];
+
+/// Options that are about pixels but go with painted drawings too.
+const OF_PICTURES: &[(&str, &str)] = &[
+    ("size", "a vector file has millimetres; use --page, e.g. --page 200x150"),
+    ("compression", "it is for .png files; leave it out"),
+];
+
+/// Whether the options ask for a drawing, rather than for pixels of surfaces.
+pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
+    kind != Kind::Png || args.drawing.style.is_some() || args.drawing.sheet.is_some()
+}
+
+/// What the parser does not know to be wrong.
+pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
+    let given = |id: &str| args.given.iter().any(|g| g == id);
+    let option = |id: &str| id.replace('_', "-");
+    if !is_wanted(args, kind) {
+        return match NAMES.iter().find(|id| given(id)) {
+            Some(id) => Err(Failure::Usage(format!(
+                "--{}: it is for drawings; write a .svg, .pdf, .dxf, .hpgl or .geojson, or give \
+                 --style, e.g. --style hidden-line",
+                option(id)
+            ))),
+            None => Ok(()),
+        };
+    }
+    let vector = kind != Kind::Png;
+    let wrong = OF_PIXELS.iter().chain(OF_PICTURES.iter().filter(|_| vector));
+    for (id, instead) in wrong {
+        if given(id) {
+            let what = if vector { "a vector drawing" } else { "a drawing" };
+            return Err(Failure::Usage(format!("--{} is not for {what}: {instead}", option(id))));
+        }
+    }
+    background(args, kind)?;
+    if args.drawing.sheet.is_none() {
+        return Ok(());
+    }
+    if kind == Kind::Drawing(DrawingFormat::GeoJson) {
+        let message = "--sheet: GeoJSON has no paper; write a file for each --view";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let views = [
+        "view",
+        "azimuth",
+        "elevation",
+        "eye",
+        "target",
+        "up",
+        "fov",
+        "ortho",
+        "camera",
+        "turntable",
+    ];
+    match views.iter().find(|id| given(id)) {
+        Some(id) => Err(Failure::Usage(format!(
+            "--{id}: --sheet third-angle has its own four views; leave one of the two out"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// What the paper is filled with. Vector files stay blank unless a colour is asked for.
+fn background(args: &RenderArgs, kind: Kind) -> Result<Option<[u8; 4]>, Failure> {
+    let asked = args.given.iter().any(|g| g == "background");
+    match args.picture.background {
+        _ if !asked && kind != Kind::Png => Ok(None),
+        Background::Color(color) if color.w == 0.0 => Ok(None),
+        Background::Color(color) => Ok(Some(bytes(color))),
+        _ => {
+            let message = "--background: drawings have one colour behind them, no gradient";
+            Err(Failure::Usage(message.to_owned()))
+        }
+    }
+}
+
+fn bytes(color: Vec4) -> [u8; 4] {
+    color.to_array().map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
+}
+
+/// A model with what its drawing's title block says.
+pub struct Subject<'a> {
+    /// What is drawn.
+    pub scene: &'a Scene,
+    /// The model's name without folder and suffix.
+    pub name: &'a str,
+    /// The format found.
+    pub format: &'a str,
+}
+
+/// Draws one picture of a model and writes its file.
+pub fn render(
+    args: &RenderArgs,
+    subject: &Subject,
+    frame: Option<u32>,
+    target: &Target,
+    kind: Kind,
+) -> Result<PictureReport, Failure> {
+    let start = Instant::now();
+    let style = args.drawing.style.unwrap_or_default();
+    let cameras = match args.drawing.sheet {
+        Some(_) => sheet_cameras(subject.scene).to_vec(),
+        None => vec![single_camera(args, subject.scene, frame)?],
+    };
+    let mut drawings = Vec::new();
+    for camera in cameras {
+        let options = draw_options(args, kind, style, camera);
+        let drawing =
+            pipeline::draw(subject.scene, &options).map_err(|e| Failure::Usage(e.to_string()))?;
+        drawings.push(drawing);
+    }
+    let geometry_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let mut laid = lay_out(args, kind, subject, frame, &drawings)?;
+    let hatch = args.drawing.hatch.unwrap_or(match kind {
+        Kind::Drawing(DrawingFormat::Hpgl) => Hatch::Shade,
+        _ => Hatch::None,
+    });
+    if hatch == Hatch::Shade && style.has_regions() {
+        // The paper's scale says how far apart lines are in the model.
+        let spacing = HATCH_SPACING / (laid.scale * unit(args, subject).millimetres());
+        drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
+        laid = lay_out(args, kind, subject, frame, &drawings)?;
+    }
+    let mut report = PictureReport { geometry_seconds, ..PictureReport::default() };
+    report.triangles.given = subject.scene.triangle_count();
+    let all: Vec<&Drawing> = drawings.iter().collect();
+    report.drawing = Some(DrawingReport::new(style.name(), &all, &laid));
+    write(args, kind, target, &laid, &drawings, &mut report, start)?;
+    report.files = vec![target.to_string()];
+    Ok(report)
+}
+
+fn write(
+    args: &RenderArgs,
+    kind: Kind,
+    target: &Target,
+    laid: &LaidOut,
+    drawings: &[Drawing],
+    report: &mut PictureReport,
+    start: Instant,
+) -> Result<(), Failure> {
+    match kind {
+        Kind::Png => {
+            let Size { width, height } = args.picture.size;
+            (report.width, report.height) = (width, height);
+            let beside = background(args, kind)?.unwrap_or([0; 4]);
+            let pixels = paper::paint(&laid.sheet, width, height, beside)
+                .map_err(|e| Failure::Usage(e.to_string()))?;
+            report.raster_seconds = start.elapsed().as_secs_f64();
+            let start = Instant::now();
+            let compression = args.picture.compression.into();
+            output::deliver(target, |out| png::write_color(out, &pixels, compression))?;
+            report.encode_seconds = start.elapsed().as_secs_f64();
+        }
+        Kind::Drawing(format) => {
+            report.raster_seconds = start.elapsed().as_secs_f64();
+            let start = Instant::now();
+            let empty = Drawing::default();
+            let drawing = drawings.first().unwrap_or(&empty);
+            output::deliver(target, |out| {
+                durer_formats::drawing::write(out, format, &laid.sheet, drawing)
+            })?;
+            report.encode_seconds = start.elapsed().as_secs_f64();
+        }
+    }
+    Ok(())
+}
+
+fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera) -> DrawOptions {
+    let drawing = &args.drawing;
+    let lighting = match &args.look.light[..] {
+        [] => Lighting::Auto,
+        lights => Lighting::Given(lights.to_vec()),
+    };
+    let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
+    let merge = drawing.merge.unwrap_or(if geojson { Merge::Face } else { Merge::Shade });
+    let viewed = matches!(kind, Kind::Png | Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
+    let default = hidden_line::Options::default();
+    DrawOptions {
+        style,
+        camera,
+        aspect: aspect(args),
+        lines: hidden_line::Options {
+            classes: drawing.lines.unwrap_or(default.classes),
+            crease: drawing.crease.to_radians(),
+            // Programs get all there is; on paper hidden lines may be left out from the start.
+            hidden: drawing.hidden != Hidden::Drop || geojson,
+            pen_order: drawing.pen_order,
+            ..default
+        },
+        lighting,
+        cull: args.look.cull.into(),
+        merge: merge.into(),
+        trapped: viewed && drawing.hatch != Some(Hatch::Shade),
+    }
+}
+
+/// Width over height of what the camera sees: the picture's, or the page's where it is certain.
+fn aspect(args: &RenderArgs) -> f64 {
+    let Size { width, height } = size(args);
+    (f64::from(width) / f64::from(height)).clamp(1e-3, 1e3)
+}
+
+/// The size that cameras are fitted to; in units of a tenth of a millimetre for pages.
+fn size(args: &RenderArgs) -> Size {
+    match args.drawing.page {
+        Some(Page::Exact(page)) => {
+            let side = |s: f64| ((s * 10.0).round() as u32).max(1);
+            Size { width: side(page.x), height: side(page.y) }
+        }
+        _ => args.picture.size,
+    }
+}
+
+/// The camera of the view options. Fitted views are parallel unless an angle of view is given: that
+/// is what drawings are measured in.
+fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result<Camera, Failure> {
+    let mut view = args.view.clone();
+    let fitted = view.eye.is_none() && view.camera.is_none();
+    if fitted && view.fov.is_none() && view.ortho.is_none() {
+        view.ortho = Some(Ortho::Fit);
+    }
+    let shot = Shot { view: None, size: size(args), turn: frame.zip(args.picture.turntable) };
+    camera::camera(&view, scene, &shot)
+}
+
+/// Front, top, right, isometric: parallel, with one target, so that the views are aligned.
+fn sheet_cameras(scene: &Scene) -> [Camera; 4] {
+    let sphere = scene.bounding_sphere();
+    let target = fit::center(scene).or(sphere.map(|s| s.center)).unwrap_or(DVec3::ZERO);
+    let radius = sphere.map_or(1.0, |s| s.radius).max(target.abs().max_element() * 1e-9).max(1e-30);
+    let reach = radius * 2.5;
+    [NamedView::Front, NamedView::Top, NamedView::Right, NamedView::Iso].map(|view| {
+        let direction = view.direction(scene.up_axis);
+        Camera {
+            eye: target + direction.to_eye() * reach,
+            target,
+            up: direction.up(),
+            projection: Projection::Orthographic { height: 2.0 * radius * 1.05 },
+            near: reach - 1.2 * radius,
+            far: reach + 1.2 * radius,
+        }
+    })
+}
+
+fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
+    let metres = subject.format.to_ascii_lowercase().contains("gl");
+    args.drawing.unit.unwrap_or(if metres { Unit::M } else { Unit::Mm })
+}
+
+fn lay_out(
+    args: &RenderArgs,
+    kind: Kind,
+    subject: &Subject,
+    frame: Option<u32>,
+    drawings: &[Drawing],
+) -> Result<LaidOut, Failure> {
+    let options = paper_options(args, kind, subject, frame)?;
+    let name = args.drawing.title.clone().unwrap_or_else(|| subject.name.to_owned());
+    let laid = match drawings {
+        [front, top, right, iso] => {
+            let title = TitleBlock {
+                name,
+                unit: unit(args, subject).name().to_owned(),
+                date: args.drawing.date.clone(),
+            };
+            paper::third_angle(&Views { front, top, right, iso }, &title, &options)
+        }
+        [drawing, ..] => paper::lay_out(drawing, &name, &options),
+        [] => paper::lay_out(&Drawing::default(), &name, &options),
+    };
+    laid.map_err(|e| Failure::Usage(format!("--{e}")))
+}
+
+fn paper_options(
+    args: &RenderArgs,
+    kind: Kind,
+    subject: &Subject,
+    frame: Option<u32>,
+) -> Result<paper::Options, Failure> {
+    let drawing = &args.drawing;
+    let view = &args.view;
+    // Whoever says where the eye is, or how high the view, wants to see just that; so do frames of a
+    // turntable, which have to fit each other.
+    let placed =
+        view.eye.is_some() || view.camera.is_some() || matches!(view.ortho, Some(Ortho::Height(_)));
+    let window = drawing.sheet.is_none() && (placed || frame.is_some() || kind == Kind::Png);
+    let page = drawing.page.unwrap_or_else(|| match kind {
+        Kind::Png if drawing.sheet.is_none() && drawing.scale.is_none() => {
+            let Size { width, height } = args.picture.size;
+            let size = durer::math::DVec2::new(f64::from(width), f64::from(height));
+            Page::Exact(size * (PAINTED_SIDE / size.max_element()))
+        }
+        _ => Page::Fit,
+    });
+    let on_page = drawing.page.is_some() || drawing.sheet.is_some();
+    let parallel = view.fov.is_none() && view.eye.is_none() && view.camera.is_none();
+    let scale = if on_page && parallel { Scale::Standard } else { Scale::Fit };
+    // A painted window fills the picture, as pixels of surfaces do.
+    let filled = kind == Kind::Png && window && drawing.page.is_none();
+    let margin = if on_page {
+        PAGE_MARGIN
+    } else if filled {
+        0.0
+    } else {
+        MARGIN
+    };
+    Ok(paper::Options {
+        page,
+        margin: drawing.margin.unwrap_or(margin),
+        scale: drawing.scale.unwrap_or(scale),
+        unit: unit(args, subject).millimetres(),
+        frame: if window { Frame::Window } else { Frame::Content },
+        hidden: drawing.hidden.into(),
+        pens: drawing.pen.unwrap_or_default(),
+        background: background(args, kind)?,
+    })
+}

@@ -1,0 +1,86 @@
+//! What `--json` says of a drawing.
+
+use durer::paper::{LaidOut, scale_text};
+use durer::target::drawing::{Drawing, Line, LineClass};
+use serde::Serialize;
+
+/// A drawing's counts and lengths.
+#[derive(Debug, Serialize)]
+pub struct DrawingReport {
+    /// What it shows.
+    pub style: &'static str,
+    /// Width and height of the paper, millimetres.
+    pub page: [f64; 2],
+    /// Length on paper over true length, as a ratio and in words.
+    pub scale: f64,
+    /// E.g. `1:10`.
+    pub scale_text: String,
+    /// Filled areas.
+    pub regions: usize,
+    /// Their area, squared model units on the picture plane.
+    pub region_area: f64,
+    /// Lines by class, those that have some.
+    pub lines: Vec<ClassReport>,
+}
+
+/// The lines of one class.
+#[derive(Debug, Serialize)]
+pub struct ClassReport {
+    /// Its name.
+    pub class: &'static str,
+    /// Those with nothing in front of them.
+    pub visible: LineReport,
+    /// Those with something in front of them.
+    pub hidden: LineReport,
+}
+
+/// Lines of a kind.
+#[derive(Debug, Default, Serialize)]
+pub struct LineReport {
+    /// Chains.
+    pub polylines: usize,
+    /// Their points.
+    pub points: usize,
+    /// Their length, model units on the picture plane.
+    pub length: f64,
+}
+
+impl DrawingReport {
+    /// The report on what was drawn, over all views.
+    pub fn new(style: &'static str, drawings: &[&Drawing], laid: &LaidOut) -> Self {
+        let regions = || drawings.iter().flat_map(|d| &d.regions);
+        let lines = |class: LineClass, visible: bool| {
+            let all = drawings.iter().flat_map(|d| &d.lines);
+            of(all.filter(|l| l.class == class && l.is_visible() == visible))
+        };
+        let class = |&class: &LineClass| {
+            let (visible, hidden) = (lines(class, true), lines(class, false));
+            let some = visible.polylines + hidden.polylines > 0;
+            some.then_some(ClassReport { class: class.name(), visible, hidden })
+        };
+        Self {
+            style,
+            page: laid.sheet.size.to_array(),
+            scale: laid.scale,
+            scale_text: scale_text(laid.scale),
+            regions: regions().count(),
+            region_area: regions().map(|r| r.area()).sum(),
+            lines: LineClass::ALL.iter().filter_map(class).collect(),
+        }
+    }
+
+    /// In a few words, for `--verbose`.
+    pub fn summary(&self) -> String {
+        let polylines: usize =
+            self.lines.iter().map(|c| c.visible.polylines + c.hidden.polylines).sum();
+        format!("{polylines} polylines, {} regions, scale {}", self.regions, self.scale_text)
+    }
+}
+
+fn of<'a>(lines: impl Iterator<Item = &'a Line>) -> LineReport {
+    lines.fold(LineReport::default(), |sum, line| LineReport {
+        polylines: sum.polylines + 1,
+        points: sum.points + line.points.len(),
+        length: sum.length + line.length(),
+    })
+}

@@ -1,0 +1,199 @@
+//! `durer fill`.
+
+use crate::args::{Compression, RunningArgs};
+use crate::failure::Failure;
+use crate::input::{self, display_name};
+use crate::messages::Messages;
+use crate::output::{self, Name, Target};
+use crate::{color, report, values};
+use clap::{Args, ValueEnum, ValueHint};
+use durer::math::DVec2;
+use durer::raster::seed_fill::{self, SeedFill, boundary_fill, flood_fill};
+use durer::target::Pixels;
+use durer::trace::NoTrace;
+use durer_formats::{Limits, image, png};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+pub const EXAMPLES: &str = "\
+Examples:
+  durer fill plan.png -o plan.png --at 120,80 --color '#ffd9a0'
+  durer fill photo.jpg -o sky.png --at 400,30 --color transparent --tolerance 24
+  durer fill map.png -o map2.png --at 10,10 --at 300,200 --color lightgray --connectivity 8
+  durer fill ink.png -o red.png --at 64,64 --color red --boundary black --tolerance 100
+
+A pixel is as different from another as the channel (red, green, blue, alpha) that differs most.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer fill`.
+#[derive(Debug, Args)]
+pub struct FillArgs {
+    /// A PNG or JPEG; `-` reads standard input
+    #[arg(value_name = "IMAGE", value_hint = ValueHint::FilePath)]
+    pub image: PathBuf,
+    /// Where the picture goes
+    ///
+    /// A .png file, or `-` for standard output. A file is replaced only by a whole picture.
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub output: PathBuf,
+    /// A pixel to start from, counted from 0 at the upper left; may be given several times
+    ///
+    /// The fills are done one after the other, each on what the one before has left.
+    #[arg(long, value_name = "X,Y", required = true, allow_hyphen_values = true, value_parser = values::point)]
+    pub at: Vec<DVec2>,
+    /// The colour that filled pixels get, also one that is not opaque
+    #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
+    pub color: [u8; 4],
+    /// How much a pixel may differ from the one started from (with --boundary: from the boundary's
+    /// colour) in any channel, 0 to 255
+    #[arg(long, value_name = "T", default_value = "0", allow_hyphen_values = true)]
+    pub tolerance: u8,
+    /// Whether pixels that touch at corners are neighbours
+    #[arg(long, value_name = "N", default_value = "4")]
+    pub connectivity: Connectivity,
+    /// Fill up to this colour, whatever is inside [default: fill what is like the first pixel]
+    #[arg(long, value_name = "COLOR", value_parser = color::bytes)]
+    pub boundary: Option<[u8; 4]>,
+    /// The algorithm; all fill the same pixels
+    #[arg(long, value_name = "NAME", default_value = "spans", value_parser = method)]
+    pub algorithm: SeedFill,
+    /// How small the PNG is to be: `fast` or `small`
+    #[arg(long, value_name = "HOW", default_value = "fast")]
+    pub compression: Compression,
+    /// Refuse images that are, or unpack to, more bytes; k, M, G are understood
+    #[arg(long, value_name = "BYTES", allow_hyphen_values = true, default_value = "4G", value_parser = values::bytes)]
+    pub max_bytes: u64,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+    /// Write a report on standard output, in JSON: how many pixels each fill reached
+    #[arg(long, help_heading = "Running")]
+    pub json: bool,
+}
+
+/// `--connectivity`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Connectivity {
+    /// No
+    #[value(name = "4")]
+    Four,
+    /// Yes
+    #[value(name = "8")]
+    Eight,
+}
+
+fn method(name: &str) -> Result<SeedFill, String> {
+    let names: Vec<&str> = SeedFill::ALL.iter().map(|m| m.name()).collect();
+    name.parse().map_err(|_| format!("it must be one of {}", names.join(", ")))
+}
+
+/// What `--json` says.
+#[derive(Debug, Serialize)]
+struct Report {
+    version: &'static str,
+    input: String,
+    output: String,
+    width: u32,
+    height: u32,
+    fills: Vec<Fill>,
+    fill_seconds: f64,
+    total_seconds: f64,
+    peak_memory_bytes: Option<u64>,
+}
+
+/// One fill.
+#[derive(Debug, Serialize)]
+struct Fill {
+    x: u32,
+    y: u32,
+    /// How many pixels it reached.
+    pixels: u64,
+}
+
+/// Fills a picture.
+pub fn run(args: &FillArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    let names: Vec<Name> = output::stems(std::slice::from_ref(&args.image))
+        .into_iter()
+        .map(|stem| Name { stem, frame: None })
+        .collect();
+    let target =
+        output::plan("--output", &args.output, &names, output::Kind::Png)?.into_iter().next();
+    let target = target.ok_or_else(|| Failure::Usage("nothing to fill".to_owned()))?;
+    if args.json && target == Target::Stdout {
+        let message = "--json: the report goes to standard output, where the picture goes too";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let messages = Messages::new(&args.running, 1);
+    let name = display_name(&args.image);
+    messages.progress.stage(|| format!("reading {name}"));
+    let mut pixels = read(args, &name)?;
+    messages.progress.stage(|| format!("filling {name}"));
+    let filling = Instant::now();
+    let mut fills = Vec::new();
+    for at in &args.at {
+        let (x, y) = place(*at, &pixels)?;
+        fills.push(Fill { x, y, pixels: fill(args, &mut pixels, (x, y)) });
+    }
+    let fill_seconds = filling.elapsed().as_secs_f64();
+    messages.progress.stage(|| format!("writing {target}"));
+    let compression = args.compression.into();
+    output::deliver(&target, |out| png::write_color(out, &pixels, compression))?;
+    for Fill { x, y, pixels } in &fills {
+        messages.detail(|| format!("{name}: {pixels} pixels from {x},{y}"));
+    }
+    drop(messages);
+    if !args.json {
+        return Ok(());
+    }
+    report::print(&Report {
+        version: env!("CARGO_PKG_VERSION"),
+        input: name,
+        output: target.to_string(),
+        width: pixels.width(),
+        height: pixels.height(),
+        fills,
+        fill_seconds,
+        total_seconds: start.elapsed().as_secs_f64(),
+        peak_memory_bytes: report::peak_memory(),
+    })
+}
+
+fn read(args: &FillArgs, name: &str) -> Result<Pixels<[u8; 4]>, Failure> {
+    let fail = |what: String| Failure::Data(format!("{name}: {what}"));
+    let bytes = input::bytes(&args.image, args.max_bytes)?;
+    let limits =
+        Limits { decoded_bytes: args.max_bytes, image_side: u16::MAX.into(), ..Limits::default() };
+    let image = image::decode(&bytes, name, &limits).map_err(|e| fail(e.to_string()))?;
+    Pixels::from_data(image.width, image.height, image.data).map_err(|e| fail(e.to_string()))
+}
+
+/// The pixel in which a point lies.
+fn place(at: DVec2, pixels: &Pixels<[u8; 4]>) -> Result<(u32, u32), Failure> {
+    let (width, height) = (pixels.width(), pixels.height());
+    let inside = |v: f64, side: u32| v >= 0.0 && v < f64::from(side);
+    if inside(at.x, width) && inside(at.y, height) {
+        Ok((at.x as u32, at.y as u32))
+    } else {
+        let message = format!("--at {},{}: outside the image of {width}x{height}", at.x, at.y);
+        Err(Failure::Usage(message))
+    }
+}
+
+fn fill(args: &FillArgs, pixels: &mut Pixels<[u8; 4]>, seed: (u32, u32)) -> u64 {
+    let connectivity = match args.connectivity {
+        Connectivity::Four => seed_fill::Connectivity::Four,
+        Connectivity::Eight => seed_fill::Connectivity::Eight,
+    };
+    let options = seed_fill::Options { connectivity };
+    let (color, tolerance, method) = (args.color, args.tolerance, args.algorithm);
+    match args.boundary {
+        Some(boundary) => {
+            let t = &mut NoTrace;
+            boundary_fill(pixels, seed, color, boundary, tolerance, method, &options, t)
+        }
+        None => flood_fill(pixels, seed, color, tolerance, method, &options, &mut NoTrace),
+    }
+}

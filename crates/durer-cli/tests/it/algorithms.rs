@@ -1,0 +1,149 @@
+//! Algorithms, shadows, mirrors, and pictures from pictures.
+
+use crate::harness::{Folder, Picture};
+
+/// A red pane before a blue one that blends, as OBJ with its materials.
+fn write_glass(folder: &Folder) {
+    folder.write(
+        "glass.obj",
+        "mtllib glass.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\n\
+         usemtl red\nf 1 2 3\nusemtl blue\nf 4 5 6\n",
+    );
+    folder.write("glass.mtl", "newmtl red\nKd 1 0 0\nd 0.5\nnewmtl blue\nKd 0 0 1\n");
+}
+
+#[test]
+fn a_sheet_of_all_algorithms_has_no_differences() {
+    let folder = Folder::with_models();
+    let ended = folder.must("render cube.obj -o all.png --algorithm all --size 80x60 --json");
+    let report = &ended.json()["models"][0]["pictures"][0];
+    let compared = report["compared"].as_array().unwrap();
+    assert_eq!(compared.len(), 7, "{compared:?}");
+    for c in compared {
+        assert_eq!(c["differing_pixels"], 0, "{c}");
+    }
+    assert_eq!(
+        (&report["algorithm"], &compared[0]["algorithm"]),
+        (&"all".into(), &"z-buffer".into())
+    );
+    let sheet = Picture::decode(&folder.read("all.png"));
+    assert!(sheet.width >= 3 * 80 && sheet.height >= 2 * 60, "{:?}", sheet.size());
+    assert_eq!(report["width"], sheet.width);
+    // Below the first picture there is ink.
+    let dark = (8..88).flat_map(|x| (68..110).map(move |y| (x, y)));
+    assert!(dark.filter(|&(x, y)| sheet.pixel(x, y)[0] < 80).count() > 60);
+}
+
+#[test]
+fn a_scene_that_blends_takes_the_a_buffer() {
+    let folder = Folder::with_models();
+    write_glass(&folder);
+    let algorithm = |options: &str| {
+        let ended = folder.must(&format!("render {options} -o a.png --size 32x32 --json"));
+        ended.json()["models"][0]["pictures"][0]["algorithm"].as_str().unwrap().to_owned()
+    };
+    for (options, expected) in [
+        ("cube.obj", "z-buffer"),
+        ("glass.obj", "a-buffer"),
+        ("glass.obj --aa 1", "z-buffer"),
+        ("glass.obj --algorithm z-buffer", "z-buffer"),
+        ("cube.obj --aa 64", "a-buffer"),
+        ("cube.obj --shadows map", "z-buffer"),
+        ("cube.obj --shadows rays", "ray"),
+        ("cube.obj --bounces 2", "ray"),
+        ("cube.obj --algorithm wireframe", "wireframe"),
+    ] {
+        assert_eq!(algorithm(options), expected, "{options}");
+    }
+}
+
+#[test]
+fn blended_surfaces_that_are_shown_as_opaque_are_told() {
+    let folder = Folder::with_models();
+    write_glass(&folder);
+    let told = |options: &str| {
+        let ended = folder.must(&format!("render glass.obj -o a.png --size 16x16 {options}"));
+        ended.err.contains("as if opaque")
+    };
+    for (options, expected) in [
+        ("--algorithm warnock", true),
+        ("--algorithm ray", true),
+        ("--algorithm all", true),
+        ("--algorithm warnock -q", false),
+        ("--algorithm ray --bounces 1", false),
+        ("--algorithm depth-sort", false),
+        ("--algorithm scan-line-z", false),
+        ("", false),
+    ] {
+        assert_eq!(told(options), expected, "{options}");
+    }
+}
+
+#[test]
+fn what_an_algorithm_cannot_do_is_a_usage_error() {
+    let folder = Folder::with_models();
+    for (options, part) in [
+        ("--algorithm warnock --bounces 1", "--bounces"),
+        ("--algorithm z-buffer --shadows rays", "--shadows map"),
+        ("--algorithm warnock --aa 64", "--aa 64"),
+        ("--aa 64 --bounces 1", "--aa 64"),
+        ("--algorithm all --viewports front,top", "--viewports"),
+        ("--algorithm all --item i.png", "--item"),
+        ("--algorithm nonsense", "spanning-scan-line"),
+        ("--bounces 33", "33"),
+    ] {
+        folder.run(&format!("render cube.obj -o a.png {options}")).fails(2, part);
+        assert!(!folder.names().contains(&"a.png".to_owned()), "{options}");
+    }
+}
+
+#[test]
+fn a_warped_picture_is_nearly_the_rendered_one() {
+    let folder = Folder::with_models();
+    let lens = "--target 0,0,0 --fov 30 --near 4 --far 12";
+    let render = |eye: &str, name: &str| {
+        folder.must(&format!(
+            "render cube.obj -o {name}.png --depth {name}_d.png --eye {eye} {lens} --size 100x80 --aa 1 --shading unlit"
+        ));
+    };
+    render("0,3,7", "a");
+    render("0.3,3.1,7", "b");
+    let warp = |more: &str| {
+        folder
+            .must(&format!(
+                "warp a.png a_d.png -o w.png --eye 0,3,7 {lens} --to-eye 0.3,3.1,7 --json {more}"
+            ))
+            .json()
+    };
+    let report = warp("");
+    assert_eq!((&report["width"], &report["filled"]), (&100.into(), &0.into()));
+    let (warped, right) =
+        (Picture::decode(&folder.read("w.png")), Picture::decode(&folder.read("b.png")));
+    let pairs = warped.pixels().zip(right.pixels());
+    let differing = pairs.filter(|(a, b)| a[..3] != b[..3]).count() as u64;
+    let holes = report["holes"].as_u64().unwrap();
+    // What comes into the picture at its border, and from behind the cube; else outlines only.
+    assert!(holes > 0 && holes < 700, "{holes}");
+    assert!(holes <= differing && differing < holes + 100, "{holes} {differing}");
+    // Warped from the very camera, the second picture leaves no hole.
+    let report = warp("--fill b.png b_d.png --fill-eye 0.3,3.1,7");
+    assert_eq!((&report["holes"], &report["filled"]), (&0.into(), &holes.into()));
+}
+
+#[test]
+fn warp_says_what_is_wrong_with_its_input() {
+    let folder = Folder::with_models();
+    folder.must("render cube.obj -o a.png --depth d.png --size 20x20");
+    folder.must("render cube.obj -o b.png --depth e.png --size 21x20");
+    let run = |files: &str, options: &str| {
+        folder.run(&format!(
+            "warp {files} -o w.png --eye 0,0,9 --target 0,0,0 --near 1 --far 20 {options}"
+        ))
+    };
+    run("a.png e.png", "--fov 30 --to-eye 0,0,8").fails(1, "20x20");
+    run("a.png b.png", "--fov 30 --to-eye 0,0,8").fails(1, "16-bit");
+    run("a.png none.png", "--fov 30 --to-eye 0,0,8").fails(1, "none.png");
+    run("a.png d.png", "--fov 30 --to-eye 0,0,0").fails(2, "--to-eye");
+    run("a.png d.png", "--to-eye 0,0,8").fails(2, "--fov");
+    assert!(!folder.names().contains(&"w.png".to_owned()));
+}

@@ -1,0 +1,213 @@
+//! `durer draw`: drawings and maps to pictures.
+
+use crate::harness::{Ended, Folder, Picture};
+use std::io::Write;
+use std::process::Stdio;
+
+const RED_SQUARE: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10">
+<rect width="10" height="10" fill="#f00"/></svg>"##;
+
+/// A square with a hole, a line and a point, in a world of 0 … 100.
+const MAP: &str = r#"{"type":"FeatureCollection","features":[
+{"type":"Feature","properties":{"name":"Ring","n":7},"geometry":{"type":"Polygon","coordinates":[
+ [[10,10],[90,10],[90,90],[10,90],[10,10]],[[40,40],[60,40],[60,60],[40,60],[40,40]]]}},
+{"type":"Feature","properties":{"name":null},"geometry":{"type":"LineString","coordinates":[[0,5],[100,5]]}},
+{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[50,50]}}]}"#;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.svg", RED_SQUARE);
+    folder.write("map.geojson", MAP);
+    folder.write("point.wkt", "POINT (50 50)");
+    folder
+}
+
+fn picture(folder: &Folder, name: &str) -> Picture {
+    Picture::decode(&folder.read(name))
+}
+
+#[test]
+fn a_drawing_has_its_own_size_and_a_transparent_ground() {
+    let folder = folder();
+    folder.must("draw a.svg -o a.png");
+    let found = picture(&folder, "a.png");
+    assert_eq!(found.size(), (20, 10));
+    assert_eq!(found.pixel(9, 5), [255, 0, 0, 255]);
+    assert_eq!(found.pixel(10, 5), [0, 0, 0, 0]);
+}
+
+#[test]
+fn sizes_may_leave_one_side_open() {
+    let folder = folder();
+    for (size, expected) in [("100x", (100, 50)), ("x100", (200, 100)), ("30x30", (30, 30))] {
+        folder.must(&format!("draw a.svg -o a.png --size {size} --background white"));
+        assert_eq!(picture(&folder, "a.png").size(), expected);
+    }
+    // In another shape it stands in the middle.
+    let found = picture(&folder, "a.png");
+    assert_eq!((found.pixel(5, 15), found.pixel(5, 5)), (&[255, 0, 0][..], &[255, 255, 255][..]));
+}
+
+#[test]
+fn windows_and_viewports_choose_the_part_and_its_place() {
+    let folder = folder();
+    folder.must("draw a.svg -o a.png --size 40x40 --window 5,0,15,10 --viewport 20,20,20,20 --background white");
+    let found = picture(&folder, "a.png");
+    assert_eq!(found.pixel(29, 30), [255, 0, 0]);
+    assert_eq!(found.pixel(31, 30), [255, 255, 255]);
+    assert_eq!(found.pixel(10, 10), [255, 255, 255]);
+    folder
+        .run("draw a.svg -o b.png --size 40x40 --viewport 30,30,20,20")
+        .fails(2, "--viewport reaches beyond the picture of 40x40");
+}
+
+#[test]
+fn edges_are_smoothed_or_not() {
+    let folder = folder();
+    folder.write("slope.wkt", "POLYGON ((0 0, 100 0, 100 37))");
+    let grey =
+        |name: &str| picture(&folder, name).pixels().filter(|p| p[0] != 255 && p[0] != 0).count();
+    let style = "draw --fill black --stroke none slope.wkt --size 99x";
+    folder.must(&format!("{style} -o a.png"));
+    folder.must(&format!("{style} -o b.png --aa none"));
+    assert!(grey("a.png") > 20 && grey("b.png") == 0);
+}
+
+#[test]
+fn a_map_has_holes_lines_and_markers() {
+    let folder = folder();
+    let colors = "--fill #00f --stroke #f00 --stroke-width 2 --marker square --marker-size 10";
+    folder.must(&format!("draw {colors} map.geojson -o m.png --size 100x100 --window 0,0,100,100"));
+    let found = picture(&folder, "m.png");
+    let (blue, red, white) = ([0, 0, 255], [255, 0, 0], [255, 255, 255]);
+    assert_eq!(found.pixel(20, 20), blue, "area");
+    assert_eq!(found.pixel(42, 42), white, "hole");
+    assert_eq!(found.pixel(50, 50), blue, "marker");
+    assert_eq!(found.pixel(50, 44), red, "border of the marker");
+    assert_eq!(found.pixel(3, 95), red, "line: y grows upwards");
+    assert_eq!(found.pixel(3, 5), white);
+}
+
+#[test]
+fn each_layer_has_the_style_that_follows_it() {
+    let folder = folder();
+    let at = "--size 100x100 --window 0,0,100,100 -o m.png";
+    folder.must(&format!(
+        "draw --stroke none map.geojson --fill #0a0 point.wkt --fill red --marker-size 30 {at}"
+    ));
+    let found = picture(&folder, "m.png");
+    assert_eq!(found.pixel(20, 20), [0, 170, 0]);
+    assert_eq!(found.pixel(50, 40), [255, 0, 0]);
+    assert_eq!(found.pixel(10, 95), [255, 255, 255], "no stroke for both");
+}
+
+#[test]
+fn labels_are_drawn_once_and_never_overlap() {
+    let folder = folder();
+    let points: Vec<String> = (0..40)
+        .map(|i| format!(r#"{{"type":"Feature","properties":{{"name":"Place {i}"}},"geometry":{{"type":"Point","coordinates":[{},{}]}}}}"#, i % 7, i % 5))
+        .collect();
+    folder.write("many.geojsonl", points.join("\n"));
+    let report = folder.must("draw many.geojsonl --label name -o m.png --size 200x --json").json();
+    let map = &report["layers"][0]["map"];
+    let count = |name: &str| map[name].as_u64().unwrap();
+    assert_eq!((count("features"), count("points")), (40, 40));
+    assert!(count("labels") > 3 && count("labels_left_out") > 3, "{map}");
+    assert_eq!(count("labels") + count("labels_left_out"), 40);
+    folder
+        .run("draw map.geojson --label nom -o m.png")
+        .fails(1, "no feature has this property; there are: n, name");
+    let report = folder.must("draw map.geojson --label n --label-size 40 -o m.png --json").json();
+    assert_eq!(report["layers"][0]["map"]["labels"], 1);
+    let dark = picture(&folder, "m.png").pixels().filter(|p| p[0] < 0x40).count();
+    assert!(dark > 5, "the label is to be seen");
+}
+
+#[test]
+fn threads_change_nothing() {
+    let folder = folder();
+    for threads in [1, 3] {
+        folder.must(&format!("draw map.geojson --label name -o {threads}.png --threads {threads}"));
+    }
+    assert_eq!(folder.read("1.png"), folder.read("3.png"));
+}
+
+#[test]
+fn streams_are_read_and_written() {
+    let folder = folder();
+    let mut command = folder.command("draw - -o - --size 20x");
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(RED_SQUARE.as_bytes()).unwrap();
+    let ended = Ended::of(child.wait_with_output().unwrap());
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    assert_eq!(Picture::decode(&ended.out).pixel(0, 0), [255, 0, 0, 255]);
+    folder.run("draw - - -o a.png").fails(2, "given twice");
+}
+
+#[test]
+fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_told() {
+    let folder = Folder::new();
+    let text = |family: &str| {
+        format!(
+            r##"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="20">
+<text x="2" y="16" font-size="16" font-family="{family}">Ωbß</text></svg>"##
+        )
+    };
+    folder.write("plain.svg", text("sans-serif"));
+    folder.write("other.svg", text("Papyrus"));
+    assert_eq!(folder.must("draw plain.svg -o a.png").err, "");
+    let told = folder.must("draw other.svg -o b.png").err;
+    assert!(told.contains("font `Papyrus` is missing; `DejaVu Sans` is used"), "{told}");
+    assert!(picture(&folder, "a.png").shows_something());
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    folder.run("draw plain.svg -o a.png --font plain.svg").fails(1, "no TrueType or OpenType font");
+    folder.run("draw plain.svg -o a.png --font nowhere").fails(1, "nowhere");
+}
+
+#[test]
+fn what_is_not_drawn_is_named_once() {
+    let folder = Folder::new();
+    folder.write(
+        "a.svg",
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">
+<filter id="f"><feGaussianBlur stdDeviation="2"/></filter>
+<rect width="5" height="5" filter="url(#f)"/><rect width="4" height="4" filter="url(#f)"/>
+<rect width="3" height="3" style="mix-blend-mode:multiply"/><script/>
+<rect width="2" height="2"><animate attributeName="x" to="3"/></rect></svg>"##,
+    );
+    let report = folder.must("draw a.svg -o a.png --json").json();
+    let told = report["warnings"].as_array().unwrap();
+    let named = |part: &str| told.iter().filter(|w| w.as_str().unwrap().contains(part)).count();
+    for part in ["filters are not drawn", "`multiply`", "`script`", "line 5, column", "`animate`"] {
+        assert_eq!(named(part), 1, "{part}: {told:?}");
+    }
+    assert_eq!(told.len(), 4);
+}
+
+#[test]
+fn wrong_use_and_bad_data_are_told() {
+    let folder = folder();
+    folder.write("no.svg", "<svg xmlns='http://www.w3.org/2000/svg'><rect></svg>");
+    folder.write("empty.geojson", r#"{"type":"FeatureCollection","features":[]}"#);
+    folder.write("what.txt", "hello");
+    for (arguments, code, part) in [
+        ("draw a.svg map.geojson -o a.png", 2, "an SVG is drawn alone"),
+        ("draw a.svg --fill red -o a.png", 2, "an SVG has its own"),
+        ("draw a.svg -o a.jpg", 2, "pictures are written as PNG"),
+        ("draw no.svg -o a.png", 1, "no.svg: line 1, column"),
+        ("draw empty.geojson -o a.png", 1, "there is nothing to draw"),
+        ("draw what.txt -o a.png", 1, "not a known format; drawn are SVG"),
+        ("draw a.svg -o a.png --size 40000x1", 2, "32767"),
+        ("draw a.svg -o a.png --size 30000x30000", 2, "--max-pixels raises it"),
+        ("draw a.svg -o - --json", 2, "the report goes to standard output"),
+        ("draw map.geojson -o a.png --window 1,1,1,1", 2, "the window is empty"),
+    ] {
+        folder.run(arguments).fails(code, part);
+    }
+    assert!(!folder.path("a.png").exists());
+}

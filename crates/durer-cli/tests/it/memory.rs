@@ -1,0 +1,97 @@
+//! How much memory a whole run takes, told by Linux; elsewhere the command tells nothing.
+
+use crate::harness::Folder;
+use std::fmt::Write;
+
+/// Squares along a side of a sheet, each of two triangles.
+const SIDE: u32 = 200;
+
+/// What the command takes for itself, whatever the model.
+const OWN: u64 = 16 << 20;
+
+fn height(x: u32, y: u32) -> f32 {
+    (x * 7 % 13) as f32 * 0.1 + (y * 5 % 11) as f32 * 0.1
+}
+
+/// The corners of all squares' triangles.
+fn triangles() -> impl Iterator<Item = [[u32; 2]; 3]> {
+    (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))).flat_map(|(x, y)| {
+        let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
+        [[a, b, c], [a, c, d]]
+    })
+}
+
+fn stl() -> Vec<u8> {
+    let mut file = vec![b' '; 80];
+    file.extend((2 * SIDE * SIDE).to_le_bytes());
+    for triangle in triangles() {
+        file.extend([0; 12]);
+        for [x, y] in triangle {
+            file.extend([x as f32, y as f32, height(x, y)].iter().flat_map(|v| v.to_le_bytes()));
+        }
+        file.extend([0; 2]);
+    }
+    file
+}
+
+fn ascii_stl() -> Vec<u8> {
+    let mut text = String::from("solid sheet\n");
+    for triangle in triangles() {
+        text.push_str("facet normal 0 0 1\nouter loop\n");
+        for [x, y] in triangle {
+            let _ = writeln!(text, "vertex {x} {y} {}", height(x, y));
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    text.push_str("endsolid\n");
+    text.into_bytes()
+}
+
+fn obj() -> Vec<u8> {
+    let mut text = String::new();
+    for (x, y) in (0..=SIDE).flat_map(|y| (0..=SIDE).map(move |x| (x, y))) {
+        let _ = writeln!(text, "v {x} {y} {}", height(x, y));
+    }
+    let number = |[x, y]: [u32; 2]| y * (SIDE + 1) + x + 1;
+    for [a, b, c] in triangles() {
+        let _ = writeln!(text, "f {} {} {}", number(a), number(b), number(c));
+    }
+    text.into_bytes()
+}
+
+fn ply() -> Vec<u8> {
+    let (vertices, faces) = ((SIDE + 1) * (SIDE + 1), 2 * SIDE * SIDE);
+    let mut file = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\nproperty float x\n\
+         property float y\nproperty float z\nelement face {faces}\n\
+         property list uchar uint vertex_indices\nend_header\n"
+    )
+    .into_bytes();
+    for (x, y) in (0..=SIDE).flat_map(|y| (0..=SIDE).map(move |x| (x, y))) {
+        file.extend([x as f32, y as f32, height(x, y)].iter().flat_map(|v| v.to_le_bytes()));
+    }
+    for triangle in triangles() {
+        file.push(3);
+        let number = |[x, y]: [u32; 2]| y * (SIDE + 1) + x;
+        file.extend(triangle.iter().flat_map(|&c| number(c).to_le_bytes()));
+    }
+    file
+}
+
+#[test]
+fn a_run_takes_less_than_eight_times_its_file() {
+    let folder = Folder::new();
+    for (name, file) in
+        [("a.stl", stl()), ("b.stl", ascii_stl()), ("c.obj", obj()), ("d.ply", ply())]
+    {
+        folder.write(name, &file);
+        let arguments = format!("render {name} -o {name}.png --size 64x64 --threads 1 --json");
+        let report = folder.must(&arguments).json();
+        let Some(peak) = report["peak_memory_bytes"].as_u64() else {
+            println!("skipped: the system does not tell the peak of the memory");
+            return;
+        };
+        let most = OWN + 8 * file.len() as u64;
+        assert!(peak < most, "{name} of {} bytes: {peak}, not below {most}", file.len());
+    }
+}

@@ -1,0 +1,268 @@
+//! The tree of a drawing, node by node.
+
+use super::{image, paint};
+use crate::Limits;
+use durer::math::DAffine2;
+use durer::raster::coverage::FillRule;
+use durer::raster::line::wide::{Cap, Join, Stroke};
+use durer::raster::paint::{Canvas, MaskKind, Paint};
+use std::collections::BTreeSet;
+use usvg::{BlendMode, Group, Node};
+
+/// Groups, clip paths, masks, patterns and drawings within images may be nested so deep, all together.
+const MAX_DEPTH: u32 = 200;
+
+/// Paints nodes onto a canvas.
+pub(super) struct Painter<'a> {
+    canvas: &'a mut Canvas,
+    limits: &'a Limits,
+    /// How deep the node at hand is nested.
+    depth: u32,
+    /// Bytes of images that are still allowed.
+    bytes_left: u64,
+    warnings: BTreeSet<String>,
+}
+
+impl<'a> Painter<'a> {
+    pub fn new(canvas: &'a mut Canvas, limits: &'a Limits) -> Self {
+        let bytes_left = limits.decoded_bytes;
+        Self { canvas, limits, depth: 0, bytes_left, warnings: BTreeSet::new() }
+    }
+
+    /// What could not be drawn.
+    pub fn warnings(self) -> BTreeSet<String> {
+        self.warnings
+    }
+
+    fn warn(&mut self, message: impl Into<String>) {
+        self.warnings.insert(message.into());
+    }
+
+    pub fn tree(&mut self, tree: &usvg::Tree, map: DAffine2) {
+        self.group(tree.root(), map);
+    }
+
+    /// Runs `work` one level deeper, unless that is too deep.
+    fn deeper(&mut self, work: impl FnOnce(&mut Self)) {
+        if self.depth == MAX_DEPTH {
+            return self
+                .warn(format!("what is nested more than {MAX_DEPTH} levels deep is left out"));
+        }
+        self.depth += 1;
+        work(self);
+        self.depth -= 1;
+    }
+
+    fn nodes(&mut self, group: &Group, map: DAffine2) {
+        self.deeper(|this| {
+            for node in group.children() {
+                match node {
+                    Node::Group(group) => this.group(group, map),
+                    Node::Path(path) => this.path(path, map, 1.0),
+                    Node::Image(image) => this.image(image, map),
+                    Node::Text(text) => this.group(text.flattened(), map),
+                }
+            }
+        });
+    }
+
+    /// A group within its clip path, its mask and its opacity.
+    fn group(&mut self, group: &Group, map: DAffine2) {
+        let map = map * paint::affine(group.transform());
+        if !group.filters().is_empty() {
+            self.warn("filters are not drawn; what they apply to is drawn without them");
+        }
+        if group.blend_mode() != BlendMode::Normal {
+            let name = group.blend_mode().to_string();
+            self.warn(format!("blend mode `{name}` is not drawn; `normal` is used in its place"));
+        }
+        let clips = group.clip_path().map_or(0, |clip| self.clip(clip, map))
+            + group.mask().map_or(0, |mask| self.mask(mask, map));
+        let opacity = f64::from(group.opacity().get());
+        match single_path(group) {
+            _ if !group.should_isolate() => self.nodes(group, map),
+            // What paints each pixel once needs no layer.
+            Some(path) => self.path(path, map, opacity),
+            None => {
+                self.canvas.push_group();
+                self.nodes(group, map);
+                self.canvas.pop(opacity);
+            }
+        }
+        (0..clips).for_each(|_| self.canvas.pop(1.0));
+    }
+
+    /// Puts a clip path in force; gives how many have to be popped.
+    fn clip(&mut self, clip: &usvg::ClipPath, map: DAffine2) -> u32 {
+        let outer = clip.clip_path().map_or(0, |outer| self.clip(outer, map));
+        let map = map * paint::affine(clip.transform());
+        let root = clip.root();
+        let only = single_path(root).filter(|p| p.is_visible() && p.paint_order() == ORDER);
+        match only.and_then(|p| Some((p, p.fill()?))) {
+            Some((path, fill)) if plain(root) => {
+                let map = map * paint::affine(root.transform());
+                self.canvas.set_transform(map);
+                self.canvas.set_anti_alias(self.smooth(path));
+                self.canvas.push_clip(&paint::path(path.data()), rule(fill.rule()));
+            }
+            _ => {
+                self.canvas.begin_mask();
+                self.deeper(|this| this.group(root, map));
+                self.canvas.end_mask(MaskKind::Alpha);
+            }
+        }
+        outer + 1
+    }
+
+    /// Puts a mask in force; gives how many have to be popped.
+    fn mask(&mut self, mask: &usvg::Mask, map: DAffine2) -> u32 {
+        let outer = mask.mask().map_or(0, |outer| self.mask(outer, map));
+        self.canvas.begin_mask();
+        self.canvas.set_transform(map);
+        self.canvas.push_clip(&paint::rectangle(mask.rect()), FillRule::NonZero);
+        self.deeper(|this| this.group(mask.root(), map));
+        self.canvas.pop(1.0);
+        self.canvas.end_mask(match mask.kind() {
+            usvg::MaskType::Alpha => MaskKind::Alpha,
+            usvg::MaskType::Luminance => MaskKind::Luminance,
+        });
+        outer + 1
+    }
+
+    /// Whether the edges of a path are to be smoothed.
+    fn smooth(&self, path: &usvg::Path) -> bool {
+        self.canvas.options().anti_alias && path.rendering_mode().use_shape_antialiasing()
+    }
+
+    fn path(&mut self, path: &usvg::Path, map: DAffine2, opacity: f64) {
+        if !path.is_visible() {
+            return;
+        }
+        let outline = paint::path(path.data());
+        let smooth = self.smooth(path);
+        let fill = |this: &mut Self| {
+            if let Some(fill) = path.fill() {
+                let opacity = opacity * f64::from(fill.opacity().get());
+                let Some(paint) = this.paint(fill.paint(), map) else { return };
+                this.set(map, smooth);
+                this.canvas.fill(&outline, rule(fill.rule()), &paint, opacity);
+            }
+        };
+        let stroke = |this: &mut Self| {
+            if let Some(stroke) = path.stroke() {
+                let opacity = opacity * f64::from(stroke.opacity().get());
+                let Some(paint) = this.paint(stroke.paint(), map) else { return };
+                this.set(map, smooth);
+                let style = this.style(stroke);
+                if let Err(error) = this.canvas.stroke(&outline, &style, &paint, opacity) {
+                    this.warn(format!("a stroke is left out: {error}"));
+                }
+            }
+        };
+        match path.paint_order() {
+            usvg::PaintOrder::FillAndStroke => {
+                fill(self);
+                stroke(self);
+            }
+            usvg::PaintOrder::StrokeAndFill => {
+                stroke(self);
+                fill(self);
+            }
+        }
+    }
+
+    fn set(&mut self, map: DAffine2, smooth: bool) {
+        self.canvas.set_transform(map);
+        self.canvas.set_anti_alias(smooth);
+    }
+
+    fn style(&mut self, stroke: &usvg::Stroke) -> Stroke {
+        Stroke {
+            width: f64::from(stroke.width().get()),
+            cap: match stroke.linecap() {
+                usvg::LineCap::Butt => Cap::Butt,
+                usvg::LineCap::Round => Cap::Round,
+                usvg::LineCap::Square => Cap::Square,
+            },
+            join: match stroke.linejoin() {
+                usvg::LineJoin::Miter => Join::Miter,
+                usvg::LineJoin::MiterClip => {
+                    self.warn("line join `miter-clip` is not drawn; `miter` is used in its place");
+                    Join::Miter
+                }
+                usvg::LineJoin::Round => Join::Round,
+                usvg::LineJoin::Bevel => Join::Bevel,
+            },
+            miter_limit: f64::from(stroke.miterlimit().get()),
+            dashes: stroke.dasharray().unwrap_or_default().iter().map(|d| (*d).into()).collect(),
+            dash_offset: f64::from(stroke.dashoffset()),
+        }
+    }
+
+    fn paint(&mut self, paint: &usvg::Paint, map: DAffine2) -> Option<Paint> {
+        match paint {
+            usvg::Paint::Pattern(pattern) => self.pattern(pattern, map),
+            other => paint::plain(other),
+        }
+    }
+
+    /// A pattern's tile, painted at the size at which it will be seen.
+    fn pattern(&mut self, pattern: &usvg::Pattern, map: DAffine2) -> Option<Paint> {
+        let tile = paint::Tile::new(pattern, map)?;
+        let mut canvas = Canvas::new(tile.width, tile.height, *self.canvas.options()).ok()?;
+        let mut painter = Painter::new(&mut canvas, self.limits);
+        painter.depth = self.depth;
+        painter.bytes_left = self.bytes_left;
+        painter.deeper(|this| this.group(pattern.root(), tile.pixel_from_content));
+        self.bytes_left = painter.bytes_left;
+        let warnings = painter.warnings();
+        self.warnings.extend(warnings);
+        tile.paint(&canvas)
+    }
+
+    fn image(&mut self, node: &usvg::Image, map: DAffine2) {
+        if !node.is_visible() {
+            return;
+        }
+        let size = node.size();
+        if let usvg::ImageKind::SVG(tree) = node.kind() {
+            self.set(map, true);
+            let (width, height) = (f64::from(size.width()), f64::from(size.height()));
+            let frame = durer::curve::Path::rectangle(0.0, 0.0, width, height);
+            self.canvas.push_clip(&frame, FillRule::NonZero);
+            self.deeper(|this| this.tree(tree, map));
+            return self.canvas.pop(1.0);
+        }
+        let limits = Limits { decoded_bytes: self.bytes_left, ..*self.limits };
+        match image::paint(node, map, &limits) {
+            Ok((paint, frame, bytes)) => {
+                self.bytes_left = self.bytes_left.saturating_sub(bytes);
+                self.set(map, self.canvas.options().anti_alias);
+                self.canvas.fill(&frame, FillRule::NonZero, &paint, 1.0);
+            }
+            Err(error) => self.warn(format!("an image is left out: {error}")),
+        }
+    }
+}
+
+const ORDER: usvg::PaintOrder = usvg::PaintOrder::FillAndStroke;
+
+fn rule(rule: usvg::FillRule) -> FillRule {
+    match rule {
+        usvg::FillRule::NonZero => FillRule::NonZero,
+        usvg::FillRule::EvenOdd => FillRule::EvenOdd,
+    }
+}
+
+/// The only thing in a group, if it is a path that is filled or stroked but not both.
+fn single_path(group: &Group) -> Option<&usvg::Path> {
+    match group.children() {
+        [Node::Path(path)] if path.fill().is_none() || path.stroke().is_none() => Some(path),
+        _ => None,
+    }
+}
+
+/// Whether a group does nothing but map its content.
+fn plain(group: &Group) -> bool {
+    !group.should_isolate()
+}

@@ -1,0 +1,225 @@
+//! Drawings in SVG, onto a canvas.
+//!
+//! usvg resolves styles, units, references and text; what is left — paths with fills and strokes, groups
+//! with clip paths, masks and opacity, images — is painted by [`durer::raster::paint`]. Not painted are
+//! filters, blend modes, and what moves or runs; [`Drawing::read`] and [`Drawing::draw`] say so in
+//! warnings.
+//!
+//! ```
+//! use durer::math::DAffine2;
+//! use durer::raster::paint::{Canvas, Options};
+//! use durer::target::Pixels;
+//! use durer_formats::svg::{Drawing, ReadOptions};
+//!
+//! let text = br#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4">
+//!     <rect width="4" height="4" fill="#c00"/></svg>"#;
+//! let drawing = Drawing::read(text, &ReadOptions::default())?;
+//! assert_eq!(drawing.size().to_array(), [8.0, 4.0]);
+//! let mut canvas = Canvas::new(8, 4, Options::default())?;
+//! drawing.draw(&mut canvas, DAffine2::IDENTITY);
+//! let mut picture = Pixels::new(8, 4, [0; 4]);
+//! canvas.render(&mut picture)?;
+//! assert_eq!(picture.row(2)[3..5], [[204, 0, 0, 255], [0; 4]]);
+//! # Ok::<(), durer_formats::Error>(())
+//! ```
+
+mod draw;
+mod fonts;
+mod image;
+mod paint;
+
+pub use fonts::Fonts;
+
+use crate::gltf::uri::relative_path;
+use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
+use durer::math::{DAffine2, DVec2};
+use durer::raster::paint::Canvas;
+use std::collections::BTreeSet;
+use usvg::{ImageHrefResolver, ImageKind, roxmltree};
+
+/// Elements that are passed over, beside those that only describe.
+const NOT_DRAWN: [&str; 12] = [
+    "animate",
+    "animateColor",
+    "animateMotion",
+    "animateTransform",
+    "audio",
+    "canvas",
+    "foreignObject",
+    "iframe",
+    "meshgradient",
+    "script",
+    "set",
+    "video",
+];
+
+/// How a drawing is read.
+#[derive(Clone, Copy)]
+pub struct ReadOptions<'a> {
+    /// The fonts for text; without any, text is left out.
+    pub fonts: &'a Fonts,
+    /// Finds images that are not part of the file.
+    pub resources: &'a (dyn Resources + Sync),
+    /// What is refused: sizes of images, and of all images together.
+    pub limits: Limits,
+}
+
+impl Default for ReadOptions<'_> {
+    /// No fonts, no resources, the default limits.
+    fn default() -> Self {
+        static NONE: Fonts = Fonts::NONE;
+        Self { fonts: &NONE, resources: &NoResources, limits: Limits::default() }
+    }
+}
+
+/// A drawing, ready to be drawn.
+#[derive(Debug, Clone)]
+pub struct Drawing {
+    tree: usvg::Tree,
+    limits: Limits,
+    warnings: Vec<Warning>,
+}
+
+impl Drawing {
+    /// Reads an SVG document.
+    ///
+    /// # Errors
+    /// [`Error::Decode`] with line and column for what is not XML, and where there is no `svg` element
+    /// with a size.
+    pub fn read(bytes: &[u8], options: &ReadOptions<'_>) -> Result<Self> {
+        let bytes = crate::text::utf8(bytes);
+        let text = std::str::from_utf8(&bytes).map_err(|e| {
+            Error::byte(e.valid_up_to() as u64, "an SVG must be text in UTF-8 or UTF-16")
+        })?;
+        let xml = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
+        let document = roxmltree::Document::parse_with_options(text, xml).map_err(not_xml)?;
+        let root = document.root_element().tag_name();
+        if root != ROOT.into() {
+            let name = root.name();
+            let message = format!("the root is `{name}`, not `svg` with xmlns=\"{}\"", ROOT.0);
+            return Err(Error::line(1, 0, message));
+        }
+        let mut warnings = passed_over(&document);
+        let (tree, told) = {
+            let told = Told::default();
+            let usvg_options = usvg::Options {
+                font_family: options.fonts.default_family(),
+                fontdb: options.fonts.database(),
+                font_resolver: fonts::resolver(&told),
+                image_href_resolver: images(options, &told),
+                ..usvg::Options::default()
+            };
+            let tree = usvg::Tree::from_xmltree(&document, &usvg_options).map_err(wrong)?;
+            drop(usvg_options);
+            (tree, told.take())
+        };
+        if options.fonts.is_empty() && document.descendants().any(|n| n.has_tag_name(TEXT)) {
+            warnings.push(warning("text is left out: there are no fonts"));
+        }
+        warnings.extend(told.into_iter().map(warning));
+        Ok(Self { tree, limits: options.limits, warnings })
+    }
+
+    /// Width and height in the drawing's own units, above 0.
+    pub fn size(&self) -> DVec2 {
+        let size = self.tree.size();
+        DVec2::new(f64::from(size.width()), f64::from(size.height()))
+    }
+
+    /// What was left out or replaced while reading.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Paints the drawing; `pixel_from_drawing` maps the drawing's units, y down, to pixels. Gives what
+    /// cannot be drawn, each kind once. Cost: that of the canvas, and of its own for each tile of a
+    /// pattern and each image.
+    pub fn draw(&self, canvas: &mut Canvas, pixel_from_drawing: DAffine2) -> Vec<Warning> {
+        let mut painter = draw::Painter::new(canvas, &self.limits);
+        painter.tree(&self.tree, pixel_from_drawing);
+        painter.warnings().into_iter().map(warning).collect()
+    }
+}
+
+const ROOT: (&str, &str) = ("http://www.w3.org/2000/svg", "svg");
+const TEXT: (&str, &str) = (ROOT.0, "text");
+
+fn warning(message: impl Into<String>) -> Warning {
+    Warning { place: Place::Whole, message: message.into() }
+}
+
+/// Messages from within usvg, each once.
+#[derive(Debug, Default)]
+struct Told(std::sync::Mutex<BTreeSet<String>>);
+
+impl Told {
+    fn tell(&self, message: String) {
+        // A poisoned lock still holds the messages.
+        self.0.lock().unwrap_or_else(|e| e.into_inner()).insert(message);
+    }
+
+    fn take(self) -> BTreeSet<String> {
+        self.0.into_inner().unwrap_or_else(|e| e.into_inner())
+    }
+}
+
+fn not_xml(error: roxmltree::Error) -> Error {
+    let at = error.pos();
+    let text = error.to_string();
+    // The message repeats the place at its end.
+    let message = text.split(" at ").next().unwrap_or_default();
+    Error::line(at.row.into(), at.col.into(), format!("not well-formed XML: {message}"))
+}
+
+fn wrong(error: usvg::Error) -> Error {
+    match error {
+        usvg::Error::ParsingFailed(error) => not_xml(error),
+        usvg::Error::InvalidSize => Error::whole(
+            "the drawing has no size; `svg` needs a `viewBox`, or a `width` and `height` above 0",
+        ),
+        other => Error::whole(other.to_string()),
+    }
+}
+
+/// Elements that are not drawn, each kind once, with the first place.
+fn passed_over(document: &roxmltree::Document<'_>) -> Vec<Warning> {
+    let mut seen = BTreeSet::new();
+    let mut warnings = Vec::new();
+    for node in document.descendants().filter(roxmltree::Node::is_element) {
+        let name = node.tag_name().name();
+        if NOT_DRAWN.contains(&name) && seen.insert(name) {
+            let at = document.text_pos_at(node.range().start);
+            let place = Place::Line(at.row.into(), at.col.into());
+            warnings.push(Warning { place, message: format!("`{name}` elements are passed over") });
+        }
+    }
+    warnings
+}
+
+/// Where images come from: the file itself, or what it refers to.
+fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
+    let (resources, limit) = (options.resources, options.limits.decoded_bytes);
+    ImageHrefResolver {
+        resolve_data: ImageHrefResolver::default_data_resolver(),
+        resolve_string: Box::new(move |href, usvg_options| {
+            let path = relative_path(href).map_err(str::to_owned);
+            match path.and_then(|path| resources.read(&path, limit)) {
+                Ok(bytes) => kind_of(bytes, usvg_options),
+                Err(why) => {
+                    told.tell(format!("image `{href}` is left out: {why}"));
+                    None
+                }
+            }
+        }),
+    }
+}
+
+fn kind_of(bytes: Vec<u8>, options: &usvg::Options<'_>) -> Option<ImageKind> {
+    match bytes.get(..4)? {
+        b"\x89PNG" => Some(ImageKind::PNG(bytes.into())),
+        [0xff, 0xd8, ..] => Some(ImageKind::JPEG(bytes.into())),
+        b"GIF8" => Some(ImageKind::GIF(bytes.into())),
+        b"RIFF" => Some(ImageKind::WEBP(bytes.into())),
+        _ => usvg::Tree::from_data_nested(&bytes, options).ok().map(ImageKind::SVG),
+    }
+}

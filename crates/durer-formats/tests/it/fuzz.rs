@@ -1,0 +1,69 @@
+//! The bodies of the fuzz targets for map data and models, on their seeds, on seeds with changes, and on
+//! random bytes.
+
+use proptest::prelude::*;
+use std::path::Path;
+
+#[path = "../../../../fuzz/bodies/geo.rs"]
+mod geo;
+#[path = "../../../../fuzz/bodies/model.rs"]
+mod model;
+
+const TARGETS: [(&str, fn(&[u8])); 12] = [
+    ("geojson", geo::geojson),
+    ("wkt", geo::wkt),
+    ("wkb", geo::wkb),
+    ("svg", geo::svg),
+    ("gltf", model::gltf),
+    ("draco", model::draco),
+    ("meshopt", model::meshopt),
+    ("obj", model::obj),
+    ("mtl", model::mtl),
+    ("stl", model::stl),
+    ("ply", model::ply),
+    ("threemf", model::threemf),
+];
+
+/// The files of a target's folder of seeds; there must be some.
+fn seeds(target: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
+    let files = std::fs::read_dir(&folder).expect("seeds are part of the repository");
+    let mut paths: Vec<_> = files.map(|f| f.expect("a file").path()).collect();
+    paths.sort();
+    assert!(!paths.is_empty(), "{}", folder.display());
+    paths.iter().map(|path| std::fs::read(path).expect("a seed")).collect()
+}
+
+#[test]
+fn seeds_and_their_beginnings() {
+    for (target, body) in TARGETS {
+        for seed in seeds(target) {
+            body(&seed);
+            (0..8).for_each(|i| body(&seed[..seed.len() * i / 8]));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..256)) {
+        TARGETS.iter().for_each(|(_, body)| body(&bytes));
+    }
+
+    #[test]
+    fn changed_seeds(
+        which in any::<prop::sample::Index>(), of in any::<prop::sample::Index>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let (target, body) = TARGETS[which.index(TARGETS.len())];
+        let all = seeds(target);
+        let mut seed = all[of.index(all.len())].clone();
+        for (at, byte) in changes {
+            let at = at.index(seed.len().max(1));
+            seed.splice(at..(at + 1).min(seed.len()), [byte]);
+        }
+        body(&seed);
+    }
+}

@@ -1,0 +1,148 @@
+//! Drawings in SVG: what is painted, what is told, what is refused.
+
+use durer::math::DAffine2;
+use durer::raster::paint::{Canvas, Options};
+use durer::target::Pixels;
+use durer_formats::svg::{Drawing, ReadOptions};
+use durer_formats::{Resources, png};
+
+fn drawing(body: &str) -> Drawing {
+    let text = format!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"
+        width="20" height="20">{body}</svg>"#
+    );
+    Drawing::read(text.as_bytes(), &ReadOptions::default()).unwrap()
+}
+
+fn paint(drawing: &Drawing) -> (Pixels<[u8; 4]>, Vec<String>) {
+    let mut canvas = Canvas::new(20, 20, Options::default()).unwrap();
+    let warnings = drawing.draw(&mut canvas, DAffine2::IDENTITY);
+    let mut picture = Pixels::new(20, 20, [0; 4]);
+    canvas.render(&mut picture).unwrap();
+    (picture, warnings.iter().map(ToString::to_string).collect())
+}
+
+fn painted(body: &str) -> Pixels<[u8; 4]> {
+    let (picture, warnings) = paint(&drawing(body));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    picture
+}
+
+#[test]
+fn clip_paths_are_nested_and_united() {
+    let picture = painted(
+        r#"<clipPath id="a"><rect width="8" height="20"/><rect x="12" width="8" height="20"/></clipPath>
+        <clipPath id="b" clip-path="url(#a)"><rect y="10" width="20" height="10"/></clipPath>
+        <rect width="20" height="20" fill="red" clip-path="url(#b)"/>"#,
+    );
+    let red = |x, y| picture.get(x, y) == Some([255, 0, 0, 255]);
+    assert!(red(4, 15) && red(15, 15));
+    assert!(!red(10, 15) && !red(4, 5) && !red(15, 5));
+}
+
+#[test]
+fn masks_take_brightness_or_opacity() {
+    let mask = |kind: &str| {
+        let picture = painted(&format!(
+            r#"<mask id="m" mask-type="{kind}" maskUnits="userSpaceOnUse" width="20" height="20">
+            <rect width="10" height="20" fill="white"/>
+            <rect x="10" width="5" height="20" fill="black"/></mask>
+            <g mask="url(#m)"><rect width="20" height="20" fill="red"/></g>"#
+        ));
+        [5, 12, 17].map(|x| picture.get(x, 10).unwrap()[3])
+    };
+    assert_eq!(mask("luminance"), [255, 0, 0]);
+    assert_eq!(mask("alpha"), [255, 255, 0]);
+}
+
+#[test]
+fn a_mask_is_not_clipped_by_what_it_is_used_in() {
+    // The border of the clip path lies within a pixel; taken twice it would be too thin.
+    let picture = painted(
+        r#"<clipPath id="c"><rect width="10.5" height="20"/></clipPath>
+        <mask id="m" maskUnits="userSpaceOnUse" width="20" height="20">
+        <rect width="20" height="20" fill="white"/></mask>
+        <g clip-path="url(#c)"><g mask="url(#m)"><rect width="20" height="20"/></g></g>"#,
+    );
+    assert_eq!(picture.get(10, 10), Some([0, 0, 0, 128]));
+}
+
+#[test]
+fn groups_are_faded_as_one() {
+    let picture = painted(
+        r#"<g opacity="0.5"><rect width="12" height="20"/><rect x="8" width="12" height="20"/></g>"#,
+    );
+    assert!(picture.data().iter().all(|p| *p == [0, 0, 0, 128]));
+}
+
+#[test]
+fn patterns_are_repeated() {
+    let picture = painted(
+        r#"<pattern id="p" width="4" height="4" patternUnits="userSpaceOnUse">
+        <rect width="2" height="4" fill="lime"/></pattern>
+        <rect width="20" height="20" fill="url(#p)"/>"#,
+    );
+    for x in 0..20 {
+        let lime = x % 4 < 2;
+        assert_eq!(picture.get(x, 7).unwrap()[3] == 255, lime, "column {x}");
+    }
+}
+
+/// Gives the same picture for any name but one.
+struct OnePicture(Vec<u8>);
+
+impl Resources for OnePicture {
+    fn read(&self, path: &str, _limit: u64) -> Result<Vec<u8>, String> {
+        if path == "none.png" {
+            Err("there is no such file".to_owned())
+        } else {
+            Ok(self.0.clone())
+        }
+    }
+}
+
+#[test]
+fn images_fill_their_frame_and_missing_ones_are_told() {
+    let mut bytes = Vec::new();
+    let image = Pixels::from_data(2, 1, vec![[255, 0, 0, 255], [0, 0, 255, 255]]).unwrap();
+    png::write_color(&mut bytes, &image, png::Compression::Fast).unwrap();
+    let resources = OnePicture(bytes);
+    let options = ReadOptions { resources: &resources, ..ReadOptions::default() };
+    let text = br#"<svg xmlns="http://www.w3.org/2000/svg" width="20" height="20">
+        <image href="a.png" width="20" height="20" preserveAspectRatio="none"/>
+        <image href="none.png" width="20" height="20"/></svg>"#;
+    let drawing = Drawing::read(text, &options).unwrap();
+    let told = drawing.warnings()[0].to_string();
+    assert_eq!(told, "image `none.png` is left out: there is no such file");
+    let (picture, _) = paint(&drawing);
+    assert_eq!(picture.get(0, 0), Some([255, 0, 0, 255]), "no fading at the border");
+    assert_eq!(picture.get(19, 19), Some([0, 0, 255, 255]));
+}
+
+#[test]
+fn text_without_fonts_is_told() {
+    let told = drawing("<text y='10'>A</text>").warnings()[0].to_string();
+    assert_eq!(told, "text is left out: there are no fonts");
+}
+
+#[test]
+fn what_is_no_drawing_is_refused_with_its_place() {
+    let error = |text: &[u8]| Drawing::read(text, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error(b"<svg\n  <rect/>").starts_with("line 2, column 3: not well-formed XML: "));
+    assert!(
+        error(b"<svg xmlns='http://www.w3.org/2000/svg' width='0' height='5'/>").contains("size")
+    );
+    assert!(error(b"<html/>").contains("the root is `html`, not `svg`"));
+    assert!(error(b"\xff\xff").contains("UTF-8"));
+}
+
+#[test]
+fn what_is_nested_deeply_is_left_out() {
+    let body = format!(
+        "{}<rect width='20' height='20'/>{}",
+        "<g opacity='.9'>".repeat(300),
+        "</g>".repeat(300)
+    );
+    let (_, warnings) = paint(&drawing(&body));
+    assert!(warnings[0].contains("200 levels deep"), "{warnings:?}");
+}

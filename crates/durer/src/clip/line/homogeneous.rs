@@ -1,0 +1,118 @@
+//! Line clipping in homogeneous coordinates.
+//!
+//! James Blinn and Martin Newell, "Clipping using homogeneous coordinates", SIGGRAPH 1978. Object
+//! space; O(1), at most two cut points. A point (x, y, w) stands for (x/w, y/w). Each border has a
+//! boundary coordinate, x − xmin·w for the left one, which is ≥ 0 inside; along a segment it is linear,
+//! so the border is crossed at t = d₁ / (d₁ − d₂). The division by w comes after clipping, so w may be
+//! anything: of a segment that runs behind the eye the part before it is found.
+//!
+//! The signs of boundary coordinates and the order of crossings are exact, and w ≥ 0 is one more
+//! border, which windows without width need. Points of space and their view volume:
+//! [`crate::clip::volume`].
+
+use super::border::{Canonical, clamped};
+use super::{ClipBox, Segment, convex, passage};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::math::{DVec2, DVec3, Plane, Rect};
+use crate::trace::Tracer;
+
+pub use super::passage::{Step, replay};
+
+/// The facts of clipping in homogeneous coordinates.
+pub const INFO: Info = Info {
+    name: "homogeneous",
+    title: "Homogeneous clipping",
+    authors: "James Blinn, Martin Newell",
+    year: 1978,
+    source: "Clipping using homogeneous coordinates, SIGGRAPH 1978",
+    class: Class::ObjectSpace,
+    cost: "O(1) per segment; five boundary coordinates per end, at most two cut points",
+    limits: "rectangles; in space the view volume, by clip::volume",
+};
+
+/// There is nothing to choose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options;
+
+/// The part of a segment in the closed rectangle: with w = 1 at both ends.
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
+pub fn clip(
+    window: &Rect,
+    segment: Segment<DVec2>,
+    t: &mut impl Tracer<Step<DVec3>>,
+) -> Result<Option<Segment<DVec2>>> {
+    let lifted = Segment::new(segment.start.extend(1.0), segment.end.extend(1.0));
+    let clipped = clip_homogeneous(window, lifted, t)?;
+    Ok(clipped.map(|s| Segment::new(s.start.truncate(), s.end.truncate())))
+}
+
+/// The part of a segment of homogeneous points (x, y, w) whose places (x/w, y/w) are in the closed
+/// rectangle; w > 0 at both of its ends.
+///
+/// ```
+/// use durer::clip::line::{Segment, homogeneous::clip_homogeneous};
+/// use durer::math::{DVec2, DVec3, Rect};
+/// use durer::trace::NoTrace;
+///
+/// // The end lies behind the eye: its place (−8, 0) is not where the segment leads.
+/// let window = Rect::new(DVec2::splat(-1.0), DVec2::splat(1.0))?;
+/// let segment = Segment::new(DVec3::new(0.0, 0.0, 1.0), DVec3::new(8.0, 0.0, -1.0));
+/// let seen = clip_homogeneous(&window, segment, &mut NoTrace)?.unwrap();
+/// assert_eq!(seen.end.truncate() / seen.end.z, DVec2::new(1.0, 0.0));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] for a NaN or infinite coordinate.
+pub fn clip_homogeneous(
+    window: &Rect,
+    segment: Segment<DVec3>,
+    t: &mut impl Tracer<Step<DVec3>>,
+) -> Result<Option<Segment<DVec3>>> {
+    let line = Canonical::new(segment.start.to_array(), segment.end.to_array())?;
+    let window = ClipBox::<2>::from(window);
+    let planes = boundary_planes(&window);
+    let clipped =
+        passage::clip(&planes, segment, &line, |b| crossing(&window, &planes, b, &line), t);
+    // The null vector lies on all borders, but has no place.
+    Ok(clipped.filter(|s| s.start.z > 0.0 && s.end.z > 0.0))
+}
+
+/// The borders as planes through the origin of (x, y, w): left, right, bottom, top, and w = 0.
+fn boundary_planes(window: &ClipBox<2>) -> [Plane; 5] {
+    let [[left, right], [bottom, top]] = window.borders;
+    let normals = [
+        DVec3::new(1.0, 0.0, -left),
+        DVec3::new(-1.0, 0.0, right),
+        DVec3::new(0.0, 1.0, -bottom),
+        DVec3::new(0.0, -1.0, top),
+        DVec3::Z,
+    ];
+    normals.map(|normal| Plane { normal, distance: 0.0 })
+}
+
+/// The point on a border, exactly on it and inside the others, where rounding left it beside.
+fn crossing(
+    window: &ClipBox<2>,
+    planes: &[Plane; 5],
+    border: usize,
+    line: &Canonical<3>,
+) -> [f64; 3] {
+    let mut point = line.at(convex::parameter(&planes[border], line));
+    let w = point[2];
+    for axis in 0..2 {
+        let [min, max] = window.borders[axis].map(|border| border * w);
+        point[axis] = match border.wrapping_sub(2 * axis) {
+            0 => min,
+            1 => max,
+            _ => clamped(point[axis], min, max),
+        };
+    }
+    if border == 4 {
+        point[2] = 0.0;
+    }
+    point
+}

@@ -1,0 +1,93 @@
+//! Evaluators: curves and surfaces by their control points, drawn as lines and triangles.
+
+use super::{Primitive, Vertex};
+use crate::curve::b_spline::BSpline;
+use crate::curve::bezier::{de_casteljau, patch};
+use crate::math::{DVec3, DVec4};
+use crate::trace::NoTrace;
+use crate::{Error, Result};
+
+/// Steps of an evaluator at most; of a patch, both ways.
+const MAX_STEPS: u32 = 4096;
+
+/// A curve in space.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Curve {
+    /// A Bézier curve through its first and last control point.
+    Bezier(Vec<DVec3>),
+    /// A non-uniform rational B-spline: control points times their weight, and the weight; the degree
+    /// and the knots are the spline's.
+    Nurbs(BSpline<DVec4>),
+}
+
+impl Curve {
+    /// The point at a parameter 0 … 1; `None` without control points and where weights make it infinite.
+    pub fn point(&self, t: f64) -> Option<DVec3> {
+        match self {
+            Self::Bezier(control) => de_casteljau(control, t, &mut NoTrace),
+            Self::Nurbs(spline) => {
+                let (first, last) = spline.domain();
+                let p = spline.point(first + (last - first) * t);
+                Some(p.truncate() / p.w)
+            }
+        }
+        .filter(|p| p.is_finite())
+    }
+
+    pub(super) fn vertices(&self, steps: u32) -> Result<(Primitive, Vec<Vertex>)> {
+        check(steps)?;
+        let at = |i: u32| self.point(f64::from(i) / f64::from(steps)).map(Vertex::from);
+        let vertices: Option<Vec<Vertex>> = (0..=steps).map(at).collect();
+        Ok((Primitive::LineStrip, vertices.ok_or_else(infinite)?))
+    }
+}
+
+/// A Bézier patch: rows of control points, all of one length; u runs along each row, v across the rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// The control points.
+    pub rows: Vec<Vec<DVec3>>,
+}
+
+impl Patch {
+    /// The point at two parameters 0 … 1; `None` without control points and where it is not finite.
+    pub fn point(&self, u: f64, v: f64) -> Option<DVec3> {
+        patch(&self.rows, u, v).filter(|p| p.is_finite())
+    }
+
+    pub(super) fn vertices(&self, [across, down]: [u32; 2]) -> Result<(Primitive, Vec<Vertex>)> {
+        check(across)?;
+        check(down)?;
+        let at = |i: u32, j: u32| {
+            let (u, v) = (f64::from(i) / f64::from(across), f64::from(j) / f64::from(down));
+            self.point(u, v).map(Vertex::from).ok_or_else(infinite)
+        };
+        let mut rows = Vec::new();
+        for j in 0..=down {
+            let row: Result<Vec<Vertex>> = (0..=across).map(|i| at(i, j)).collect();
+            rows.push(row?);
+        }
+        let mut vertices = Vec::new();
+        for two in rows.windows(2) {
+            for (above, below) in two[0].windows(2).zip(two[1].windows(2)) {
+                vertices.extend([above[0], above[1], below[1], above[0], below[1], below[0]]);
+            }
+        }
+        Ok((Primitive::Triangles, vertices))
+    }
+}
+
+fn check(steps: u32) -> Result<()> {
+    match steps {
+        0 => Err(Error::parameter("steps", 0, "at least 1")),
+        1..=MAX_STEPS => Ok(()),
+        _ => {
+            let (value, limit) = (u64::from(steps), u64::from(MAX_STEPS));
+            Err(Error::Limit { what: "steps of an evaluator", value, limit })
+        }
+    }
+}
+
+fn infinite() -> Error {
+    Error::parameter("control points", "given", "finite, and one at least")
+}

@@ -1,0 +1,137 @@
+//! Display lists: commands that are recorded once and replayed often, in each other too.
+
+use super::{Command, MAX_STACK, Pipeline, draw};
+use crate::target::Framebuffer;
+use crate::{Error, Result};
+
+/// The name of a display list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ListId(usize);
+
+/// Lists call each other to this depth; OpenGL demands as much.
+pub const MAX_NESTING: usize = 64;
+
+/// Commands that one call of [`execute`] carries out at most: lists that call others twice each would
+/// else never come to an end.
+pub const MAX_COMMANDS: u64 = 1 << 24;
+
+/// Recorded commands.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DisplayLists {
+    lists: Vec<Vec<Command>>,
+}
+
+impl DisplayLists {
+    /// Keeps commands for later; lists that they call may be recorded or replaced afterwards.
+    pub fn record(&mut self, commands: Vec<Command>) -> ListId {
+        self.lists.push(commands);
+        ListId(self.lists.len() - 1)
+    }
+
+    /// Puts other commands in the place of a list's; whoever calls it, calls these from now on.
+    ///
+    /// # Errors
+    /// [`Error::Dangling`] for a list of another collection.
+    pub fn replace(&mut self, list: ListId, commands: Vec<Command>) -> Result<()> {
+        let count = self.lists.len();
+        let old = self.lists.get_mut(list.0).ok_or_else(|| dangling(list, count))?;
+        *old = commands;
+        Ok(())
+    }
+
+    /// The commands of a list.
+    ///
+    /// # Errors
+    /// [`Error::Dangling`] for a list of another collection.
+    pub fn commands(&self, list: ListId) -> Result<&[Command]> {
+        let count = self.lists.len();
+        self.lists.get(list.0).map(Vec::as_slice).ok_or_else(|| dangling(list, count))
+    }
+}
+
+fn dangling(list: ListId, count: usize) -> Error {
+    Error::Dangling { what: "display list", index: list.0, count }
+}
+
+/// Carries out commands in their order. What was drawn before an error stays drawn.
+///
+/// # Errors
+/// [`Error::Dangling`] for a list that is not there; [`Error::Limit`] for lists nested deeper than
+/// [`MAX_NESTING`], more commands than [`MAX_COMMANDS`], a matrix stack above [`MAX_STACK`];
+/// [`Error::Parameter`] for taking back a matrix that was not kept, a matrix or evaluator that is not
+/// finite, and a viewport beyond the framebuffer.
+pub fn execute(
+    commands: &[Command],
+    lists: &DisplayLists,
+    pipeline: &mut Pipeline,
+    target: &mut Framebuffer,
+) -> Result<()> {
+    let mut waiting = vec![commands.iter()];
+    let mut done = 0;
+    while let Some(latest) = waiting.last_mut() {
+        let Some(command) = latest.next() else {
+            waiting.pop();
+            continue;
+        };
+        done += 1;
+        if done > MAX_COMMANDS {
+            return Err(Error::Limit { what: "commands", value: done, limit: MAX_COMMANDS });
+        }
+        if let Command::Call(list) = command {
+            if waiting.len() > MAX_NESTING {
+                let (value, limit) = (waiting.len() as u64, MAX_NESTING as u64);
+                return Err(Error::Limit { what: "nesting of display lists", value, limit });
+            }
+            waiting.push(lists.commands(*list)?.iter());
+        } else {
+            one(command, pipeline, target)?;
+        }
+    }
+    Ok(())
+}
+
+fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<()> {
+    match command {
+        Command::Clear { color, depth, stencil } => {
+            draw::clear(&p.fragments, *color, *depth, *stencil, target);
+        }
+        Command::LoadModelView(matrix) => p.model_view = finite(*matrix)?,
+        Command::MultiplyModelView(matrix) => p.model_view = finite(p.model_view * *matrix)?,
+        Command::PushModelView if p.stack.len() >= MAX_STACK => {
+            let (value, limit) = (p.stack.len() as u64 + 1, MAX_STACK as u64);
+            return Err(Error::Limit { what: "matrices on the stack", value, limit });
+        }
+        Command::PushModelView => p.stack.push(p.model_view),
+        Command::PopModelView => {
+            let kept = p.stack.pop();
+            p.model_view = kept
+                .ok_or_else(|| Error::parameter("matrix stack", "empty", "pushed before popped"))?;
+        }
+        Command::LoadProjection(matrix) => p.projection = finite(*matrix)?,
+        Command::Viewport(viewport) => {
+            draw::check_viewport(*viewport, target)?;
+            p.viewport = *viewport;
+        }
+        Command::Color(color) => p.color = *color,
+        Command::Cull(cull) => p.cull = *cull,
+        Command::DepthRange(range) => p.depth_range = *range,
+        Command::PolygonOffset(offset) => p.polygon_offset = *offset,
+        Command::Fragments(state) => p.fragments = *state,
+        Command::Draw(primitive, vertices) => draw::draw(p, *primitive, vertices, target),
+        Command::EvaluateCurve(curve, steps) => {
+            let (primitive, vertices) = curve.vertices(*steps)?;
+            draw::draw(p, primitive, &vertices, target);
+        }
+        Command::EvaluatePatch(patch, steps) => {
+            let (primitive, vertices) = patch.vertices(*steps)?;
+            draw::draw(p, primitive, &vertices, target);
+        }
+        // Lists are opened by `execute`.
+        Command::Call(_) => {}
+    }
+    Ok(())
+}
+
+fn finite(matrix: crate::math::DMat4) -> Result<crate::math::DMat4> {
+    if matrix.is_finite() { Ok(matrix) } else { Err(Error::parameter("matrix", "given", "finite")) }
+}

@@ -1,0 +1,61 @@
+//! The state that commands change.
+
+use crate::fragment::{DepthRange, FragmentState, PolygonOffset};
+use crate::math::{DMat4, Vec4};
+
+/// Which faces are left out, by the way their corners turn on the screen: counter-clockwise, seen with
+/// y up, is a front face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum CullFace {
+    /// None: the initial state.
+    #[default]
+    None,
+    /// Those seen from their front.
+    Front,
+    /// Those seen from behind.
+    Back,
+}
+
+/// Everything that commands set; a value that can be kept, compared and put back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pipeline {
+    /// Object space to eye space; at first the identity.
+    pub model_view: DMat4,
+    /// Copies of it, the latest last; at most [`MAX_STACK`].
+    pub stack: Vec<DMat4>,
+    /// Eye space to clip space; at first the identity.
+    pub projection: DMat4,
+    /// First column, first row, width and height in pixels; at first `None`, the whole framebuffer.
+    pub viewport: Option<[u32; 4]>,
+    /// Linear RGBA of vertices without colour; at first white.
+    pub color: Vec4,
+    /// Which faces are left out; at first none.
+    pub cull: CullFace,
+    /// Where near and far lie in window depth; at first 0 and 1.
+    pub depth_range: DepthRange,
+    /// What is added to the depths of polygons; at first nothing.
+    pub polygon_offset: PolygonOffset,
+    /// Scissor, alpha test, stencil, depth, blending, dithering, logic operation and write masks; at first
+    /// all off but the masks, which let everything through.
+    pub fragments: FragmentState,
+}
+
+/// The most matrices on the stack: as many as OpenGL demands.
+pub const MAX_STACK: usize = 32;
+
+impl Default for Pipeline {
+    /// OpenGL's initial state: no tests, no blending, everything written.
+    fn default() -> Self {
+        Self {
+            model_view: DMat4::IDENTITY,
+            stack: Vec::new(),
+            projection: DMat4::IDENTITY,
+            viewport: None,
+            color: Vec4::ONE,
+            cull: CullFace::None,
+            depth_range: DepthRange::default(),
+            polygon_offset: PolygonOffset::default(),
+            fragments: FragmentState { depth: None, ..FragmentState::default() },
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! From a scene to a drawing: the order of the stages.
+
+use super::Lighting;
+use crate::math::DVec3;
+use crate::scene::{Camera, Projection, Scene};
+use crate::shade::PreparedLights;
+use crate::target::drawing::{Drawing, Line, LineClass};
+use crate::trace::NoTrace;
+use crate::view::View;
+use crate::visibility::line::{ClassSet, hidden_line, wireframe};
+use crate::visibility::region::{self, Fill, Merge, hatch};
+use crate::visibility::surface::Cull;
+use crate::{Error, Result};
+
+/// What a drawing shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum DrawStyle {
+    /// The edges that can be seen, and those that cannot, told apart.
+    #[default]
+    HiddenLine,
+    /// All edges, whatever lies in front of them.
+    Wireframe,
+    /// The visible parts of surfaces in flat colours.
+    Regions,
+    /// The same with lines on top.
+    RegionsAndLines,
+    /// The same with exact shadows.
+    Shadows,
+}
+
+impl DrawStyle {
+    /// All of them.
+    pub const ALL: &'static [Self] =
+        &[Self::HiddenLine, Self::Wireframe, Self::Regions, Self::RegionsAndLines, Self::Shadows];
+
+    /// The name used on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::HiddenLine => "hidden-line",
+            Self::Wireframe => "wireframe",
+            Self::Regions => "regions",
+            Self::RegionsAndLines => "regions+lines",
+            Self::Shadows => "shadows",
+        }
+    }
+
+    /// Whether it has filled parts.
+    pub const fn has_regions(self) -> bool {
+        matches!(self, Self::Regions | Self::RegionsAndLines | Self::Shadows)
+    }
+}
+
+impl std::fmt::Display for DrawStyle {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for DrawStyle {
+    type Err = Error;
+
+    fn from_str(s: &str) -> Result<Self> {
+        let expected = "hidden-line, wireframe, regions, regions+lines or shadows";
+        let found = Self::ALL.iter().copied().find(|style| style.name() == s);
+        found.ok_or_else(|| Error::parameter("style", s, expected))
+    }
+}
+
+/// Everything about a drawing but the scene and the paper.
+#[derive(Debug, Clone)]
+pub struct DrawOptions {
+    /// What it shows.
+    pub style: DrawStyle,
+    /// Where the eye is.
+    pub camera: Camera,
+    /// Width over height of what the camera sees; 1/1000 … 1000.
+    pub aspect: f64,
+    /// Which lines, and how; also for [`DrawStyle::RegionsAndLines`] and [`DrawStyle::Shadows`].
+    pub lines: hidden_line::Options,
+    /// Where light comes from, for filled parts.
+    pub lighting: Lighting,
+    /// Which faces are left out of filled parts.
+    pub cull: Cull,
+    /// Which neighbours become one region.
+    pub merge: Merge,
+    /// Whether regions reach under their neighbours, so that viewers show no hairline cracks;
+    /// otherwise they share their borders.
+    pub trapped: bool,
+}
+
+impl DrawOptions {
+    /// Visible and hidden lines of a square view; regions of one shade are one, disjoint.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            style: DrawStyle::HiddenLine,
+            camera,
+            aspect: 1.0,
+            lines: hidden_line::Options::default(),
+            lighting: Lighting::Auto,
+            cull: Cull::None,
+            merge: Merge::Shade,
+            trapped: false,
+        }
+    }
+}
+
+/// Rows of the screen that a drawing's view has; solvers work in the plane and do not depend on it.
+const ROWS: f64 = 1000.0;
+
+/// Trapped regions reach this part of the picture's height under their neighbours: half a dot of a
+/// picture 1000 dots high.
+const REACH: f64 = 5e-4;
+
+/// Draws a scene: lines and regions in the plane of the picture.
+///
+/// The same input gives the same bytes on every CPU and number of threads.
+///
+/// # Errors
+/// What [`Camera::check`], [`Scene::check`] and the solvers' options find.
+pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
+    if !(1e-3..=1e3).contains(&options.aspect) {
+        return Err(Error::parameter("aspect", options.aspect, "between 1/1000 and 1000"));
+    }
+    scene.check()?;
+    let columns = (ROWS * options.aspect).round().max(1.0) as u32;
+    let view = View::new(options.camera, columns, ROWS as u32)?;
+    let mut drawing = match options.style {
+        DrawStyle::HiddenLine => Drawing::default(),
+        DrawStyle::Wireframe => return all_edges(scene, &view, options),
+        _ => regions(scene, &view, options)?,
+    };
+    if options.style != DrawStyle::Regions {
+        let lines = hidden_line::draw(scene, &view, &options.lines, &mut NoTrace)?;
+        drawing.window = lines.window;
+        drawing.lines.extend(lines.lines);
+    }
+    Ok(drawing)
+}
+
+fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
+    let hidden_line::Options { tolerance, pen_order, .. } = options.lines;
+    wireframe::draw(scene, view, &wireframe::Options { tolerance, pen_order }, &mut NoTrace)
+}
+
+fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
+    let lights = match &options.lighting {
+        Lighting::Auto => PreparedLights::of(scene, &options.camera),
+        Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
+    };
+    let reach = REACH * seen_height(&options.camera);
+    let region_options = region::Options {
+        cull: options.cull,
+        merge: options.merge,
+        fill: if options.trapped { Fill::Trapped { reach } } else { Fill::Disjoint },
+        shadows: options.style == DrawStyle::Shadows,
+        ..region::Options::default()
+    };
+    let mut drawing = region::draw(scene, view, &lights, &region_options)?;
+    // Fills show where shadows end; their outlines are drawn where they are asked for.
+    drawing.lines.retain(|l| options.lines.classes.contains(l.class));
+    Ok(drawing)
+}
+
+/// The height of the picture in the plane through the target, model units.
+fn seen_height(camera: &Camera) -> f64 {
+    match camera.projection {
+        Projection::Orthographic { height } => height,
+        Projection::Perspective { fov_y } => {
+            let distance: DVec3 = camera.target - camera.eye;
+            2.0 * distance.length() * libm::tan(fov_y * 0.5)
+        }
+    }
+}
+
+/// Replaces the filled parts of a drawing by hatching: `spacing` is the distance of lines in the
+/// darkest tone, plane units. For pens, which know no grey; regions have to be disjoint.
+pub fn hatched(drawing: Drawing, spacing: f64) -> Drawing {
+    let options = hatch::Options { spacing, ..hatch::Options::default() };
+    let mut lines: Vec<Line> = hatch::hatch(&drawing.regions, &options);
+    lines.extend(drawing.lines);
+    Drawing { regions: Vec::new(), lines, ..drawing }
+}
+
+/// The classes that `names` name, joined by commas; `all` is all that edges can be but
+/// [`LineClass::Wire`].
+///
+/// # Errors
+/// [`Error::Parameter`] for a name that is none.
+pub fn line_classes(names: &str) -> Result<ClassSet> {
+    if names.trim() == "all" {
+        return Ok(ClassSet::default());
+    }
+    let one = |set: ClassSet, name: &str| {
+        let class: LineClass = name.trim().parse().map_err(|_| {
+            let expected = "classes joined by commas: silhouette, crease, border, non-manifold, \
+                            material, intersection, section, shadow, wire; or all";
+            Error::parameter("lines", name, expected)
+        })?;
+        Ok(set.with(class))
+    };
+    names.split(',').try_fold(ClassSet::NONE, one)
+}

@@ -1,0 +1,91 @@
+//! Labels that do not overlap.
+//!
+//! The greedy method, as in J. Christensen, J. Marks and S. Shieber, *An empirical study of algorithms
+//! for point-feature label placement* (ACM Transactions on Graphics 14(3), 1995): labels come in the
+//! order of their importance, each takes the first of its candidate places that is free, or none.
+//! Class: image space. Cost: O(1) per candidate for labels of similar size, by a grid of buckets.
+
+use crate::math::{DVec2, Rect};
+
+/// Buckets have this size in pixels: about that of a label.
+const BUCKET: f64 = 64.0;
+
+/// Keeps account of the places that are taken.
+#[derive(Debug, Clone)]
+pub struct Placer {
+    bounds: Rect,
+    columns: usize,
+    rows: usize,
+    /// For each bucket the labels that touch it.
+    buckets: Vec<Vec<u32>>,
+    taken: Vec<Rect>,
+}
+
+impl Placer {
+    /// No labels yet; none will reach beyond `bounds`, in pixels.
+    pub fn new(bounds: Rect) -> Self {
+        let count = |length: f64| (length / BUCKET).ceil().clamp(1.0, 1024.0) as usize;
+        let (columns, rows) = (count(bounds.size().x), count(bounds.size().y));
+        Self { bounds, columns, rows, buckets: vec![Vec::new(); columns * rows], taken: Vec::new() }
+    }
+
+    /// Takes the first of the candidates that lies within the bounds and overlaps nothing that is taken;
+    /// gives its number.
+    ///
+    /// ```
+    /// use durer::math::{DVec2, Rect};
+    /// use durer::view::label::Placer;
+    ///
+    /// let at = |x: f64, y: f64| {
+    ///     Rect::new(DVec2::new(x, y), DVec2::new(x + 30.0, y + 10.0)).unwrap()
+    /// };
+    /// let mut placer = Placer::new(Rect::new(DVec2::ZERO, DVec2::splat(100.0))?);
+    /// assert_eq!(placer.place([at(-1.0, 0.0), at(10.0, 10.0)]), Some(1));
+    /// assert_eq!(placer.place([at(35.0, 15.0)]), None);
+    /// # Ok::<(), durer::Error>(())
+    /// ```
+    pub fn place(&mut self, candidates: impl IntoIterator<Item = Rect>) -> Option<usize> {
+        for (number, candidate) in candidates.into_iter().enumerate() {
+            if self.is_free(&candidate) {
+                self.take(candidate);
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    fn is_free(&self, candidate: &Rect) -> bool {
+        let bounds = &self.bounds;
+        let within = bounds.contains(candidate.min()) && bounds.contains(candidate.max());
+        within
+            && self.touched(candidate).all(|bucket| {
+                self.buckets[bucket].iter().all(|i| !overlap(&self.taken[*i as usize], candidate))
+            })
+    }
+
+    fn take(&mut self, rect: Rect) {
+        let number = self.taken.len() as u32;
+        for bucket in self.touched(&rect).collect::<Vec<_>>() {
+            self.buckets[bucket].push(number);
+        }
+        self.taken.push(rect);
+    }
+
+    /// The buckets that a rectangle touches.
+    fn touched(&self, rect: &Rect) -> impl Iterator<Item = usize> + use<> {
+        let columns = self.columns;
+        let counts = DVec2::new(columns as f64, self.rows as f64);
+        let scale = counts / self.bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
+        let at = |p: DVec2| {
+            let place = ((p - self.bounds.min()) * scale).clamp(DVec2::ZERO, counts - 1.0);
+            (place.x as usize, place.y as usize)
+        };
+        let ((x0, y0), (x1, y1)) = (at(rect.min()), at(rect.max()));
+        (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| y * columns + x))
+    }
+}
+
+/// Whether two rectangles share more than a border.
+fn overlap(a: &Rect, b: &Rect) -> bool {
+    a.min().x < b.max().x && b.min().x < a.max().x && a.min().y < b.max().y && b.min().y < a.max().y
+}

@@ -1,0 +1,264 @@
+//! Which edges are lines: silhouettes, creases, borders and the like.
+
+use super::page::{Projected, orient};
+use crate::math::DVec3;
+use crate::target::drawing::LineClass;
+use crate::visibility::object::{Bodies, Edges, Faces, Side};
+
+/// A set of classes of lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClassSet(u16);
+
+impl ClassSet {
+    /// None.
+    pub const NONE: Self = Self(0);
+
+    /// The set with these classes.
+    pub fn of(classes: &[LineClass]) -> Self {
+        classes.iter().fold(Self::NONE, |set, class| set.with(*class))
+    }
+
+    /// The set with one more.
+    pub const fn with(self, class: LineClass) -> Self {
+        Self(self.0 | 1 << class as u16)
+    }
+
+    /// The set with one less.
+    pub const fn without(self, class: LineClass) -> Self {
+        Self(self.0 & !(1 << class as u16))
+    }
+
+    /// Whether a class is in the set.
+    pub const fn contains(self, class: LineClass) -> bool {
+        self.0 >> (class as u16) & 1 == 1
+    }
+}
+
+impl Default for ClassSet {
+    /// What a technical drawing shows: all that an edge can be but [`LineClass::Wire`].
+    fn default() -> Self {
+        Self::NONE
+            .with(LineClass::Silhouette)
+            .with(LineClass::Crease)
+            .with(LineClass::Border)
+            .with(LineClass::NonManifold)
+            .with(LineClass::Material)
+            .with(LineClass::Intersection)
+    }
+}
+
+/// Where to look for faces that penetrate each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Intersections {
+    /// Between different bodies: what is modelled in one piece is taken to be sound.
+    #[default]
+    BetweenBodies,
+    /// Everywhere.
+    All,
+}
+
+/// No triangle.
+pub(super) const NO_ITEM: u32 = u32::MAX;
+
+/// An edge that is a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct EdgeLine {
+    pub ends: [u32; 2],
+    pub class: LineClass,
+    /// Two of the triangles at it; [`NO_ITEM`] where there are fewer.
+    pub items: [u32; 2],
+}
+
+/// How faces are turned, for all that asks.
+pub(super) struct Facing {
+    /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
+    turn: Vec<i8>,
+    /// Unit normals after turning; zero where a triangle is too thin to have one.
+    normals: Vec<[f32; 3]>,
+}
+
+/// Triangles thinner than this part of the scene's extent have no normal: coordinates have 24 bits, so
+/// at 2⁻²⁰ it is uncertain by some degrees.
+const THIN: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// A triangle on the grid lower than this many steps is seen edge-on.
+const EDGE_ON: f64 = 2.0;
+
+impl Facing {
+    pub fn new(faces: &Faces, bodies: &Bodies, projected: &Projected) -> Self {
+        let thin = extent(faces) * THIN;
+        let mut found = Self { turn: vec![0; faces.len()], normals: vec![[0.0; 3]; faces.len()] };
+        for (item, t) in faces.triangles() {
+            let points = t.map(|v| faces.points()[v as usize]);
+            let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
+            let i = item as usize;
+            if let Some(normal) = normal(points, thin) {
+                found.normals[i] = (normal * sign).as_vec3().to_array();
+            }
+            found.turn[i] = match projected.corners(t) {
+                Some(c) => turned_on_grid(c.map(|c| c.at)),
+                None => {
+                    let n = (points[1] - points[0]).cross(points[2] - points[0]);
+                    let towards = -n.dot(projected.plane.sight_at(points[0]));
+                    if towards > 0.0 { 1 } else { -1 }
+                }
+            } * sign as i8;
+        }
+        found
+    }
+
+    /// Whether the front is seen.
+    #[inline]
+    pub fn front(&self, item: u32) -> bool {
+        self.turn[item as usize] > 0
+    }
+
+    fn thin(&self, item: u32) -> bool {
+        self.normals[item as usize] == [0.0; 3]
+    }
+
+    fn angle_cosine(&self, a: u32, b: u32) -> f32 {
+        let (a, b) = (self.normals[a as usize], self.normals[b as usize]);
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+}
+
+fn extent(faces: &Faces) -> f64 {
+    let bounds = crate::scene::Aabb::around(faces.points().iter().copied());
+    bounds.map_or(0.0, |b| b.size().max_element())
+}
+
+fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
+    let (u, v) = (b - a, c - a);
+    let n = u.cross(v);
+    let double_area = n.length();
+    let longest = u.length_squared().max(v.length_squared()).max((c - b).length_squared()).sqrt();
+    (double_area > longest * thin && double_area > 0.0 && double_area.is_finite())
+        .then(|| n / double_area)
+}
+
+/// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
+pub(super) fn turned_on_grid(c: [super::page::GridPoint; 3]) -> i8 {
+    let area = orient(c[0], c[1], c[2]) as f64;
+    let squared = |a: usize, b: usize| {
+        let [x, y] = c[a].minus(c[b]).map(|d| d as f64);
+        x * x + y * y
+    };
+    let longest = squared(0, 1).max(squared(1, 2)).max(squared(2, 0));
+    if area * area <= longest * (EDGE_ON * EDGE_ON) {
+        0
+    } else if area > 0.0 {
+        1
+    } else {
+        -1
+    }
+}
+
+/// What decides which edges are lines.
+pub(super) struct Rules<'a> {
+    pub faces: &'a Faces,
+    pub edges: &'a Edges,
+    pub facing: &'a Facing,
+    pub bodies: &'a Bodies,
+    /// Materials by item, where there are several.
+    pub materials: Option<Vec<u32>>,
+    pub classes: ClassSet,
+    /// Cosine of the crease angle.
+    pub crease: f32,
+    /// Whether silhouettes of smooth parts come from elsewhere.
+    pub smooth: bool,
+}
+
+/// The material of each item; `None` where all have the same.
+pub(super) fn materials(faces: &Faces) -> Option<Vec<u32>> {
+    let runs = faces.runs();
+    runs.iter().any(|r| r.material != runs[0].material).then(|| {
+        let number = |m: Option<usize>| m.map_or(0, |m| m as u32 + 1);
+        runs.iter().flat_map(|r| r.items.clone().map(move |_| number(r.material))).collect()
+    })
+}
+
+impl Rules<'_> {
+    /// The lines among the edges whose smaller vertex lies in a range, in the order of the edges.
+    pub fn lines(&self, vertices: std::ops::Range<u32>) -> Vec<EdgeLine> {
+        let mut lines = Vec::new();
+        for (ends, sides) in self.edges.from_vertices(vertices) {
+            if let Some(class) = self.class(ends, sides) {
+                let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
+                lines.push(EdgeLine { ends, class, items: [item(0), item(1)] });
+            }
+        }
+        lines
+    }
+
+    /// The first wanted class that an edge belongs to.
+    fn class(&self, ends: [u32; 2], sides: &[Side]) -> Option<LineClass> {
+        let wanted = |class| self.classes.contains(class).then_some(class);
+        let wire = || wanted(LineClass::Wire);
+        match sides {
+            [_] => wanted(LineClass::Border).or_else(wire),
+            [a, b] => {
+                if self.faces.same_polygon(a.item(), b.item()) {
+                    return None;
+                }
+                let against = (a.forward() == b.forward())
+                    ^ self.bodies.turned(a.item())
+                    ^ self.bodies.turned(b.item());
+                if against {
+                    return wanted(LineClass::NonManifold).or_else(wire);
+                }
+                self.smooth_or_sharp(ends, a.item(), b.item())
+                    .and_then(wanted)
+                    .or_else(|| {
+                        let differ = |m: &Vec<u32>| m[a.item() as usize] != m[b.item() as usize];
+                        self.materials
+                            .as_ref()
+                            .is_some_and(differ)
+                            .then_some(LineClass::Material)
+                            .and_then(wanted)
+                    })
+                    .or_else(wire)
+            }
+            _ => wanted(LineClass::NonManifold).or_else(wire),
+        }
+    }
+
+    fn smooth_or_sharp(&self, ends: [u32; 2], a: u32, b: u32) -> Option<LineClass> {
+        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
+        if a == b {
+            return None;
+        }
+        let sharp = self.facing.angle_cosine(a, b) < self.crease;
+        let turns = self.facing.front(a) != self.facing.front(b) && (sharp || !self.smooth);
+        if turns && self.classes.contains(LineClass::Silhouette) {
+            return Some(LineClass::Silhouette);
+        }
+        sharp.then_some(LineClass::Crease)
+    }
+
+    /// The triangle itself, or for one that is too thin to be turned any way, the neighbour
+    /// across its longest other edge.
+    fn stand_in(&self, ends: [u32; 2], item: u32) -> u32 {
+        let (mut item, mut ends) = (item, ends);
+        // Several thin ones may lie beside each other; more than these are not worth the walk.
+        for _ in 0..4 {
+            if !self.facing.thin(item) {
+                return item;
+            }
+            let Some([a, b, c]) = self.faces.triangle(item) else { return item };
+            let length = |[a, b]: [u32; 2]| {
+                (self.faces.points()[a as usize] - self.faces.points()[b as usize]).length_squared()
+            };
+            let others = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+            let longest = others
+                .into_iter()
+                .filter(|e| *e != ends)
+                .max_by(|x, y| length(*x).total_cmp(&length(*y)));
+            let Some(edge) = longest else { return item };
+            let next = self.edges.at(edge).iter().find(|s| s.item() != item);
+            let Some(next) = next else { return item };
+            (item, ends) = (next.item(), edge);
+        }
+        item
+    }
+}

@@ -1,0 +1,146 @@
+//! Which part of a line one face hides, and what all of them leave.
+//!
+//! In the plane of the picture a line is cut at the three borders of the face as Cyrus and Beck do,
+//! with exact signs; along the line the difference of depths is linear, so the face's plane is one
+//! more border. A line that runs along a border of the face is hidden on one side only; it counts
+//! as hidden where both of its sides are.
+
+use super::super::page::{Vertex, orient};
+use super::occluders::Occluder;
+
+/// The part of a line that one face hides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cover {
+    /// The face's item.
+    pub item: u32,
+    /// Where it begins, 0 … 1 along the line.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Whether the left side of the line is hidden, seen along it, y up.
+    pub left: bool,
+    /// Whether its right side is.
+    pub right: bool,
+}
+
+/// What of the line p → q lies behind the face; depths closer than `touching` are one.
+pub(super) fn cover([p, q]: &[Vertex; 2], face: &Occluder, touching: f64) -> Option<Cover> {
+    let [a, b, c] = face.corners;
+    let nearest = a.depth.min(b.depth).min(c.depth);
+    if nearest >= p.depth.max(q.depth) {
+        return None;
+    }
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let (mut left, mut right) = (true, true);
+    let mut sides = [(0.0, 0.0); 3];
+    for (side, (u, v)) in sides.iter_mut().zip([(b, c), (c, a), (a, b)]) {
+        let (s, e) = (orient(u.at, v.at, p.at), orient(u.at, v.at, q.at));
+        *side = (s as f64, e as f64);
+        if s <= 0 && e <= 0 {
+            if s != 0 || e != 0 {
+                return None;
+            }
+            // Along the border: the face lies to the left of u → v.
+            let ([bx, by], [lx, ly]) = (v.at.minus(u.at), q.at.minus(p.at));
+            let same = bx * lx + by * ly > 0;
+            left &= same;
+            right &= !same;
+        } else if s < 0 {
+            from = from.max(s as f64 / (s - e) as f64);
+        } else if e < 0 {
+            to = to.min(s as f64 / (s - e) as f64);
+        }
+    }
+    if from >= to {
+        return None;
+    }
+    let area = sides.iter().map(|s| s.0).sum::<f64>();
+    let [z0, z1] = [from, to].map(|t| {
+        let weights = sides.map(|(s, e)| (s + t * (e - s)).max(0.0));
+        let z = (weights[0] * a.depth + weights[1] * b.depth + weights[2] * c.depth) / area;
+        p.depth + t * (q.depth - p.depth) - z
+    });
+    let tolerance = touching + 2.0 * (slope(face, area) + line_slope(p, q));
+    if z0 <= tolerance && z1 <= tolerance {
+        return None;
+    }
+    // Behind the face at one end, before it at the other: it goes through.
+    if z0 < -tolerance {
+        from += (to - from) * (z0 / (z0 - z1));
+    } else if z1 < -tolerance {
+        to = from + (to - from) * (z0 / (z0 - z1));
+    }
+    (from < to).then_some(Cover { item: face.item, from, to, left, right })
+}
+
+/// Depth per step on the face: how far snapping may have moved its plane.
+fn slope(face: &Occluder, area: f64) -> f64 {
+    let [a, b, c] = face.corners;
+    let ([bx, by], [cx, cy]) = (b.at.minus(a.at), c.at.minus(a.at));
+    let (zb, zc) = (b.depth - a.depth, c.depth - a.depth);
+    let gx = (zb * cy as f64 - zc * by as f64) / area;
+    let gy = (zc * bx as f64 - zb * cx as f64) / area;
+    gx.abs() + gy.abs()
+}
+
+fn line_slope(p: &Vertex, q: &Vertex) -> f64 {
+    (q.depth - p.depth).abs() / p.at.distance(q.at)
+}
+
+/// A part of a line that is hidden by one number of faces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Span {
+    pub from: f64,
+    pub to: f64,
+    pub invisibility: u32,
+}
+
+/// Cuts a line where the number of faces in front changes; if not `counted`, where it becomes 0 or
+/// ceases to be. Parts shorter than `sliver` (as a part of
+/// the line) go to the longer of their neighbours.
+pub(super) fn spans(covers: &[Cover], sliver: f64, counted: bool, found: &mut Vec<Span>) {
+    found.clear();
+    let mut events: Vec<(f64, i32, i32)> = Vec::with_capacity(covers.len() * 2);
+    for c in covers {
+        let (l, r) = (i32::from(c.left), i32::from(c.right));
+        events.extend([(c.from, l, r), (c.to, -l, -r)]);
+    }
+    events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((b.1, b.2).cmp(&(a.1, a.2))));
+    let most = if counted { i32::MAX } else { 1 };
+    let (mut at, mut left, mut right) = (0.0, 0, 0);
+    for (t, l, r) in events.into_iter().chain([(1.0, 0, 0)]) {
+        if t > at {
+            let invisibility = left.min(right).clamp(0, most) as u32;
+            match found.last_mut() {
+                Some(last) if last.invisibility == invisibility => last.to = t,
+                _ => found.push(Span { from: at, to: t, invisibility }),
+            }
+            at = t;
+        }
+        left += l;
+        right += r;
+    }
+    absorb(sliver, found);
+}
+
+/// Gives slivers, the shortest first, to the longer neighbour.
+fn absorb(sliver: f64, spans: &mut Vec<Span>) {
+    let length = |s: &Span| s.to - s.from;
+    while spans.len() > 1 {
+        let shortest =
+            (0..spans.len()).min_by(|&a, &b| length(&spans[a]).total_cmp(&length(&spans[b])));
+        let Some(i) = shortest.filter(|&i| length(&spans[i]) < sliver) else { return };
+        let gone = spans.remove(i);
+        let before = i.checked_sub(1).map(|k| length(&spans[k]));
+        let after = spans.get(i).map(length);
+        if before >= after {
+            spans[i - 1].to = gone.to;
+        } else {
+            spans[i].from = gone.from;
+        }
+        if i > 0 && i < spans.len() && spans[i - 1].invisibility == spans[i].invisibility {
+            spans[i - 1].to = spans[i].to;
+            spans.remove(i);
+        }
+    }
+}

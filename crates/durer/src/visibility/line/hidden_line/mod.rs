@@ -1,0 +1,337 @@
+//! Hidden lines: what can be seen of the edges of a scene, exactly, and by how many surfaces the rest
+//! is hidden.
+//!
+//! Arthur Appel, *The notion of quantitative invisibility and the machine rendering of solids*,
+//! Proceedings of the ACM National Conference, 1967: a line changes its visibility only where it passes
+//! behind an edge or through a face; the number of surfaces in front of it is its quantitative
+//! invisibility. Object space; O(n) for the set-up and about O(k) for k pairs of a line and a face
+//! that overlap in the picture.
+//!
+//! Deviations: the number is not carried from vertex to vertex along the edges, where one wrong
+//! crossing would spoil all that follow, but counted for each line from the faces that overlap it, as
+//! Lawrence Roberts did (*Machine perception of three-dimensional solids*, 1963); these come from a
+//! grid over the picture. Each face cuts a line at its projected borders and at its plane (Cyrus–Beck).
+//!
+//! Rules in place of luck: vertices are snapped to a grid of about 2⁻²⁷ of the picture's extent, where all
+//! decisions in the plane are exact integers; a line that runs along the border of a face is hidden on
+//! that side only, and counts as hidden where both sides are; what touches is visible; lines that lie
+//! on each other are drawn once, the visible one first.
+
+mod cover;
+mod occluders;
+
+pub use cover::Cover;
+
+use self::occluders::Occluders;
+use super::arrange::{SLIVER, arrange};
+use super::edge_lines::{ClassSet, EdgeLine, Facing, Intersections, NO_ITEM, Rules, materials};
+use super::intersection::intersections;
+use super::overlap::Piece;
+use super::page::{GridPoint, Page, Projected, Vertex};
+use super::smooth_silhouette::{SmoothSilhouette, smooth_silhouettes};
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::scene::Scene;
+use crate::target::drawing::{Drawing, Line, LineClass};
+use crate::trace::Tracer;
+use crate::view::View;
+use crate::visibility::object::{Bodies, Faces, PicturePlane};
+use crate::{Error, Result, parallel};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "hidden-line",
+    title: "Hidden lines by quantitative invisibility",
+    authors: "Arthur Appel",
+    year: 1967,
+    source: "The notion of quantitative invisibility and the machine rendering of solids, ACM National \
+             Conference",
+    class: Class::ObjectSpace,
+    cost: "O(n + k) for n faces and k pairs of a line and a face that overlap in the picture",
+    limits: "all faces are opaque; what lies within 2^-23 of the model's extent of a face touches it",
+};
+
+/// What is drawn, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Which classes of lines.
+    pub classes: ClassSet,
+    /// Edges whose faces are turned against each other by more than this are creases; radians, 0 … π.
+    pub crease: f64,
+    /// Where penetrating faces are looked for, if [`LineClass::Intersection`] is among the classes.
+    pub intersections: Intersections,
+    /// Whether silhouettes are those of the smooth surface that the mesh stands for, where its normals
+    /// are at a right angle to the sight, and not the edges between faces. Such a line runs beside the
+    /// mesh's own outline, so faces that touch its triangle do not hide it.
+    pub smooth: bool,
+    /// Whether hidden lines are given too. Without them the work ends where a line is known to be
+    /// hidden, and the drawing has visible lines only.
+    pub hidden: bool,
+    /// How far a line may lie from where it is, as a part of the drawing's larger side: polylines are
+    /// simplified within it, those shorter are left out, and lines much closer than it to another
+    /// along their whole length are drawn once. 0 gives all that the grid has.
+    pub tolerance: f64,
+    /// Whether lines are put in an order with short ways for a pen, class by class.
+    pub pen_order: bool,
+}
+
+impl Default for Options {
+    /// A technical drawing: creases from 40°, visible and hidden lines, 0.05 pixels in a picture of
+    /// 1000.
+    fn default() -> Self {
+        Self {
+            classes: ClassSet::default(),
+            crease: 40.0_f64.to_radians(),
+            intersections: Intersections::default(),
+            smooth: false,
+            hidden: true,
+            tolerance: 5e-5,
+            pen_order: false,
+        }
+    }
+}
+
+impl Options {
+    pub(super) fn check(&self) -> Result<()> {
+        if !(0.0..=std::f64::consts::PI).contains(&self.crease) {
+            return Err(Error::parameter("crease", self.crease.to_degrees(), "0 to 180 degrees"));
+        }
+        if !(0.0..0.5).contains(&self.tolerance) {
+            return Err(Error::parameter("tolerance", self.tolerance, "at least 0 and below 0.5"));
+        }
+        Ok(())
+    }
+}
+
+/// What the algorithm did.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// The grid was laid.
+    Page(Page),
+    /// One line was held against the faces that overlap it.
+    Line {
+        /// What it shows.
+        class: LineClass,
+        /// Its ends in the plane of the picture.
+        ends: [DVec2; 2],
+        /// What hides it, by item.
+        covers: Vec<Cover>,
+    },
+}
+
+/// The lines that a list of steps leads to.
+pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
+    let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
+    let mut pieces = Vec::new();
+    let mut spans = Vec::new();
+    for step in steps {
+        if let Step::Line { class, ends, covers } = step {
+            let ends = ends.map(|p| page.grid_from_plane(p));
+            cut(*class, ends, covers, options.hidden, &mut spans, &mut pieces);
+        }
+    }
+    arrange(page, pieces, options.tolerance, options.pen_order)
+}
+
+/// Draws the lines of a scene.
+///
+/// ```
+/// use durer::math::{DMat4, DVec3, Vec3};
+/// use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
+/// use durer::trace::NoTrace;
+/// use durer::view::View;
+/// use durer::visibility::line::hidden_line::{Options, draw};
+///
+/// // Two triangles, one behind the other and to the right.
+/// let corner = |x: f32, z: f32| [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]].map(|[u, v]| Vec3::new(x + u, v, z));
+/// let positions = [corner(0.0, 0.0), corner(0.5, -1.0)].concat();
+/// let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
+/// let mesh = Mesh { positions, ..Mesh::default() };
+/// let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
+/// let camera = Camera {
+///     eye: DVec3::new(1.0, 1.0, 5.0),
+///     target: DVec3::new(1.0, 1.0, 0.0),
+///     up: DVec3::Y,
+///     projection: Projection::Orthographic { height: 4.0 },
+///     near: 1.0,
+///     far: 10.0,
+/// };
+/// let drawing = draw(&scene, &View::new(camera, 400, 400)?, &Options::default(), &mut NoTrace)?;
+/// let hidden = drawing.length(|line| !line.is_visible());
+/// assert!((hidden - 3.0).abs() < 1e-6); // 1.5 below and 1.5 on the left
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Parameter`] for an option out of its range, and what [`Faces::new`] finds.
+pub fn draw(
+    scene: &Scene,
+    view: &View,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Drawing> {
+    options.check()?;
+    let faces = Faces::new(scene)?;
+    let plane = PicturePlane::new(view);
+    let empty = Drawing { window: plane.window(), ..Drawing::default() };
+    let Some(projected) = Projected::new(&faces, plane) else { return Ok(empty) };
+    t.step(|| Step::Page(projected.page));
+    let (bodies, edges) = Bodies::find(&faces);
+    let facing = Facing::new(&faces, &bodies, &projected);
+    let rules = Rules {
+        faces: &faces,
+        edges: &edges,
+        facing: &facing,
+        bodies: &bodies,
+        materials: materials(&faces),
+        classes: options.classes,
+        crease: libm::cos(options.crease) as f32,
+        smooth: options.smooth,
+    };
+    let mut lines = feature_lines(&rules, &projected);
+    drop(rules);
+    drop(edges);
+    if options.classes.contains(LineClass::Intersection) {
+        lines.extend(meeting_lines(&faces, &bodies, options.intersections, &projected));
+    }
+    if options.smooth && options.classes.contains(LineClass::Silhouette) {
+        lines.extend(smooth_lines(scene, &faces, &projected));
+    }
+    let segments: Vec<[Vertex; 2]> = lines.iter().map(|l| l.ends).collect();
+    let occluders = Occluders::new(&faces, &bodies, &facing, &projected, &segments);
+    let jobs: Vec<&[FeatureLine]> = lines.chunks(JOB).collect();
+    let touching = projected.page.touching;
+    let hide = |lines: &[FeatureLine]| {
+        let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
+        for line in lines {
+            covers_of(line, &occluders, touching, !options.hidden, &mut covers);
+            cut(
+                line.class,
+                line.ends.map(|v| v.at),
+                &covers,
+                options.hidden,
+                &mut spans,
+                &mut pieces,
+            );
+        }
+        pieces
+    };
+    let pieces: Vec<Piece> = parallel::map(jobs, hide).into_iter().flatten().collect();
+    for line in &lines {
+        t.step(|| {
+            let mut covers = Vec::new();
+            covers_of(line, &occluders, touching, !options.hidden, &mut covers);
+            let ends = line.ends.map(|v| projected.page.plane_from_grid(v.at));
+            Step::Line { class: line.class, ends, covers }
+        });
+    }
+    let lines = arrange(&projected.page, pieces, options.tolerance, options.pen_order);
+    Ok(Drawing { lines, ..empty })
+}
+
+/// Lines per job.
+const JOB: usize = 2048;
+
+/// A line before it is known what of it can be seen.
+struct FeatureLine {
+    ends: [Vertex; 2],
+    class: LineClass,
+    /// The faces that it lies on.
+    items: [u32; 2],
+    /// Faces with one of these vertices do not hide it; [`NO_ITEM`] is none.
+    around: [u32; 3],
+}
+
+impl FeatureLine {
+    /// `None` for a line that is a point in the picture.
+    fn new(ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
+        let around = [NO_ITEM; 3];
+        (ends[0].at != ends[1].at).then_some(Self { ends, class, items, around })
+    }
+}
+
+/// Lines among the edges of the mesh that have an extent in the picture.
+fn feature_lines(rules: &Rules<'_>, projected: &Projected) -> Vec<FeatureLine> {
+    let count = rules.faces.points().len() as u32;
+    let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
+    let of = |vertices| {
+        let lines = rules.lines(vertices).into_iter();
+        let line =
+            |l: EdgeLine| FeatureLine::new(projected.edge(rules.faces, l.ends)?, l.class, l.items);
+        lines.filter_map(line).collect::<Vec<_>>()
+    };
+    parallel::map(jobs, of).into_iter().flatten().collect()
+}
+
+/// Lines where faces penetrate each other.
+fn meeting_lines(
+    faces: &Faces,
+    bodies: &Bodies,
+    which: Intersections,
+    projected: &Projected,
+) -> Vec<FeatureLine> {
+    let line = |m: super::intersection::Meeting| {
+        FeatureLine::new(projected.segment(m.ends)?, LineClass::Intersection, m.items)
+    };
+    intersections(faces, bodies, which).into_iter().filter_map(line).collect()
+}
+
+/// Silhouettes across the faces.
+fn smooth_lines(scene: &Scene, faces: &Faces, projected: &Projected) -> Vec<FeatureLine> {
+    let line = |s: SmoothSilhouette| {
+        let ends = projected.segment(s.ends)?;
+        let line = FeatureLine::new(ends, LineClass::Silhouette, [s.item, NO_ITEM])?;
+        Some(FeatureLine { around: faces.triangle(s.item)?, ..line })
+    };
+    smooth_silhouettes(scene, faces, &projected.plane).into_iter().filter_map(line).collect()
+}
+
+/// What hides a line, by face. `enough` ends the search where the whole line is known to be hidden.
+fn covers_of(
+    line: &FeatureLine,
+    occluders: &Occluders<'_>,
+    touching: f64,
+    enough: bool,
+    covers: &mut Vec<Cover>,
+) {
+    let mut found: Vec<(u32, Cover)> = Vec::new();
+    occluders.along(&line.ends, |id, face| {
+        if line.items.contains(&id) && id != NO_ITEM {
+            return true;
+        }
+        let Some(face) = face() else { return true };
+        if line.items.contains(&face.item) || occluders.has_vertex(face.item, line.around) {
+            return true;
+        }
+        let Some(cover) = cover::cover(&line.ends, &face, touching) else { return true };
+        found.push((id, cover));
+        !(enough && cover.from <= 0.0 && cover.to >= 1.0 && cover.left && cover.right)
+    });
+    // A face in several cells was met several times.
+    found.sort_unstable_by_key(|(id, _)| *id);
+    found.dedup_by_key(|(id, _)| *id);
+    covers.clear();
+    covers.extend(found.into_iter().map(|(_, cover)| cover));
+}
+
+/// Cuts one line into pieces.
+fn cut(
+    class: LineClass,
+    ends: [GridPoint; 2],
+    covers: &[Cover],
+    hidden: bool,
+    spans: &mut Vec<cover::Span>,
+    pieces: &mut Vec<Piece>,
+) {
+    let [p, q] = ends;
+    cover::spans(covers, SLIVER / p.distance(q), hidden, spans);
+    let [dx, dy] = q.minus(p).map(|d| d as f64);
+    let at = |t: f64| match t {
+        0.0 => p,
+        1.0 => q,
+        _ => GridPoint { x: p.x + (t * dx).round() as i32, y: p.y + (t * dy).round() as i32 },
+    };
+    for s in spans.iter().filter(|s| hidden || s.invisibility == 0) {
+        pieces.push(Piece { ends: [at(s.from), at(s.to)], class, invisibility: s.invisibility });
+    }
+}

@@ -1,0 +1,57 @@
+//! Fewer points within a tolerance.
+//!
+//! Urs Ramer, *An iterative procedure for the polygonal approximation of plane curves*, 1972; David
+//! Douglas and Thomas Peucker, *Algorithms for the reduction of the number of points required to
+//! represent a digitized line*, 1973. Distances are to the segment, not to its carrier; ends stay.
+//! O(n log n) as a rule, O(n²) at worst.
+
+use super::page::GridPoint;
+
+/// A closed ring counts from the point that lies furthest to the left, then down, and keeps the
+/// point furthest from it as well.
+pub(super) fn simplify(points: &[GridPoint], closed: bool, tolerance: f64) -> Vec<GridPoint> {
+    if !closed {
+        return open(points, tolerance);
+    }
+    let Some(start) = (0..points.len()).min_by_key(|&i| points[i]) else { return Vec::new() };
+    let mut ring: Vec<GridPoint> =
+        points[start..].iter().chain(&points[..start]).copied().collect();
+    ring.push(ring[0]);
+    let furthest = |i: &usize| ring[*i].distance(ring[0]);
+    let middle = (1..ring.len() - 1).max_by(|a, b| furthest(a).total_cmp(&furthest(b)));
+    let Some(middle) = middle else { return ring };
+    let mut kept = open(&ring[..=middle], tolerance);
+    kept.extend_from_slice(&open(&ring[middle..], tolerance)[1..]);
+    kept.pop();
+    kept
+}
+
+fn open(points: &[GridPoint], tolerance: f64) -> Vec<GridPoint> {
+    if points.len() < 3 {
+        return points.to_vec();
+    }
+    let mut keep = vec![false; points.len()];
+    let mut stack = vec![(0, points.len() - 1)];
+    while let Some((a, b)) = stack.pop() {
+        (keep[a], keep[b]) = (true, true);
+        let mut worst = (tolerance, None);
+        for i in a + 1..b {
+            let d = distance(points[i], points[a], points[b]);
+            if d > worst.0 {
+                worst = (d, Some(i));
+            }
+        }
+        if let Some(i) = worst.1 {
+            stack.extend([(a, i), (i, b)]);
+        }
+    }
+    points.iter().zip(keep).filter(|(_, k)| *k).map(|(p, _)| *p).collect()
+}
+
+fn distance(p: GridPoint, a: GridPoint, b: GridPoint) -> f64 {
+    let ([px, py], [bx, by]) = (p.minus(a).map(|d| d as f64), b.minus(a).map(|d| d as f64));
+    let length2 = bx * bx + by * by;
+    let t = if length2 > 0.0 { ((px * bx + py * by) / length2).clamp(0.0, 1.0) } else { 0.0 };
+    let (x, y) = (px - t * bx, py - t * by);
+    (x * x + y * y).sqrt()
+}

@@ -1,0 +1,108 @@
+//! Wireframe: all edges, whatever lies in front.
+//!
+//! Timothy Johnson, *Sketchpad III: a computer program for drawing in three dimensions*, AFIPS Spring
+//! Joint Computer Conference, 1963. Object space; O(n log n) for n edges. The picture is ambiguous:
+//! nothing says which side is in front (Necker's cube), and several bodies may have the same one.
+
+use super::arrange::arrange;
+use super::edge_lines::NO_ITEM;
+use super::overlap::Piece;
+use super::page::{Page, Projected};
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::scene::Scene;
+use crate::target::drawing::{Drawing, Line, LineClass};
+use crate::trace::Tracer;
+use crate::view::View;
+use crate::visibility::object::{Bodies, Faces, PicturePlane, Side};
+use crate::{Error, Result};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "wireframe",
+    title: "Wireframe",
+    authors: "Timothy Johnson",
+    year: 1963,
+    source: "Sketchpad III: a computer program for drawing in three dimensions, AFIPS Spring Joint \
+             Computer Conference",
+    class: Class::ObjectSpace,
+    cost: "O(n log n) for n edges",
+    limits: "ambiguous: nothing says what is in front",
+};
+
+/// How it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// As in [`super::hidden_line::Options::tolerance`].
+    pub tolerance: f64,
+    /// As in [`super::hidden_line::Options::pen_order`].
+    pub pen_order: bool,
+}
+
+impl Default for Options {
+    /// 0.05 pixels in a picture of 1000.
+    fn default() -> Self {
+        Self { tolerance: 5e-5, pen_order: false }
+    }
+}
+
+/// What the algorithm did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The grid was laid.
+    Page(Page),
+    /// One edge was drawn.
+    Edge([DVec2; 2]),
+}
+
+/// The lines that a list of steps leads to.
+pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
+    let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
+    let edges = steps.iter().filter_map(|s| match s {
+        Step::Edge(ends) => Some(piece(ends.map(|p| page.grid_from_plane(p)))),
+        Step::Page(_) => None,
+    });
+    arrange(page, edges.collect(), options.tolerance, options.pen_order)
+}
+
+fn piece(ends: [super::page::GridPoint; 2]) -> Piece {
+    Piece { ends, class: LineClass::Wire, invisibility: 0 }
+}
+
+/// Draws all edges of a scene's faces. Edges inside a polygon that was read as several triangles are
+/// none; edges that lie on each other in the picture are drawn once.
+///
+/// # Errors
+/// [`Error::Parameter`] for an option out of its range, and what [`Faces::new`] finds.
+pub fn draw(
+    scene: &Scene,
+    view: &View,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Drawing> {
+    if !(0.0..0.5).contains(&options.tolerance) {
+        return Err(Error::parameter("tolerance", options.tolerance, "at least 0 and below 0.5"));
+    }
+    let faces = Faces::new(scene)?;
+    let plane = PicturePlane::new(view);
+    let empty = Drawing { window: plane.window(), ..Drawing::default() };
+    let Some(projected) = Projected::new(&faces, plane) else { return Ok(empty) };
+    t.step(|| Step::Page(projected.page));
+    let (_, edges) = Bodies::find(&faces);
+    let mut pieces = Vec::new();
+    for (ends, _) in edges.iter().filter(|(_, sides)| !inside_polygon(&faces, sides)) {
+        let Some(ends) = projected.edge(&faces, ends).filter(|e| e[0].at != e[1].at) else {
+            continue;
+        };
+        let ends = ends.map(|v| v.at);
+        t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
+        pieces.push(piece(ends));
+    }
+    let lines = arrange(&projected.page, pieces, options.tolerance, options.pen_order);
+    Ok(Drawing { lines, ..empty })
+}
+
+fn inside_polygon(faces: &Faces, sides: &[Side]) -> bool {
+    let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s| s.item());
+    sides.len() == 2 && faces.same_polygon(item(0), item(1))
+}

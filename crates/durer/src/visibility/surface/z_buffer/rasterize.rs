@@ -1,0 +1,303 @@
+//! Triangles into the samples of a tile: coverage, depth test, write.
+
+use super::tile::{SamplePlane, TILE};
+use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
+use crate::visibility::surface::setup::ScreenTriangle;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, i32x8, u32x8};
+use fearless_simd_macros::simd;
+
+/// Is asked for each fragment that passes the depth test, with its tile-local pixel; a fragment is
+/// written only if it passes.
+pub trait FragmentTest {
+    fn passes(&mut self, t: &ScreenTriangle, x: i32, y: i32, sample: usize) -> bool;
+}
+
+/// Lets every fragment pass.
+pub struct AllPass;
+
+impl FragmentTest for AllPass {
+    fn passes(&mut self, _: &ScreenTriangle, _: i32, _: i32, _: usize) -> bool {
+        true
+    }
+}
+
+/// Pixels along the side of a block.
+const BLOCK: i32 = 8;
+
+/// Edge functions of triangles of less than this extent fit i32, in units of 1/65536 pixel², at all
+/// pixels of their bounding box and seven beside it: at most 2 · 2¹⁴ · (2¹⁴ + 2¹²) < 2³⁰.
+const SMALL_EXTENT: i32 = 64 * SUBPIXELS;
+
+/// Small triangles of at most this many pixels on a side within the tile skip the test of whole blocks.
+const SMALL: i32 = 16;
+
+/// The edge functions of a triangle at the centre of a pixel, in units of 1/65536 pixel², above or
+/// equal 0 inside; and their change per step of the grid.
+struct Edges {
+    at: [i64; 3],
+    dx: [i32; 3],
+    dy: [i32; 3],
+}
+
+impl Edges {
+    /// At the centre of tile pixel (0, 0).
+    #[inline(always)]
+    fn new(t: &ScreenTriangle, tile: [i32; 2]) -> Self {
+        let x = i64::from(tile[0] * SUBPIXELS + HALF_PIXEL);
+        let y = i64::from(tile[1] * SUBPIXELS + HALF_PIXEL);
+        let (mut at, mut step_x, mut step_y) = ([0; 3], [0; 3], [0; 3]);
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let (dx, dy) = (t.x[j] - t.x[i], t.y[j] - t.y[i]);
+            let value =
+                i64::from(dx) * (y - i64::from(t.y[i])) - i64::from(dy) * (x - i64::from(t.x[i]));
+            at[i] = value - i64::from(!top_left(dx, dy));
+            (step_x[i], step_y[i]) = (-dy, dx);
+        }
+        Self { at, dx: step_x, dy: step_y }
+    }
+}
+
+/// Pixels on a top or left edge belong to the triangle, on others they do not.
+#[inline(always)]
+fn top_left(dx: i32, dy: i32) -> bool {
+    dy < 0 || (dy == 0 && dx > 0)
+}
+
+/// Edge functions of eight samples, in i32.
+#[derive(Clone, Copy)]
+struct LaneEdges<S: Simd> {
+    row: [i32x8<S>; 3],
+    step_y: [i32; 3],
+}
+
+impl<S: Simd> LaneEdges<S> {
+    /// Sign bit set where the sample is outside an edge.
+    #[inline(always)]
+    fn outside(&self) -> i32x8<S> {
+        self.row[0] | self.row[1] | self.row[2]
+    }
+
+    #[inline(always)]
+    fn next_row(&mut self) {
+        self.row[0] += self.step_y[0];
+        self.row[1] += self.step_y[1];
+        self.row[2] += self.step_y[2];
+    }
+}
+
+/// Rasterizes triangles into the planes of the tile whose upper left pixel is `tile`, cut off after
+/// `size` pixels; `test` is asked for each fragment where it is given.
+#[simd]
+pub fn rasterize<'a, S: Simd, T: FragmentTest>(
+    simd: S,
+    planes: &mut [SamplePlane],
+    [tile, size]: [[i32; 2]; 2],
+    triangles: impl Iterator<Item = &'a ScreenTriangle>,
+    mut test: Option<&mut T>,
+) {
+    for t in triangles {
+        let (x_min, x_max) = (t.x[0].min(t.x[1]).min(t.x[2]), t.x[0].max(t.x[1]).max(t.x[2]));
+        let (y_min, y_max) = (t.y[0].min(t.y[1]).min(t.y[2]), t.y[0].max(t.y[1]).max(t.y[2]));
+        let small = x_max - x_min < SMALL_EXTENT && y_max - y_min < SMALL_EXTENT;
+        for plane in planes.iter_mut() {
+            // First and last pixel with a sample between the coordinates.
+            let [[left, right], [up, down]] = plane.reach;
+            let x0 = (x_min - HALF_PIXEL - right + SUBPIXELS - 1) >> SUBPIXEL_BITS;
+            let x1 = (x_max - HALF_PIXEL - left) >> SUBPIXEL_BITS;
+            let y0 = (y_min - HALF_PIXEL - down + SUBPIXELS - 1) >> SUBPIXEL_BITS;
+            let y1 = (y_max - HALF_PIXEL - up) >> SUBPIXEL_BITS;
+            let (x0, x1) = ((x0 - tile[0]).max(0), (x1 - tile[0]).min(size[0] - 1));
+            let (y0, y1) = ((y0 - tile[1]).max(0), (y1 - tile[1]).min(size[1] - 1));
+            // Most triangles of a fine mesh lie between the samples.
+            if x0 > x1 || y0 > y1 {
+                continue;
+            }
+            if small && x1 - x0 < SMALL && y1 - y0 < SMALL {
+                rasterize_box(simd, plane, t, tile, [x0, y0, x1, y1], &mut test);
+            } else {
+                rasterize_blocks(simd, plane, t, tile, [x0, y0, x1, y1], &mut test);
+            }
+        }
+    }
+}
+
+/// Small triangles: all rows of their bounding box, eight samples at a time.
+#[inline(always)]
+fn rasterize_box<S: Simd, T: FragmentTest>(
+    simd: S,
+    plane: &mut SamplePlane,
+    t: &ScreenTriangle,
+    tile: [i32; 2],
+    [x0, y0, x1, y1]: [i32; 4],
+    test: &mut Option<&mut T>,
+) {
+    let columns = 8 >> plane.shift;
+    // Not on a multiple of the columns, so that fewer steps reach over a small box.
+    let mut x = x0.min(TILE - columns);
+    let px = (tile[0] + x) * SUBPIXELS + HALF_PIXEL;
+    let py = (tile[1] + y0) * SUBPIXELS + HALF_PIXEL;
+    let lane_x = i32x8::from_slice(simd, &plane.lanes[0]);
+    let lane_y = i32x8::from_slice(simd, &plane.lanes[1]);
+    let mut edges = LaneEdges { row: [lane_x; 3], step_y: [0; 3] };
+    let mut step_x = [0; 3];
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        let (dx, dy) = (t.x[j] - t.x[i], t.y[j] - t.y[i]);
+        let at = dx * (py - t.y[i]) - dy * (px - t.x[i]) - i32::from(!top_left(dx, dy));
+        edges.row[i] = lane_y * dx - lane_x * dy + at;
+        edges.step_y[i] = dx * SUBPIXELS;
+        step_x[i] = -dy * SUBPIXELS;
+    }
+    loop {
+        fill_rows(simd, plane, t, tile, edges, [x, y0, y1], test);
+        x += columns;
+        if x > x1 {
+            return;
+        }
+        // The last step may not reach beyond the tile.
+        let over = (x + columns - TILE).max(0);
+        x -= over;
+        for i in 0..3 {
+            edges.row[i] += step_x[i] * (columns - over);
+        }
+    }
+}
+
+/// Large triangles: whole blocks of 8 × 8 pixels are rejected or accepted by their corners.
+#[inline(always)]
+fn rasterize_blocks<S: Simd, T: FragmentTest>(
+    simd: S,
+    plane: &mut SamplePlane,
+    t: &ScreenTriangle,
+    tile: [i32; 2],
+    [x0, y0, x1, y1]: [i32; 4],
+    test: &mut Option<&mut T>,
+) {
+    let Edges { at, dx, dy } = Edges::new(t, tile);
+    let columns = 8 >> plane.shift;
+    let [[left, right], [up, down]] = plane.reach;
+    // Edge functions divided by 256 and rounded down keep their signs, for whole pixels change them
+    // by multiples of 256. What they are more at eight samples than at the pixel's centre:
+    let mut lanes = [i32x8::splat(simd, 0); 3];
+    // What they change at least and at most from the centre of a block's first pixel to its samples.
+    let (mut lowest, mut highest) = ([0; 3], [0; 3]);
+    for i in 0..3 {
+        let (dx, dy) = (i64::from(dx[i]), i64::from(dy[i]));
+        let rest = at[i] & i64::from(SUBPIXELS - 1);
+        let mut lane = [0; 8];
+        for (l, lane) in lane.iter_mut().enumerate() {
+            let (x, y) = (i64::from(plane.lanes[0][l]), i64::from(plane.lanes[1][l]));
+            *lane = ((rest + dx * x + dy * y) >> SUBPIXEL_BITS) as i32;
+        }
+        lanes[i] = i32x8::from_slice(simd, &lane);
+        let last = 7 * SUBPIXELS;
+        let (x_first, x_last) = (dx * i64::from(left), dx * i64::from(last + right));
+        let (y_first, y_last) = (dy * i64::from(up), dy * i64::from(last + down));
+        lowest[i] = x_first.min(x_last) + y_first.min(y_last);
+        highest[i] = x_first.max(x_last) + y_first.max(y_last);
+    }
+    let (x0, mut y) = (x0 & -BLOCK, y0 & -BLOCK);
+    while y <= y1 {
+        let mut x = x0;
+        while x <= x1 {
+            let (fx, fy) = (i64::from(x * SUBPIXELS), i64::from(y * SUBPIXELS));
+            let mut edges = LaneEdges { row: [i32x8::splat(simd, 0); 3], step_y: [0; 3] };
+            let (mut step_x, mut outside) = ([0; 3], false);
+            for i in 0..3 {
+                let here = at[i] + i64::from(dx[i]) * fx + i64::from(dy[i]) * fy;
+                outside |= here + highest[i] < 0;
+                // An edge that the whole block lies inside of is left out; the others fit i32.
+                if here + lowest[i] < 0 {
+                    edges.row[i] = lanes[i] + (here >> SUBPIXEL_BITS) as i32;
+                    edges.step_y[i] = dy[i];
+                    step_x[i] = dx[i].wrapping_mul(columns);
+                }
+            }
+            if !outside {
+                let mut column = 0;
+                while column < BLOCK {
+                    fill_rows(simd, plane, t, tile, edges, [x + column, y, y1.min(y + 7)], test);
+                    edges.row[0] += step_x[0];
+                    edges.row[1] += step_x[1];
+                    edges.row[2] += step_x[2];
+                    column += columns;
+                }
+            }
+            x += BLOCK;
+        }
+        y += BLOCK;
+    }
+}
+
+/// Eight samples wide from column x, rows y0 … y1: coverage, depth test, write.
+#[inline(always)]
+fn fill_rows<S: Simd, T: FragmentTest>(
+    simd: S,
+    plane: &mut SamplePlane,
+    t: &ScreenTriangle,
+    tile: [i32; 2],
+    mut edges: LaneEdges<S>,
+    [x, y0, y1]: [i32; 3],
+    test: &mut Option<&mut T>,
+) {
+    let origin = t.origin();
+    let [lanes_x, lanes_y] = &plane.lanes_in_pixels;
+    let from_x = f32x8::from_slice(simd, lanes_x) + (tile[0] + x - origin[0]) as f32;
+    let lanes_y = f32x8::from_slice(simd, lanes_y);
+    let depth_x = from_x * t.depth_dx;
+    for y in y0..=y1 {
+        let outside = edges.outside();
+        edges.next_row();
+        // Thin triangles leave most rows of their boxes and blocks empty.
+        if !outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+            continue;
+        }
+        let index = ((y * TILE + x) << plane.shift) as usize;
+        let depth_y = (lanes_y + (tile[1] + y - origin[1]) as f32) * t.depth_dy;
+        let depth = (depth_x + depth_y) + t.depth;
+        let depth = depth.max(f32x8::splat(simd, t.depth_min)).min(f32x8::splat(simd, t.depth_max));
+        let depth: i32x8<S> = depth.bitcast();
+        let stored = &mut plane.depth[index..index + 8];
+        let old = i32x8::from_slice(simd, stored);
+        // Both are bits of floats ≥ 0, so the difference keeps its sign.
+        let mut write = !((old - depth) | outside) >> 31u32;
+        if !write.simd_lt(i32x8::splat(simd, 0)).any_true() {
+            continue;
+        }
+        let items = &mut plane.item[index..index + 8];
+        let old_item: i32x8<S> = u32x8::from_slice(simd, items).bitcast();
+        let item = t.item as i32;
+        // At equal depths the lower item wins, whatever the order of drawing.
+        let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
+        write &= !(tie_lost >> 31u32);
+        if let Some(test) = test.as_mut() {
+            write = tested(simd, write, t, [x, y], (plane.first, plane.shift), *test);
+        }
+        // Not a select: that would become a masked store, which is far slower.
+        (old ^ ((old ^ depth) & write)).store_slice(stored);
+        let new_item: u32x8<S> = (old_item ^ ((old_item ^ item) & write)).bitcast();
+        new_item.store_slice(items);
+    }
+}
+
+#[inline(never)]
+fn tested<S: Simd, T: FragmentTest>(
+    simd: S,
+    write: i32x8<S>,
+    t: &ScreenTriangle,
+    [x, y]: [i32; 2],
+    (first, shift): (usize, u32),
+    test: &mut T,
+) -> i32x8<S> {
+    let mut lanes = [0i32; 8];
+    write.store_slice(&mut lanes);
+    for (i, lane) in lanes.iter_mut().enumerate() {
+        let (pixel, sample) = (i >> shift, i & ((1 << shift) - 1));
+        if *lane != 0 && !test.passes(t, x + pixel as i32, y, first + sample) {
+            *lane = 0;
+        }
+    }
+    i32x8::from_slice(simd, &lanes)
+}

@@ -1,0 +1,158 @@
+//! Blended surfaces by several methods: what is behind shows through, in the order of the depths.
+
+use crate::scenes::{self, Numbers};
+use crate::surface_scenes::{Prepared, of_triangles};
+use durer::math::{Vec3, Vec4};
+use durer::pipeline::{Mask, RenderOptions, Samples, SurfaceMethod, render};
+use durer::scene::{AlphaMode, Camera, Material, Part, Projection, Scene, ShadingModel};
+use durer::shade::color::{decode_rgba8, encode_rgba8, premultiply};
+use durer::target::Framebuffer;
+
+/// Random triangles, every second one blended, unlit.
+fn half_glass(seed: u64) -> Scene {
+    let mut numbers = Numbers(seed.wrapping_mul(7919).wrapping_add(3));
+    let triangles: Vec<[Vec3; 3]> = (0..24)
+        .map(|_| {
+            let center = numbers.point(0.8);
+            [0; 3].map(|_| center + numbers.point(0.9))
+        })
+        .collect();
+    let mut scene = of_triangles(&triangles);
+    for i in 0..24 {
+        let blended = i % 2 == 1;
+        scene.materials.push(Material {
+            model: ShadingModel::Unlit,
+            base_color: numbers.point(0.5).abs().extend(if blended {
+                0.2 + 0.03 * i as f32
+            } else {
+                1.0
+            }),
+            alpha_mode: if blended { AlphaMode::Blend } else { AlphaMode::Opaque },
+            ..Material::default()
+        });
+        let range = i as u32..i as u32 + 1;
+        scene.meshes[0].parts.push(Part { range, material: Some(i), name: String::new() });
+    }
+    scene
+}
+
+fn picture(scene: &Scene, algorithm: SurfaceMethod, samples: Samples) -> Framebuffer {
+    let options = scenes::options(scene, 90, 70);
+    let options = RenderOptions { algorithm, samples, item: true, ..options };
+    render(scene, &options).expect("picture").0
+}
+
+#[test]
+fn scan_lines_and_painters_order_compose_what_the_z_buffer_sorts() {
+    for (name, scene) in (0..12)
+        .map(|seed| (format!("seed {seed}"), half_glass(seed)))
+        .chain([("materials".to_owned(), scenes::materials())])
+    {
+        let expected = picture(&scene, SurfaceMethod::ZBuffer, Samples::One);
+        for &method in SurfaceMethod::ALL.iter().filter(|m| m.composes()) {
+            if method == SurfaceMethod::ABuffer {
+                continue;
+            }
+            let found = picture(&scene, method, Samples::One);
+            let pairs = found.color.data().iter().zip(expected.color.data());
+            assert_eq!(pairs.filter(|(a, b)| a != b).count(), 0, "{method} {name}");
+            assert!(found.item == expected.item, "{method} {name}");
+        }
+    }
+}
+
+/// Quads that face the eye, whose edges are those of pixels, at random depths: the picture is known by
+/// sorting and compositing.
+#[test]
+fn the_a_buffer_is_sorted_compositing() {
+    const SIDE: u32 = 24;
+    for seed in 0..20 {
+        let mut numbers = Numbers(seed + 77);
+        let mut scene = Scene::default();
+        let mut panes: Vec<(f32, [u32; 4], Vec4)> = Vec::new();
+        let mut triangles = Vec::new();
+        for i in 0..9 {
+            let mut side = || (numbers.next() * (SIDE as f32 + 1.0)) as u32;
+            let (a, b, c, d) = (side(), side(), side(), side());
+            let (x0, x1, y0, y1) = (a.min(b), a.max(b), c.min(d), c.max(d));
+            let z = numbers.next() * 1.8 - 0.9;
+            let alpha = if i % 3 == 0 { 1.0 } else { 0.15 + 0.7 * numbers.next() };
+            let color = Vec4::new(numbers.next(), numbers.next(), numbers.next(), alpha);
+            let at = |x: u32, y: u32| {
+                let half = SIDE as f32 / 2.0;
+                Vec3::new(x as f32 / half - 1.0, 1.0 - y as f32 / half, z)
+            };
+            let [p, q, r, s] = [at(x0, y0), at(x1, y0), at(x1, y1), at(x0, y1)];
+            triangles.extend([[p, q, r], [p, r, s]]);
+            panes.push((z, [x0, x1, y0, y1], color));
+            scene.materials.push(Material {
+                model: ShadingModel::Unlit,
+                base_color: color,
+                alpha_mode: if alpha < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
+                ..Material::default()
+            });
+        }
+        let geometry = of_triangles(&triangles);
+        (scene.meshes, scene.instances) = (geometry.meshes, geometry.instances);
+        let part = |i: u32| Part {
+            range: 2 * i..2 * i + 2,
+            material: Some(i as usize),
+            name: String::new(),
+        };
+        scene.meshes[0].parts = (0..9).map(part).collect();
+        let camera = Camera {
+            eye: Vec3::new(0.0, 0.0, 2.0).as_dvec3(),
+            target: Vec3::ZERO.as_dvec3(),
+            up: Vec3::Y.as_dvec3(),
+            projection: Projection::Orthographic { height: 2.0 },
+            near: 1.0,
+            far: 3.0,
+        };
+        panes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for mask in [Mask::M16, Mask::M64] {
+            let mut options = RenderOptions {
+                algorithm: SurfaceMethod::ABuffer,
+                mask,
+                ..RenderOptions::new(camera)
+            };
+            (options.width, options.height) = (SIDE, SIDE);
+            let found = render(&scene, &options).expect("picture").0;
+            for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+                let here = panes.iter().filter(|(_, [x0, x1, y0, y1], _)| {
+                    (*x0..*x1).contains(&x) && (*y0..*y1).contains(&y)
+                });
+                let sum = here.fold(Vec4::ONE, |under, (_, _, color)| {
+                    premultiply(*color) + under * (1.0 - color.w)
+                });
+                let found = found.color.get(x, y).expect("pixel");
+                let close = encode_rgba8(sum).iter().zip(found).all(|(a, b)| a.abs_diff(b) <= 1);
+                assert!(close, "seed {seed} {mask:?} {x},{y}: {found:?}, {:?}", encode_rgba8(sum));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_method_for_a_scene_is_the_a_buffer_where_something_blends() {
+    assert_eq!(SurfaceMethod::for_scene(&half_glass(0)), SurfaceMethod::ABuffer);
+    assert_eq!(SurfaceMethod::for_scene(&scenes::soup(3, 1)), SurfaceMethod::ZBuffer);
+}
+
+/// Blended surfaces that count as opaque show nothing of what is behind; the others do.
+#[test]
+fn methods_say_truly_whether_they_compose() {
+    let scene = half_glass(3);
+    let opaque = picture(&scene, SurfaceMethod::Warnock, Samples::One);
+    for &method in SurfaceMethod::ALL {
+        let found = picture(&scene, method, Samples::One);
+        let far = |a: &[u8; 4], b: &[u8; 4]| {
+            (decode_rgba8(*a) - decode_rgba8(*b)).abs().max_element() > 0.02
+        };
+        let pairs = found.color.data().iter().zip(opaque.color.data());
+        let differing = pairs.filter(|(a, b)| far(a, b)).count();
+        assert_eq!(differing > 200, method.composes(), "{method}: {differing}");
+    }
+    // The planes of items do not depend on it.
+    let z_buffer = Prepared::new(&scene, 90, 70).by_z_buffer();
+    assert!(z_buffer.item.is_some());
+}

@@ -1,0 +1,256 @@
+//! Hidden lines: the scenes at which solvers fail, laws, and an oracle of other code.
+
+use crate::line_oracle::{Oracle, drawn_twice, segments};
+use crate::line_scenes::{
+    Random, Triangle, city, cuboid, cylinder, placed, quad, random_boxes, soup, view,
+};
+use durer::math::{DMat4, DVec3};
+use durer::target::drawing::{Drawing, LineClass};
+use durer::trace::{NoTrace, Recorder};
+use durer::view::View;
+use durer::visibility::line::hidden_line::{Options, draw, replay};
+use durer::visibility::line::{ClassSet, Intersections, wireframe};
+
+const ISO: DVec3 = DVec3::new(1.0, -1.7, 0.9);
+
+fn drawing(triangles: &[Triangle], view: &View) -> Drawing {
+    draw(&soup(triangles), view, &Options::default(), &mut NoTrace).expect("drawing")
+}
+
+fn count(drawing: &Drawing, visible: bool) -> usize {
+    drawing.lines.iter().filter(|l| l.is_visible() == visible).map(|l| segments(l).len()).sum()
+}
+
+fn lengths(drawing: &Drawing) -> [f64; 2] {
+    [drawing.length(|l| l.is_visible()), drawing.length(|l| !l.is_visible())]
+}
+
+#[test]
+fn cube_has_nine_visible_and_three_hidden_edges() {
+    let cube = cuboid([-1.0; 3], [1.0; 3]);
+    for perspective in [false, true] {
+        let found = drawing(&cube, &view(DVec3::ZERO, ISO, 4.0, perspective));
+        assert_eq!((count(&found, true), count(&found, false)), (9, 3), "{:?}", found.lines);
+        assert!(found.lines.iter().all(|l| l.invisibility <= 1));
+        let outline = found.lines.iter().find(|l| l.class == LineClass::Silhouette && l.closed);
+        assert_eq!(outline.expect("outline").points.len(), 6);
+    }
+    let front = drawing(&cube, &view(DVec3::ZERO, DVec3::NEG_Y, 4.0, false));
+    assert_eq!((front.lines.len(), count(&front, true)), (1, 4));
+}
+
+#[test]
+fn result_is_the_same_at_any_size_place_order_and_turn() {
+    let mut triangles = random_boxes(6, 3);
+    triangles.extend(cylinder([4.0, 4.0], 1.5, [0.0, 9.0], 16));
+    let middle = DVec3::splat(5.0);
+    let expected = lengths(&drawing(&triangles, &view(middle, ISO, 16.0, false)));
+    let agree = |name: &str, found: [f64; 2], scale: f64| {
+        for k in 0..2 {
+            let off = (found[k] / scale - expected[k]).abs();
+            assert!(off < 2e-6 * expected[k], "{name}: {found:?} {expected:?}");
+        }
+    };
+    for scale in [1e-6, 1e-3, 1e3, 1e6] {
+        let matrix = DMat4::from_scale(DVec3::splat(scale));
+        let v = view(middle * scale, ISO, 16.0 * scale, false);
+        let found = draw(&placed(&triangles, matrix), &v, &Options::default(), &mut NoTrace);
+        agree("scaled", lengths(&found.expect("drawing")), scale);
+    }
+    let away = DVec3::new(1e5, -3e5, 2e4);
+    let v = view(middle + away, ISO, 16.0, false);
+    let moved = placed(&triangles, DMat4::from_translation(away));
+    agree(
+        "moved",
+        lengths(&draw(&moved, &v, &Options::default(), &mut NoTrace).expect("drawing")),
+        1.0,
+    );
+    let v = view(middle, ISO, 16.0, false);
+    let mut random = Random(5);
+    for turn_all in [false, true] {
+        let mut mixed = triangles.clone();
+        for i in (1..mixed.len()).rev() {
+            mixed.swap(i, (random.next() * (i + 1) as f64) as usize);
+        }
+        mixed.iter_mut().filter(|_| turn_all || random.next() < 0.3).for_each(|t| t.swap(0, 1));
+        agree("turned", lengths(&drawing(&mixed, &v)), 1.0);
+    }
+}
+
+#[test]
+fn bars_that_overlap_in_a_cycle_have_six_polylines() {
+    // Each bar lies on the next one's end.
+    let bar = |k: usize| {
+        let turn = durer::math::DMat3::from_rotation_z(k as f64 * std::f64::consts::TAU / 3.0);
+        let corners = [[-2.5, -1.2, 0.4], [2.5, -1.2, -0.4], [2.5, -0.8, -0.4], [-2.5, -0.8, 0.4]];
+        quad(corners.map(|c| (turn * DVec3::from(c)).to_array()))
+    };
+    let bars: Vec<Triangle> = (0..3).flat_map(bar).collect();
+    let found = drawing(&bars, &view(DVec3::ZERO, DVec3::Z, 8.0, false));
+    let visible = found.lines.iter().filter(|l| l.is_visible());
+    assert_eq!(visible.count(), 6, "{:?}", found.lines);
+    assert_eq!(found.lines.iter().filter(|l| !l.is_visible()).count(), 6);
+}
+
+#[test]
+fn bar_through_a_bar_has_two_rings_of_intersection() {
+    let mut bars = cuboid([-3.0, -1.0, -1.0], [3.0, 1.0, 1.0]);
+    bars.extend(cuboid([-0.5, -2.0, -0.5], [0.5, 2.0, 0.5]));
+    let v = view(DVec3::ZERO, ISO, 9.0, false);
+    let found = drawing(&bars, &v);
+    let meets = || found.lines.iter().filter(|l| l.class == LineClass::Intersection);
+    let edges: usize = meets().map(|l| segments(l).len()).sum();
+    assert_eq!(edges, 8, "{:?}", meets().collect::<Vec<_>>());
+    let inside = Options { intersections: Intersections::All, ..Options::default() };
+    let all = draw(&soup(&bars), &v, &inside, &mut NoTrace).expect("drawing");
+    assert_eq!(lengths(&all), lengths(&found));
+    let without =
+        Options { classes: ClassSet::default().without(LineClass::Intersection), ..inside };
+    let none = draw(&soup(&bars), &v, &without, &mut NoTrace).expect("drawing");
+    assert!(none.lines.iter().all(|l| l.class != LineClass::Intersection));
+}
+
+/// Scenes with the share of samples that must be right.
+fn zoo() -> Vec<(&'static str, Vec<Triangle>, DVec3)> {
+    let mut touching = cuboid([0.0; 3], [2.0; 3]);
+    touching.extend(cuboid([2.0, 0.5, 0.0], [3.0, 1.5, 1.0]));
+    touching.extend(cuboid([0.5, 0.5, 2.0], [1.5, 1.5, 3.0]));
+    touching.extend(cuboid([-1.0, 0.0, 0.0], [0.0, 2.0, 2.0]));
+    let mut plate = cuboid([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]);
+    plate.extend(cylinder([-1.5, 0.0], 1.2, [0.0, 3.0], 24));
+    plate.extend(cylinder([2.0, 1.0], 0.8, [0.0, 1.5], 17));
+    let mut random = Random(11);
+    let soup: Vec<Triangle> = (0..60)
+        .map(|_| {
+            let at = DVec3::from(std::array::from_fn(|_| random.next() * 6.0));
+            std::array::from_fn(|_| at + DVec3::from(std::array::from_fn(|_| random.next() * 2.0)))
+        })
+        .collect();
+    let twice = [random_boxes(3, 9), random_boxes(3, 9)].concat();
+    vec![
+        ("touching", touching, ISO),
+        ("plate", plate, DVec3::new(0.6, -1.0, 0.7)),
+        ("boxes", random_boxes(25, 1), ISO),
+        ("city", city(6), ISO),
+        ("aligned city", city(6), DVec3::ONE),
+        ("city from above", city(6), DVec3::Z),
+        ("city from the side", city(6), DVec3::NEG_Y),
+        ("triangles", soup, ISO),
+        ("twice the same", twice, ISO),
+    ]
+}
+
+#[test]
+fn samples_of_lines_agree_with_rays() {
+    for (name, triangles, to_eye) in zoo() {
+        let middle = triangles.iter().flatten().sum::<DVec3>() / (3.0 * triangles.len() as f64);
+        for perspective in [false, true] {
+            let v = view(middle, to_eye, 22.0, perspective);
+            let found = drawing(&triangles, &v);
+            let oracle = Oracle::new(&triangles, &v);
+            let [visible, hidden] = oracle.precision(&found, 12);
+            let recall = oracle.recall(&found, 12);
+            for (what, score) in [("visible", visible), ("hidden", hidden), ("recall", recall)] {
+                assert!(score.share() >= 0.999, "{name} {what} {perspective}: {score:?}");
+            }
+            let twice = drawn_twice(&found, 2e-5 * 10.0);
+            assert!(twice <= 1e-3 * lengths(&found)[0], "{name} {perspective}: {twice}");
+        }
+    }
+}
+
+#[test]
+fn replay_gives_the_drawing_and_threads_change_nothing() {
+    let scene = soup(&random_boxes(20, 4));
+    let v = view(DVec3::splat(5.0), ISO, 16.0, true);
+    for (hidden, pen_order) in [(true, false), (false, true)] {
+        let options = Options { hidden, pen_order, ..Options::default() };
+        let mut recorder = Recorder::default();
+        let traced = draw(&scene, &v, &options, &mut recorder).expect("drawing");
+        assert_eq!(replay(recorder.steps(), &options), traced.lines);
+        for threads in [1, 2, 4] {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let found = pool.install(|| draw(&scene, &v, &options, &mut NoTrace)).expect("drawing");
+            assert_eq!(found, traced);
+        }
+    }
+}
+
+#[test]
+fn visible_lines_are_the_same_without_the_hidden_ones() {
+    let scene = soup(&random_boxes(20, 8));
+    let v = view(DVec3::splat(5.0), ISO, 16.0, false);
+    let with = draw(&scene, &v, &Options::default(), &mut NoTrace).expect("drawing");
+    let only = Options { hidden: false, ..Options::default() };
+    let without = draw(&scene, &v, &only, &mut NoTrace).expect("drawing");
+    let visible: Vec<_> = with.lines.into_iter().filter(|l| l.is_visible()).collect();
+    assert_eq!(visible, without.lines);
+}
+
+#[test]
+fn lines_end_at_the_window_and_at_the_near_plane() {
+    let triangles = random_boxes(20, 2);
+    let v = view(DVec3::splat(5.0), ISO, 3.0, false);
+    let found = drawing(&triangles, &v);
+    let window = found.window.expect("window");
+    let slack = 1e-6;
+    assert!(
+        found.lines.iter().flat_map(|l| &l.points).all(|p| {
+            p.x.abs() <= window.max().x + slack && p.y.abs() <= window.max().y + slack
+        })
+    );
+    // From within the boxes.
+    let mut camera = *v.camera();
+    camera.eye = DVec3::new(4.0, 4.0, 4.0);
+    camera.projection = durer::scene::Projection::Perspective { fov_y: 1.2 };
+    camera.near = 1e-3;
+    let inside = View::new(camera, 800, 800).expect("view");
+    let found = drawing(&triangles, &inside);
+    let oracle_points = found.lines.iter().flat_map(|l| &l.points);
+    assert!(oracle_points.clone().count() > 0 && oracle_points.clone().all(|p| p.is_finite()));
+}
+
+#[test]
+fn open_sheets_hide_from_both_sides_and_have_borders() {
+    let mut sheets = quad([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]]);
+    sheets.extend(quad([[1.0, 1.0, -1.0], [5.0, 1.0, -1.0], [5.0, 2.0, -1.0], [1.0, 2.0, -1.0]]));
+    for turned in [false, true] {
+        let mut sheets = sheets.clone();
+        if turned {
+            sheets.iter_mut().take(2).for_each(|t| t.swap(0, 1));
+        }
+        let found = drawing(&sheets, &view(DVec3::new(2.0, 2.0, 0.0), DVec3::Z, 12.0, false));
+        assert!(found.lines.iter().all(|l| l.class == LineClass::Border));
+        let [visible, hidden] = lengths(&found);
+        assert!((visible - (16.0 + 3.0)).abs() < 1e-5 && (hidden - 7.0).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn wireframe_has_each_edge_once() {
+    let cube = cuboid([-1.0; 3], [1.0; 3]);
+    let v = view(DVec3::ZERO, ISO, 4.0, false);
+    let options = wireframe::Options::default();
+    let mut recorder = Recorder::default();
+    let found = wireframe::draw(&soup(&cube), &v, &options, &mut recorder).expect("drawing");
+    // Twelve edges and six diagonals.
+    assert_eq!(count(&found, true), 18);
+    assert_eq!(wireframe::replay(recorder.steps(), &options), found.lines);
+}
+
+#[test]
+fn nothing_and_nonsense_are_no_drawing() {
+    let v = view(DVec3::ZERO, ISO, 4.0, true);
+    assert!(drawing(&[], &v).lines.is_empty());
+    let nan =
+        [[DVec3::NAN, DVec3::X, DVec3::Y], [DVec3::X; 3], [DVec3::ZERO, DVec3::X, DVec3::X * 2.0]];
+    let found = drawing(&nan, &v);
+    assert!(found.lines.iter().flat_map(|l| &l.points).all(|p| p.is_finite()));
+    let huge: Vec<Triangle> =
+        cuboid([-1.0; 3], [1.0; 3]).into_iter().map(|t| t.map(|p| p * 1e38)).collect();
+    let found = drawing(&huge, &v);
+    assert!(found.lines.iter().flat_map(|l| &l.points).all(|p| p.is_finite()));
+    let wrong = Options { crease: f64::NAN, ..Options::default() };
+    assert!(draw(&soup(&[]), &v, &wrong, &mut NoTrace).is_err());
+}

@@ -1,0 +1,107 @@
+//! Scenes and views for drawings: bodies put together from boxes and triangles.
+
+use durer::math::{DMat4, DVec3, Vec3};
+use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
+use durer::view::View;
+
+pub type Triangle = [DVec3; 3];
+
+/// The twelve triangles of a box, turned outwards.
+pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Vec<Triangle> {
+    let p = |i: usize| {
+        DVec3::from(std::array::from_fn(|k| if i >> k & 1 == 1 { max[k] } else { min[k] }))
+    };
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    quads.iter().flat_map(|&[a, b, c, d]| [[p(a), p(b), p(c)], [p(a), p(c), p(d)]]).collect()
+}
+
+/// A flat rectangle with one side along x, seen from above, tilted by its corners' heights.
+pub fn quad(corners: [[f64; 3]; 4]) -> Vec<Triangle> {
+    let [a, b, c, d] = corners.map(DVec3::from);
+    vec![[a, b, c], [a, c, d]]
+}
+
+/// An upright cylinder of `n` sides.
+pub fn cylinder(center: [f64; 2], radius: f64, heights: [f64; 2], n: usize) -> Vec<Triangle> {
+    let at = |i: usize, z: f64| {
+        let a = (i % n) as f64 / n as f64 * std::f64::consts::TAU;
+        DVec3::new(center[0] + radius * a.cos(), center[1] + radius * a.sin(), z)
+    };
+    let [low, high] = heights;
+    let middle = |z| DVec3::new(center[0], center[1], z);
+    (0..n)
+        .flat_map(|i| {
+            [
+                [at(i, low), at(i + 1, low), at(i + 1, high)],
+                [at(i, low), at(i + 1, high), at(i, high)],
+                [middle(high), at(i, high), at(i + 1, high)],
+                [middle(low), at(i + 1, low), at(i, low)],
+            ]
+        })
+        .collect()
+}
+
+/// A scene of one mesh without shared vertices.
+pub fn soup(triangles: &[Triangle]) -> Scene {
+    placed(triangles, DMat4::IDENTITY)
+}
+
+/// The same, moved.
+pub fn placed(triangles: &[Triangle], world_from_mesh: DMat4) -> Scene {
+    let positions: Vec<Vec3> = triangles.iter().flatten().map(|p| p.as_vec3()).collect();
+    let mesh = Mesh { positions, ..Mesh::default() };
+    let instance = Instance { mesh: 0, world_from_mesh, name: String::new() };
+    Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
+}
+
+/// A view of `height` world units from a direction, z up.
+pub fn view(target: DVec3, to_eye: DVec3, height: f64, perspective: bool) -> View {
+    let to_eye = to_eye.normalize();
+    let up = if to_eye.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
+    let distance = 3.0 * height;
+    let projection = if perspective {
+        Projection::Perspective { fov_y: 2.0 * (0.5 * height / distance).atan() }
+    } else {
+        Projection::Orthographic { height }
+    };
+    let (near, far) = (0.1 * height, 8.0 * height);
+    let camera = Camera { eye: target + to_eye * distance, target, up, projection, near, far };
+    View::new(camera, 1000, 1000).expect("view")
+}
+
+/// Numbers that look random, 0 … 1.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / (1u64 << 31) as f64
+    }
+}
+
+/// Boxes of random place and size that may penetrate each other.
+pub fn random_boxes(count: usize, seed: u64) -> Vec<Triangle> {
+    let mut random = Random(seed);
+    let mut triangles = Vec::new();
+    for _ in 0..count {
+        let min: [f64; 3] = std::array::from_fn(|_| random.next() * 8.0);
+        let max: [f64; 3] = std::array::from_fn(|k| min[k] + 0.3 + random.next() * 2.0);
+        triangles.extend(cuboid(min, max));
+    }
+    triangles
+}
+
+/// Towers on a square grid, whose edges are aligned in many views.
+pub fn city(side: usize) -> Vec<Triangle> {
+    let mut triangles = Vec::new();
+    for i in 0..side {
+        for j in 0..side {
+            let (x, y) = (i as f64 * 2.0, j as f64 * 2.0);
+            let height = 1.0 + ((i * 7 + j * 3) % 4) as f64;
+            triangles.extend(cuboid([x, y, 0.0], [x + 1.0, y + 1.0, height]));
+        }
+    }
+    triangles
+}

@@ -1,0 +1,111 @@
+//! Cases of the kinds that published bug reports are about, redrawn, and long rings.
+
+use durer::clip::line::{LineClipper, Segment};
+use durer::clip::polygon::overlay::{Options, overlay};
+use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, rectangle};
+use durer::math::{DVec2, Rect};
+use durer::trace::NoTrace;
+use proptest::prelude::*;
+
+use super::{distance, validity};
+
+fn area(a: &Shapes, b: &Shapes, op: BooleanOp) -> f64 {
+    let out = overlay(a, b, op, &Options::default(), &mut NoTrace).expect("finite");
+    validity::check(&out.shapes, out.cell).expect("valid");
+    out.shapes.area()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Two slanted quads side by side whose common edge is rounded differently in each, by some ulps:
+    /// neither half may vanish, and there is nothing in both (libgeos/geos#1344, iOverlay#19).
+    #[test]
+    fn neighbours_with_a_rounded_edge_are_joined(
+        angle in -1.6..1.6f64, at in prop::array::uniform2(-400.0..400.0f64), size in prop::array::uniform3(0.5..40.0f64),
+        off in prop::array::uniform4(-3i64..=3),
+    ) {
+        let (sin, cos) = libm::sincos(angle);
+        let place = |x: f64, y: f64| DVec2::new(at[0] + cos * x - sin * y, at[1] + sin * x + cos * y);
+        let nudged = |v: f64, by: i64| f64::from_bits((v.to_bits() as i64 + by) as u64);
+        let (low, high) = (place(0.0, 0.0), place(0.0, size[2]));
+        let again = [DVec2::new(nudged(low.x, off[0]), nudged(low.y, off[1])), DVec2::new(nudged(high.x, off[2]), nudged(high.y, off[3]))];
+        let a = Shapes::from_rings([[low, high, place(-size[0], size[2]), place(-size[0], 0.0)]]);
+        let b = Shapes::from_rings([[again[0], place(size[1], 0.0), place(size[1], size[2]), again[1]]]);
+        let (whole, both) = ((size[0] + size[1]) * size[2], area(&a, &b, BooleanOp::Intersection));
+        prop_assert!((area(&a, &b, BooleanOp::Union) - whole).abs() < 1e-4 && both < 1e-4);
+        prop_assert!((area(&a, &b, BooleanOp::Difference) - size[0] * size[2]).abs() < 1e-4);
+    }
+
+    /// No corner of the window that the polygon does not cover (AngusJohnson/Clipper2#542, #1095):
+    /// areas do not show it, distances do.
+    #[test]
+    fn rectangle_clips_have_no_stray_corner(
+        ring in prop::collection::vec((-9i32..=9, -9i32..=9), 3), window in (-6i32..=2, -6i32..=2, 1i32..=8, 1i32..=8),
+    ) {
+        let ring: Vec<DVec2> = ring.iter().map(|&(x, y)| DVec2::new(x.into(), y.into())).collect();
+        let triangle = Shapes::from_rings([&ring]);
+        prop_assume!(triangle.area() != 0.0);
+        let min = DVec2::new(window.0.into(), window.1.into());
+        let window = Rect::new(min, min + DVec2::new(window.2.into(), window.3.into())).expect("a window");
+        let clipped = rectangle::clip(&window, &triangle, &rectangle::Options, &mut NoTrace).expect("finite");
+        let (a, b) = (window.min(), window.max());
+        let mask = Shapes::from_rings([[a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)]]);
+        let options = Options::default();
+        let apart = distance::both_ways([&triangle, &mask], BooleanOp::Intersection, &options, &clipped, 1e-9);
+        prop_assert!(apart.iter().all(|d| *d < 1e-7), "{:?} {:?}", apart, clipped);
+    }
+}
+
+/// A window with its borders exchanged is refused, and no number that is none gets in
+/// (ratatui/ratatui#2722).
+#[test]
+fn reversed_windows_and_nan_end_at_once() {
+    assert!(Rect::new(DVec2::ONE, DVec2::ZERO).is_err());
+    let window = Rect::new(DVec2::ZERO, DVec2::ONE).expect("a window");
+    for &clipper in LineClipper::ALL {
+        let segment = Segment::new(DVec2::splat(f64::NAN), DVec2::ONE);
+        assert!(clipper.clip(&window, segment).is_err());
+    }
+}
+
+/// A ring of n vertices that goes in and out between two radii, with whole-numbered noise.
+fn coast(n: usize, seed: u64, center: DVec2) -> Shapes {
+    let mut state = seed;
+    let mut noise = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1u32 << 24)
+    };
+    let point = |i: usize| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * i as f64 / n as f64);
+        center + DVec2::new(cos, sin) * (1e6 + 300.0 * noise())
+    };
+    Shapes::from_rings([(0..n).map(point).collect::<Vec<_>>()])
+}
+
+#[test]
+fn rings_of_a_hundred_thousand_vertices() {
+    let (a, b) = (coast(100_000, 1, DVec2::ZERO), coast(100_000, 2, DVec2::new(40.0, -30.0)));
+    let area = |op| {
+        let options = Options::default();
+        overlay(&a, &b, op, &options, &mut NoTrace).expect("finite").shapes.area()
+    };
+    let [and, or, sub] =
+        [BooleanOp::Intersection, BooleanOp::Union, BooleanOp::Difference].map(area);
+    let within = 1e-9 * or;
+    assert!(
+        (and + or - a.area() - b.area()).abs() < within && (and + sub - a.area()).abs() < within
+    );
+    // In a window that cuts it thousands of times, three algorithms give one area.
+    let (low, high) = (DVec2::new(-1e6, -1e6 - 150.0), DVec2::new(1e6 + 150.0, 1e6));
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    let window = Shapes::from_rings([corners]);
+    let clipped = |clipper: PolygonClipper| {
+        clipper.clip(&a, &window, BooleanOp::Intersection).expect("a window").area()
+    };
+    let expected = clipped(PolygonClipper::Rectangle);
+    for clipper in [PolygonClipper::SutherlandHodgman, PolygonClipper::Overlay] {
+        assert!((clipped(clipper) - expected).abs() < 1e-9 * expected, "{clipper}");
+    }
+}

@@ -1,0 +1,76 @@
+//! Wireframes: each edge once, in the picture only, whatever lies behind the eye.
+
+use crate::scenes;
+use crate::surface_scenes::{Prepared, of_triangles};
+use durer::math::{IVec2, Vec3};
+use durer::raster::line::{self, bresenham};
+use durer::scene::Scene;
+use durer::target::Pixels;
+use durer::trace::{NoTrace, Recorder};
+use durer::view::View;
+use durer::visibility::wireframe::{Options, Step, render};
+
+fn draw(scene: &Scene, view: &View) -> (Pixels<[u8; 4]>, Vec<Step>) {
+    let mut steps = Recorder::default();
+    let mut target = Pixels::new(view.width(), view.height(), [255; 4]);
+    render(scene, view, &Options::default(), &mut target, &mut steps);
+    let mut quiet = Pixels::new(view.width(), view.height(), [255; 4]);
+    render(scene, view, &Options::default(), &mut quiet, &mut NoTrace);
+    assert!(quiet == target, "listening changes the picture");
+    (target, steps.into_steps())
+}
+
+#[test]
+fn a_shared_edge_is_drawn_once() {
+    let p = [
+        Vec3::new(-1., -1., 0.),
+        Vec3::new(1., -1., 0.),
+        Vec3::new(1., 1., 0.),
+        Vec3::new(-1., 1., 0.),
+    ];
+    let mut scene = of_triangles(&[[p[0], p[1], p[2]]]);
+    scene.meshes[0].positions = p.to_vec();
+    scene.meshes[0].indices = Some(vec![0, 1, 2, 0, 2, 3]);
+    let prepared = Prepared::new(&scene, 64, 64);
+    assert_eq!(draw(&scene, &prepared.view).1.len(), 5);
+}
+
+#[test]
+fn the_picture_is_rebuilt_from_its_steps() {
+    let scene = scenes::materials();
+    let prepared = Prepared::new(&scene, 90, 70);
+    let (found, steps) = draw(&scene, &prepared.view);
+    let mut rebuilt = Pixels::new(90, 70, [255; 4]);
+    for Step::Edge { from, to, .. } in steps {
+        for end in [from, to] {
+            assert!(end.cmpge(IVec2::ZERO).all() && end.x < 90 && end.y < 70, "{end}");
+        }
+        let plot = |p: IVec2| rebuilt.set(p.x as u32, p.y as u32, [0, 0, 0, 255]);
+        bresenham::draw(from, to, &line::Options::default(), plot, &mut NoTrace);
+    }
+    assert!(rebuilt == found);
+    assert!(found.data().iter().filter(|c| c[0] == 0).count() > 800);
+}
+
+/// Hidden edges are there too: that is what makes a wireframe ambiguous.
+#[test]
+fn what_is_hidden_is_drawn() {
+    let near = [Vec3::new(-2., -2., 0.5), Vec3::new(2., -2., 0.5), Vec3::new(0., 2.5, 0.5)];
+    let far = [Vec3::new(-0.3, -0.3, -1.0), Vec3::new(0.3, -0.3, -1.0), Vec3::new(0., 0.3, -1.0)];
+    let both = of_triangles(&[near, far]);
+    let one = of_triangles(&[near]);
+    let prepared = Prepared::new(&both, 80, 80);
+    let dark = |scene| draw(scene, &prepared.view).0.data().iter().filter(|c| c[0] == 0).count();
+    assert!(dark(&both) > dark(&one) + 15);
+}
+
+#[test]
+fn soups_around_the_eye_do_no_harm() {
+    for seed in 0..20 {
+        let scene = scenes::soup(60, seed);
+        for (width, height) in [(1, 1), (50, 40)] {
+            let prepared = Prepared::new(&scene, width, height);
+            draw(&scene, &prepared.view);
+        }
+    }
+}

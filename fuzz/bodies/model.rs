@@ -1,0 +1,351 @@
+//! What must hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`,
+//! `meshopt`, `obj`, `mtl`, `stl`, `ply` and `threemf`, which the tests call as well.
+
+use arbitrary::{Result, Unstructured};
+use durer_formats::{
+    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, gltf, obj, ply, stl, threemf,
+};
+use std::io::{Cursor, Write};
+
+/// Small enough for many runs a second.
+fn options() -> ReadOptions {
+    let limits = Limits {
+        primitives: 10_000,
+        instances: 1_000,
+        decoded_bytes: 1 << 20,
+        image_side: 256,
+        depth: 64,
+    };
+    ReadOptions { limits, pose: Some(Pose { animation: None, time: 0.5 }) }
+}
+
+/// Every file that a model refers to has the same bytes.
+struct Same<'a>(&'a [u8]);
+
+impl Resources for Same<'_> {
+    fn read(&self, _path: &str, limit: u64) -> std::result::Result<Vec<u8>, String> {
+        let whole = self.0.len() as u64 <= limit;
+        whole.then(|| self.0.to_vec()).ok_or_else(|| "too long".to_owned())
+    }
+}
+
+/// A model that is read can be drawn.
+fn check(model: durer_formats::Result<durer_formats::Model>) {
+    if let Ok(model) = model {
+        let sound = model.scene.check();
+        assert!(sound.is_ok(), "{sound:?}");
+    }
+}
+
+/// glTF as text and as GLB; and a JSON text of the format's words with the rest as buffer.
+pub fn gltf(bytes: &[u8]) {
+    check(gltf::read(bytes, &Same(bytes), &options()));
+    let _ = ModelFormat::of_content(bytes);
+    if let Ok((json, buffer)) = document(bytes) {
+        check(gltf::read(&glb(&json, buffer), &Same(buffer), &options()));
+    }
+}
+
+/// A document whose numbers come from the input, so that most of it is well formed.
+fn document(bytes: &[u8]) -> Result<(String, &[u8])> {
+    let mut u = Unstructured::new(bytes);
+    let mut small = |most: u32| u.int_in_range(0..=most);
+    let component = [5120, 5121, 5122, 5123, 5125, 5126, 7][small(6)? as usize];
+    let kind = ["SCALAR", "VEC2", "VEC3", "VEC4", "MAT4"][small(4)? as usize];
+    let (offset, stride, count, length) = (small(9)?, small(16)?, small(9)?, small(99)?);
+    let (mode, index, child, skin) = (small(7)?, small(3)?, small(3)?, small(2)?);
+    let mut view = format!(r#"{{"buffer":0,"byteLength":{length},"byteOffset":{offset}"#);
+    if stride > 3 {
+        view += &format!(r#","byteStride":{stride}"#);
+    }
+    let accessor = format!(
+        r#"{{"bufferView":{index},"componentType":{component},"count":{count},"type":"{kind}","normalized":{}}}"#,
+        mode % 2 == 0
+    );
+    let position = r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}"#;
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{}}}],"bufferViews":[{view}}},
+        {{"buffer":0,"byteLength":36}}],"accessors":[{position},{accessor}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"COLOR_0":{},"JOINTS_0":1,"WEIGHTS_0":1}},
+        "indices":{index},"mode":{mode}}}]}}],"nodes":[{{"mesh":0,"children":[{child}]}},
+        {{"mesh":0,"skin":{skin}}}],"skins":[{{"joints":[0],"inverseBindMatrices":1}}],
+        "animations":[{{"channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}],
+        "samplers":[{{"input":1,"output":0}}]}}],"images":[{{"bufferView":{index}}}]}}"#,
+        u.len(),
+        index % 2,
+    );
+    Ok((json, u.take_rest()))
+}
+
+/// A GLB of a JSON text and a buffer.
+fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
+    let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
+    let word = |v: usize| (v as u32).to_le_bytes();
+    let mut file = b"glTF\x02\0\0\0".to_vec();
+    file.extend(word(28 + json.len() + buffer.len()));
+    file.extend(word(json.len()));
+    file.extend(b"JSON");
+    file.extend(json.bytes());
+    file.extend(word(buffer.len()));
+    file.extend(b"BIN\0");
+    file.extend(buffer);
+    file
+}
+
+/// The bytes as a Draco bitstream of one primitive.
+pub fn draco(bytes: &[u8]) {
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{0}}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{0}}}],
+        "accessors":[{{"componentType":5126,"count":3,"type":"VEC3"}},
+        {{"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"COLOR_0":1}},"extensions":
+        {{"KHR_draco_mesh_compression":{{"bufferView":0,"attributes":{{"POSITION":0,"COLOR_0":1}}}}}}}}]}}],
+        "nodes":[{{"mesh":0}}],"extensionsRequired":["KHR_draco_mesh_compression"],
+        "extensionsUsed":["KHR_draco_mesh_compression"]}}"#,
+        bytes.len()
+    );
+    check(gltf::read(&glb(&json, bytes), &Same(&[]), &options()));
+}
+
+/// The bytes as a view compressed by meshoptimizer; the first few say how.
+pub fn meshopt(bytes: &[u8]) {
+    let mut u = Unstructured::new(bytes);
+    let Ok((json, data)) = meshopt_document(&mut u) else { return };
+    check(gltf::read(&glb(&json, data), &Same(&[]), &options()));
+}
+
+fn meshopt_document<'a>(u: &mut Unstructured<'a>) -> Result<(String, &'a [u8])> {
+    let mode = *u.choose(&["ATTRIBUTES", "TRIANGLES", "INDICES"])?;
+    let filter = *u.choose(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"])?;
+    let stride = *u.choose(&[2u64, 4, 8, 12, 16, 256, 260])?;
+    let count = u.int_in_range(0u64..=300)?;
+    let data = u.peek_bytes(u.len()).unwrap_or_default();
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{0}}},{{"byteLength":{1}}}],
+        "bufferViews":[{{"buffer":1,"byteLength":{1},"extensions":{{"EXT_meshopt_compression":
+        {{"buffer":0,"byteLength":{0},"byteStride":{stride},"count":{count},"mode":"{mode}",
+        "filter":"{filter}"}}}}}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":3,
+        "type":"VEC3"}},{{"bufferView":0,"componentType":5123,"count":3,"type":"SCALAR"}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}},
+        {{"attributes":{{"POSITION":0}},"indices":1}}]}}],"nodes":[{{"mesh":0}}],
+        "extensionsRequired":["EXT_meshopt_compression"],"extensionsUsed":["EXT_meshopt_compression"]}}"#,
+        data.len(),
+        stride * count,
+    );
+    Ok((json, data))
+}
+
+/// A text of the format's words, with numbers and bytes between.
+fn text(bytes: &[u8], words: &[&str]) -> Result<Vec<u8>> {
+    let mut u = Unstructured::new(bytes);
+    let mut text = Vec::new();
+    while !u.is_empty() {
+        match u.arbitrary::<u8>()? {
+            0 => text.push(u.arbitrary()?),
+            1 => text.extend(format!(" {}", u.arbitrary::<i8>()?).bytes()),
+            2 => text.extend(format!(" {}", f32::from_bits(u.arbitrary()?)).bytes()),
+            word => text.extend(words[usize::from(word) % words.len()].bytes()),
+        }
+    }
+    Ok(text)
+}
+
+const OBJ: &[&str] = &[
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\n",
+    "f 1 2 3\n",
+    "f 1/1/1 2/1/1 3/1/1\n",
+    "f -1 -2 -3\n",
+    "vt 0 0\n",
+    "vn 0 0 1\n",
+    "\n",
+    "f",
+    "v",
+    "vp",
+    "l 1 2\n",
+    "p 1\n",
+    "/",
+    "//",
+    "usemtl m\n",
+    "mtllib a.mtl\n",
+    "g a b\n",
+    "o n\n",
+    "s 1\n",
+    "\\\n",
+    "#",
+    "deg 3\n",
+    "curv 0 1 1 2\n",
+    "end\n",
+    " 1",
+    " 0",
+    " 99999999999",
+];
+
+/// OBJ.
+pub fn obj(bytes: &[u8]) {
+    check(obj::read(bytes, &Same(bytes), &options()));
+    if let Ok(text) = text(bytes, OBJ) {
+        check(obj::read(&text, &Same(bytes), &options()));
+    }
+}
+
+const MTL: &[&str] = &[
+    "newmtl m\n",
+    "Kd",
+    "Ka",
+    "Ks",
+    "Ke",
+    "Ns",
+    "d",
+    "Tr",
+    "illum",
+    "map_Kd",
+    "map_Bump",
+    " -s",
+    " -o",
+    " -bm",
+    " -clamp on",
+    " a.png",
+    "\n",
+    " 1 1 1\n",
+    " spectral",
+    " xyz",
+    "Pr",
+    "Pm",
+    "aniso",
+    "refl",
+    "norm",
+    "#",
+];
+
+/// MTL: the library of an OBJ of one triangle.
+pub fn mtl(bytes: &[u8]) {
+    let model = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n";
+    check(obj::read(model, &Same(bytes), &options()));
+    if let Ok(text) = text(bytes, MTL) {
+        check(obj::read(model, &Same(&text), &options()));
+    }
+}
+
+const STL: &[&str] = &[
+    "solid",
+    "endsolid",
+    "facet normal 0 0 1\n",
+    "outer loop\n",
+    "vertex 0 0 0\n",
+    "vertex 1 0 0\n",
+    "vertex 0 1 0\n",
+    "endloop\n",
+    "endfacet\n",
+    "vertex",
+    "\n",
+    " ",
+];
+
+/// STL: as it is, as words, and as a binary file with the right count.
+pub fn stl(bytes: &[u8]) {
+    check(stl::read(bytes, &NoResources, &options()));
+    if let Ok(text) = text(bytes, STL) {
+        check(stl::read(&text, &NoResources, &options()));
+    }
+    let mut binary = vec![0; 80];
+    binary.extend(((bytes.len() / 50) as u32).to_le_bytes());
+    binary.extend(bytes);
+    check(stl::read(&binary, &NoResources, &options()));
+}
+
+const PLY: &[&str] = &[
+    "ply\n",
+    "format ascii 1.0\n",
+    "format binary_little_endian 1.0\n",
+    "format binary_big_endian 1.0\n",
+    "element vertex 3\n",
+    "element face 1\n",
+    "element",
+    "property float x\n",
+    "property float y\n",
+    "property float z\n",
+    "property uchar red\n",
+    "property list uchar int vertex_indices\n",
+    "property list float double vertex_index\n",
+    "property",
+    "comment\n",
+    "end_header\n",
+    "0 0 0\n",
+    "1 0 0\n",
+    "0 1 0\n",
+    "3 0 1 2\n",
+    " ",
+    "\n",
+];
+
+/// PLY.
+pub fn ply(bytes: &[u8]) {
+    check(ply::read(bytes, &NoResources, &options()));
+    if let Ok(text) = text(bytes, PLY) {
+        check(ply::read(&text, &NoResources, &options()));
+        let mut whole = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty \
+            float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            .to_vec();
+        whole.extend(bytes);
+        check(ply::read(&whole, &NoResources, &options()));
+    }
+}
+
+const THREEMF: &[&str] = &[
+    "<model unit=\"inch\">",
+    "</model>",
+    "<resources>",
+    "</resources>",
+    "<object id=\"1\">",
+    "<object id=\"2\">",
+    "</object>",
+    "<mesh>",
+    "</mesh>",
+    "<vertices>",
+    "</vertices>",
+    "<vertex x=\"0\" y=\"1\" z=\"0\"/>",
+    "<vertex x=\"1\" y=\"1e39\" z=\"0\"/>",
+    "<triangles>",
+    "</triangles>",
+    "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>",
+    "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"3\" p1=\"0\"/>",
+    "<components>",
+    "</components>",
+    "<component objectid=\"1\"/>",
+    "<component objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 1 2 3\"/>",
+    "<build>",
+    "</build>",
+    "<item objectid=\"1\"/>",
+    "<item objectid=\"2\"/>",
+    "<basematerials id=\"3\">",
+    "<base name=\"a\" displaycolor=\"#102030\"/>",
+    "</basematerials>",
+    "<m:colorgroup id=\"3\">",
+    "<m:color color=\"#10203040\"/>",
+    "</m:colorgroup>",
+    "<",
+    ">",
+    "\"",
+    "&amp;",
+];
+
+/// 3MF: the archive as it is, and one whose model is words of the format.
+pub fn threemf(bytes: &[u8]) {
+    check(threemf::read(bytes, &NoResources, &options()));
+    if let Some(archive) = text(bytes, THREEMF).ok().and_then(|model| archive(&model)) {
+        check(threemf::read(&archive, &NoResources, &options()));
+    }
+}
+
+fn archive(model: &[u8]) -> Option<Vec<u8>> {
+    let root: &[u8] = br#"<Relationships><Relationship Target="/a.model" Id="b" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#;
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let stored =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    for (name, content) in [("_rels/.rels", root), ("a.model", model)] {
+        zip.start_file(name, stored).ok()?;
+        zip.write_all(content).ok()?;
+    }
+    Some(zip.finish().ok()?.into_inner())
+}

@@ -1,0 +1,7 @@
+#![no_main]
+#![allow(dead_code)]
+
+#[path = "../bodies/geo.rs"]
+mod geo;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| geo::wkt(data));
