@@ -78,7 +78,8 @@ fn options_of_plots_are_checked() {
 #[test]
 fn broken_height_maps_are_told_with_their_place() {
     let folder = Folder::new();
-    folder.write("short.asc", "ncols 3\nnrows 2\ncellsize 1\nxllcorner 0\nyllcorner 0\n1 2 3\n4 5\n");
+    folder
+        .write("short.asc", "ncols 3\nnrows 2\ncellsize 1\nxllcorner 0\nyllcorner 0\n1 2 3\n4 5\n");
     folder.write("ragged.csv", "1,2,3\n1,2\n");
     folder.write("word.csv", "1,2,3\n1,two,3\n");
     folder.write("none.json", "{\"width\": 2}");

@@ -37,7 +37,8 @@ fn the_same_heights_in_every_format() {
         [1.0f32, 2.0, 3.0, 4.0, f32::NAN, 6.0].iter().flat_map(|v| v.to_be_bytes()).collect();
     let by_columns: Vec<u8> =
         [1.0f64, 4.0, 2.0, f64::NAN, 3.0, 6.0].iter().flat_map(|v| v.to_le_bytes()).collect();
-    let esri = b"NCOLS 3\r\nnrows 2\r\nxllcenter 10\r\nyllcenter 20\r\ncellsize 2\r\nNODATA_value -1\r\n\
+    let esri =
+        b"NCOLS 3\r\nnrows 2\r\nxllcenter 10\r\nyllcenter 20\r\ncellsize 2\r\nNODATA_value -1\r\n\
                  1 2 3\r\n4 -1 6\r\n";
     for (name, bytes) in [
         ("big-endian f4", npy(">f4", false, "(2, 3)", &floats)),

@@ -136,11 +136,20 @@ fn axis(
             options.text,
         ));
     }
-    if !name.is_empty() {
-        let height = options.text;
-        let at = middle + out * ((TICK + 2.2 * GAP + widest) * letter);
-        marks.labels.push(label(at, out, name.to_owned(), letter, height));
+    if name.is_empty() {
+        return;
     }
+    let height = options.text;
+    // Beside an upright axis a long name would need a wide margin: it stands on top.
+    let (at, out) = match edge.k {
+        1 => (edge.seen[1] + DVec2::Y * (GAP * 1.6 * letter), DVec2::Y),
+        _ => (middle + out * ((TICK + 2.2 * GAP + widest) * letter), out),
+    };
+    let letters = name.to_owned();
+    marks.labels.push(match edge.k {
+        1 => Label { at, text: letters, height, anchor: Anchor::Middle },
+        _ => label(at, out, letters, letter, height),
+    });
 }
 
 /// How far a text of this width reaches in a direction, in heights of a letter.
