@@ -30,7 +30,7 @@ pub fn ticks([low, high]: [f64; 2], wanted: usize) -> Vec<(f64, String)> {
     let step = factor * power(exponent);
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
     // Ranges far from zero with hardly any digits left have no ticks worth the name.
-    if !(last - first < 1000.0) || first.abs().max(last.abs()) > 9e15 {
+    if last - first > 1000.0 || first.abs().max(last.abs()) > 9e15 {
         return Vec::new();
     }
     let decimals = (-exponent).max(0) as usize;

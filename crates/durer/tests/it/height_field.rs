@@ -90,8 +90,5 @@ fn a_bilinear_surface_is_the_same_at_other_points() {
     let mut heights = vec![1.0; 9];
     heights[8] = f64::NAN;
     let found = field([3, 3], &heights).resampled([5, 5]).expect("field");
-    assert_eq!(
-        (found.missing(), found.height(2, 2), found.height(3, 3)),
-        (4 + 2 + 2, Some(1.0), None)
-    );
+    assert_eq!((found.missing(), found.height(2, 2), found.height(3, 3)), (4, Some(1.0), None));
 }

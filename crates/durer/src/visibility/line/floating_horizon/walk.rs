@@ -47,7 +47,7 @@ fn wanted(field: &HeightField, options: &Options, family: Family, line: usize) -
         Family::AlongX => (options.every_row, field.rows()),
         Family::AlongZ => (options.every_column, field.columns()),
     };
-    every > 0 && (line % every == 0 || line + 1 == count)
+    every > 0 && (line.is_multiple_of(every) || line + 1 == count)
 }
 
 /// The segments of all lines that are wanted and whose ends are there.
