@@ -81,7 +81,7 @@ impl Header {
             };
             let value = value.ok_or_else(|| wrong("a number"))?;
             let whole = || {
-                let fits = value >= 1.0 && value <= 1e15 && value.fract() == 0.0;
+                let fits = (1.0..=1e15).contains(&value) && value.fract() == 0.0;
                 fits.then_some(value as u64).ok_or_else(|| wrong("a whole number from 1"))
             };
             let size = || Some(value).filter(|v| *v > 0.0).ok_or_else(|| wrong("a size above 0"));

@@ -110,7 +110,8 @@ fn grey_pictures_are_heights() {
     let png = |color, depth, data: &[u8]| {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
-        (encoder.set_color(color), encoder.set_depth(depth));
+        encoder.set_color(color);
+        encoder.set_depth(depth);
         let mut writer = encoder.write_header().expect("header");
         writer.write_image_data(data).expect("data");
         writer.finish().expect("end");

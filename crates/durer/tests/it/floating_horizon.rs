@@ -242,7 +242,8 @@ fn fewer_lines_are_parts_of_all_lines() {
     let all = curves(&field, &camera, &Options::default(), &mut NoTrace).expect("curves");
     let some = Options { every_row: 4, every_column: 0, hidden: false };
     let some = curves(&field, &camera, &some, &mut NoTrace).expect("curves");
-    let chosen = |c: &&Curve| c.family == Family::AlongX && (c.line % 4 == 0 || c.line == 14);
+    let chosen =
+        |c: &&Curve| c.family == Family::AlongX && (c.line.is_multiple_of(4) || c.line == 14);
     assert!(!some.is_empty() && some.iter().eq(all.iter().filter(chosen)));
 }
 
