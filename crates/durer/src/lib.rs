@@ -129,6 +129,9 @@
 //! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
 //! letters from the [single-stroke font](curve::stroke_font).
 //!
+//! **Which lines of a surface y = f(x, z) can be seen?** [The floating horizon](visibility::line::floating_horizon)
+//! of a [height field](scene::HeightField); [`plot`] adds colours, axes and paper.
+//!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
 //! [textures](shade::texture); [shadow maps](shade::shadow).

@@ -15,7 +15,7 @@ Examples:
   durer plot --formula 'sin(x) * cos(z)' --x -4,4 --z -4,4 -o waves.svg
   durer plot --formula '3*sinc(3*r)' --samples 81 --color-map viridis --fill -o sombrero.pdf
   durer plot volcano.json -o volcano.svg --azimuth 200 --title 'Maunga Whau'
-  durer plot terrain.asc -o terrain.png --size 1600x1200 --every 4 --fill --color-map terrain
+  durer plot terrain.asc -o terrain.png --size 1600x1200 --fill --color-map terrain
   durer plot heights.npy -o plotter.hpgl --lines x --page A3
 
 Formulas know x, z, r = sqrt(x^2 + z^2), pi, tau, e; + - * / % ^; and the functions
@@ -114,7 +114,10 @@ pub struct PlotLookArgs {
     /// Which lines are drawn: along x, along z, both, or none
     #[arg(long, value_name = "WHICH", default_value = "both")]
     pub lines: Lines,
-    /// Draw each N-th row and column of the grid [default: at most some 100 of each]
+    /// Draw each N-th row and column of the grid, while all of it hides
+    ///
+    /// Without it a file of more than 100 points along a side is resampled to 100, so that lines
+    /// lie close and end at each other. --every 1 takes all there is.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub every: Option<u64>,
     /// What becomes of hidden parts of lines

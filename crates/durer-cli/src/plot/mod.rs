@@ -27,7 +27,7 @@ use report::Report;
 use std::path::Path;
 use std::time::Instant;
 
-/// More lines than this in a family are a dark area on paper.
+/// More lines than this in a family are a dark area on paper; a finer file is resampled.
 const MOST_LINES: usize = 100;
 /// `--exaggeration auto`: height over the longer side of the ground.
 const AUTO_HEIGHT: f64 = 0.4;
@@ -191,6 +191,13 @@ impl Surface {
         let (old_x, old_z) = (map.field.x_range(), map.field.z_range());
         let field = map.field.with_ranges(x.unwrap_or(old_x), z.unwrap_or(old_z));
         let field = field.map_err(|e| Failure::Usage(format!("--x, --z: {e}")))?;
+        let read = [field.columns(), field.rows()];
+        let field = match args.look.every {
+            Some(_) => field,
+            None => field
+                .resampled(read.map(|n| n.min(MOST_LINES)))
+                .map_err(|e| Failure::Data(format!("{name}: {e}")))?,
+        };
         Ok(Self { field, name, format: map.format, on_map })
     }
 
@@ -214,15 +221,16 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
         None => Lens::Orthographic,
     };
     let look = &args.look;
-    let every = |points: usize| match look.every {
+    let every = match look.every {
         Some(n) => usize::try_from(n).unwrap_or(usize::MAX),
-        None => points.saturating_sub(1).div_ceil(MOST_LINES).max(1),
+        // A file is resampled, a formula has as many samples as were asked for.
+        None => 1,
     };
     let along_x = matches!(look.lines, Lines::X | Lines::Both);
     let along_z = matches!(look.lines, Lines::Z | Lines::Both);
     let lines = floating_horizon::Options {
-        every_row: if along_x { every(surface.field.rows()) } else { 0 },
-        every_column: if along_z { every(surface.field.columns()) } else { 0 },
+        every_row: if along_x { every } else { 0 },
+        every_column: if along_z { every } else { 0 },
         hidden: look.hidden == Hidden::Dashed,
     };
     let exaggeration = match args.surface.exaggeration {

@@ -53,7 +53,7 @@ fn options_of_plots_are_checked() {
     let folder = Folder::new();
     folder.write("map.csv", "1,2\n3,4\n");
     for (arguments, message) in [
-        ("plot -o a.svg", "--formula"),
+        ("plot -o a.svg", "<IN>"),
         ("plot map.csv --formula x -o a.svg", "cannot be used with"),
         ("plot --formula x+ -o a.svg", "column 3"),
         ("plot --formula y -o a.svg", "the ground is x and z"),
@@ -78,8 +78,10 @@ fn options_of_plots_are_checked() {
 #[test]
 fn broken_height_maps_are_told_with_their_place() {
     let folder = Folder::new();
-    folder
-        .write("short.asc", "ncols 3\nnrows 2\ncellsize 1\nxllcorner 0\nyllcorner 0\n1 2 3\n4 5\n");
+    folder.write(
+        "short.asc",
+        "ncols 3\nnrows 2\ncellsize 1\nxllcorner 0\nyllcorner 0\n10 20 30\n40 50\n",
+    );
     folder.write("ragged.csv", "1,2,3\n1,2\n");
     folder.write("word.csv", "1,2,3\n1,two,3\n");
     folder.write("none.json", "{\"width\": 2}");

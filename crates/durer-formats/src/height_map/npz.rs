@@ -29,7 +29,8 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     if let [Some(west), Some(east), Some(south), Some(north)] =
         [scalar("xmin")?, scalar("xmax")?, scalar("ymin")?, scalar("ymax")?]
     {
-        grid.place = Some([west, east, south, north]);
+        // Some writers count downwards and call the north `ymin`.
+        grid.place = Some([west.min(east), west.max(east), south.min(north), south.max(north)]);
     }
     Ok(grid)
 }

@@ -53,7 +53,7 @@ fn the_same_heights_in_every_format() {
             br#"{"width": 3, "height": 2, "values": [1, 2, 3, 4, null, 6]}"#.to_vec(),
         ),
     ] {
-        assert_eq!(rows(&map(&bytes, name)), TWO_ROWS, "{name}");
+        assert_eq!(rows(&map(&bytes, "a.csv")), TWO_ROWS, "{name}");
     }
     let placed = map(esri, "x.asc");
     assert!(placed.on_map);
@@ -136,7 +136,7 @@ fn broken_files_are_told_where_and_what() {
         (b"hello", "height maps are read from"),
         (b"ncols 2\nnrows 2\n1 2\n3 x\n", "line 4, column 3: `x` is not a number"),
         (b"ncols 2\nnrows 2\n1 2 3 4 5\n", "line 3, column 9: `5` stands after"),
-        (b"ncols 2\nnrows 2\n1 2 3\n", "ends after 3 of 4"),
+        (b"ncols 2\nnrows 2\n10 20 30\n", "ends after 3 of 4"),
         (b"ncols 2\n1 2 3 4\n", "`nrows` is missing"),
         (b"ncols 0\nnrows 2\n", "line 1, column 1: `ncols` needs a whole number"),
         (b"ncols 2\nrows 2\n", "to be a key of the format"),

@@ -12,8 +12,8 @@ const TICK: f64 = 0.6;
 const GAP: f64 = 0.5;
 /// Width of a letter, in heights: to keep texts apart.
 const LETTER: f64 = 0.85;
-/// Room that a label needs along its axis, in heights of a letter.
-const SPACE: f64 = 5.0;
+/// Room that a label takes along an axis of the ground and along an upright one, in heights of a letter.
+const SPACE: [f64; 2] = [5.0, 3.0];
 
 /// An edge of the box along axis `k`, as seen.
 #[derive(Clone, Copy)]
@@ -116,7 +116,8 @@ fn axis(
     let middle = (edge.seen[0] + edge.seen[1]) * 0.5;
     let across = along.perp().normalize_or_zero();
     let out = if across.dot(middle - center) >= 0.0 { across } else { -across };
-    let wanted = ((length / (SPACE * options.text)) as usize).clamp(2, 10);
+    let wanted =
+        ((length / (SPACE[usize::from(edge.k == 1)] * options.text)) as usize).clamp(2, 10);
     let (low, high) = (range[0].min(range[1]), range[0].max(range[1]));
     let mut widest: f64 = 0.0;
     let flat = low == high;
@@ -136,11 +137,20 @@ fn axis(
             options.text,
         ));
     }
-    if !name.is_empty() {
-        let height = options.text;
-        let at = middle + out * ((TICK + 2.2 * GAP + widest) * letter);
-        marks.labels.push(label(at, out, name.to_owned(), letter, height));
+    if name.is_empty() {
+        return;
     }
+    let height = options.text;
+    // Beside an upright axis a long name would need a wide margin: it stands on top.
+    let (at, out) = match edge.k {
+        1 => (edge.seen[1] + DVec2::Y * (GAP * 1.6 * letter), DVec2::Y),
+        _ => (middle + out * ((TICK + 2.2 * GAP + widest) * letter), out),
+    };
+    let letters = name.to_owned();
+    marks.labels.push(match edge.k {
+        1 => Label { at, text: letters, height, anchor: Anchor::Middle },
+        _ => label(at, out, letters, letter, height),
+    });
 }
 
 /// How far a text of this width reaches in a direction, in heights of a letter.

@@ -274,7 +274,7 @@ impl Layout {
         let labels = if options.axes.is_some() { options.text } else { 0.0 };
         let title = if options.title.is_empty() { 0.0 } else { options.text * 3.5 };
         let (side, below) = (MARGIN + labels * 5.0, MARGIN + labels * 4.0);
-        let above = MARGIN + labels * 0.8 + title;
+        let above = MARGIN + labels * 2.0 + title;
         let room = options.page - DVec2::new(2.0 * side, below + above);
         let room = room.max(options.page * 0.2);
         let size = max - min;

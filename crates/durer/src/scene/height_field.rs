@@ -181,6 +181,37 @@ impl HeightField {
         Ok(Self { x, z, ..self })
     }
 
+    /// The surface with other numbers of columns and rows over the same ranges, interpolated
+    /// bilinearly; missing where a corner of the cell that a point falls into is missing.
+    ///
+    /// # Errors
+    /// As [`Self::new`] for the new size.
+    pub fn resampled(&self, size: [usize; 2]) -> Result<Self> {
+        let place = |i: usize, count: usize, points: usize| {
+            let at =
+                i as f64 * points.saturating_sub(1) as f64 / count.saturating_sub(1).max(1) as f64;
+            let cell = (at as usize).min(points.saturating_sub(2));
+            (cell, at - cell as f64)
+        };
+        let count = check(size, self.x, self.z)?;
+        let mut heights = Vec::with_capacity(count);
+        for row in 0..size[1] {
+            let (r, v) = place(row, size[1], self.rows);
+            for column in 0..size[0] {
+                let (c, u) = place(column, size[0], self.columns);
+                // What has no weight may be missing, or beyond the last point.
+                let part = |c: usize, r: usize, weight: f64| match weight {
+                    0.0 => 0.0,
+                    _ => self.height(c, r).unwrap_or(f64::NAN) * weight,
+                };
+                let far = part(c, r, (1.0 - u) * (1.0 - v)) + part(c + 1, r, u * (1.0 - v));
+                let near = part(c, r + 1, (1.0 - u) * v) + part(c + 1, r + 1, u * v);
+                heights.push(far + near);
+            }
+        }
+        Self::new(size, self.x, self.z, heights)
+    }
+
     /// How the cell between this point and the next column and row is cut; `None` where a corner is
     /// missing or there is no such cell.
     pub fn cell(&self, column: usize, row: usize) -> Option<Diagonal> {

@@ -52,7 +52,8 @@ fn triangles(field: &HeightField) -> Vec<[DVec3; 3]> {
 }
 
 /// How deep the ray from `p` towards the eye goes into a triangle: the least distance of its point
-/// of passage from the triangle's sides in barycentric terms; `None` where it does not pass.
+/// of passage from the triangle's sides in barycentric terms, about 0 on a side; `None` where it does
+/// not pass.
 fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
     let (e1, e2) = (*b - *a, *c - *a);
     let h = to_eye.cross(e2);
@@ -65,7 +66,7 @@ fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Optio
     let q = s.cross(e1);
     let v = to_eye.dot(q) / det;
     let t = e2.dot(q) / det;
-    (t > 1e-7 && t < length).then_some(u.min(v).min(1.0 - u - v)).filter(|&inside| inside > 0.0)
+    (t > 1e-7 && t < length).then_some(u.min(v).min(1.0 - u - v)).filter(|&inside| inside > -1e-9)
 }
 
 /// Whether something hides the point: how far inside of a triangle at most.

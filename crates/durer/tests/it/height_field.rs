@@ -73,3 +73,22 @@ fn cells_are_cut_along_the_ridge() {
     assert_eq!(field([2, 2], &[1.0; 4]).cell(0, 0), Some(Rising));
     assert_eq!(field([2, 2], &[1.0; 4]).cell(1, 0), None);
 }
+
+#[test]
+fn a_bilinear_surface_is_the_same_at_other_points() {
+    let f = |x: f64, z: f64| 1.0 + 2.0 * x - z + 3.0 * x * z;
+    let make = |size| HeightField::from_fn(size, [0.0, 2.0], [1.0, 3.0], f).expect("field");
+    for size in [[2, 2], [5, 3], [17, 12]] {
+        let (found, expected) = (make([9, 5]).resampled(size).expect("field"), make(size));
+        for row in 0..size[1] {
+            for column in 0..size[0] {
+                let (a, b) = (found.height(column, row), expected.height(column, row));
+                assert!(a.zip(b).is_some_and(|(a, b)| (a - b).abs() < 1e-12), "{a:?} {b:?}");
+            }
+        }
+    }
+    let mut heights = vec![1.0; 9];
+    heights[8] = f64::NAN;
+    let found = field([3, 3], &heights).resampled([5, 5]).expect("field");
+    assert_eq!((found.missing(), found.height(2, 2), found.height(3, 3)), (4, Some(1.0), None));
+}
