@@ -3,7 +3,7 @@
 use crate::args::ReadingArgs;
 use crate::failure::{Failure, in_words};
 use crate::resources::Folder;
-use durer_formats::{Limits, Model, NoResources, Pose, ReadOptions, Resources, read_model};
+use durer_formats::{Limits, Model, NoResources, Pose, ReadOptions, Resources, read_model, stl};
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read;
@@ -47,6 +47,9 @@ pub fn read_options(args: &ReadingArgs) -> ReadOptions {
 
 /// Reads a model.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
+    if let Some(model) = streamed(path, options) {
+        return model;
+    }
     let bytes = bytes(path, options.limits.decoded_bytes)?;
     let folder = Folder::of(path);
     let resources: &dyn Resources = match &folder {
@@ -56,6 +59,23 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     read_model(&bytes, &name, resources, options)
         .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
+}
+
+/// Reads a binary STL file without holding its bytes, which are more than the model's; `None` for
+/// anything else.
+fn streamed(path: &Path, options: &ReadOptions) -> Option<Result<Model, Failure>> {
+    // Of a pipe the bytes read here would be lost.
+    let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
+    if is_stream(path) || length > options.limits.decoded_bytes {
+        return None;
+    }
+    let mut file = File::open(path).ok()?;
+    let mut head = [0; stl::HEADER];
+    file.read_exact(&mut head).ok()?;
+    stl::is_whole_binary(&head, length).then(|| {
+        stl::read_binary_stream(&head, file, options)
+            .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
+    })
 }
 
 /// All bytes of a file, or of standard input, refused above the limit.

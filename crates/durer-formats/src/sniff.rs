@@ -62,6 +62,12 @@ impl ModelFormat {
         }
     }
 
+    /// Whether a file that begins so is none of the formats that are asked before STL.
+    pub(crate) fn may_be_stl(head: &[u8]) -> bool {
+        let other = head.starts_with(b"glTF") || head.starts_with(b"PK\x03\x04");
+        !other && !starts_as_json(head) && !ply::sniff(head)
+    }
+
     /// The format that a file's name speaks for, if any does.
     pub fn of_name(name: &str) -> Option<Self> {
         let (_, suffix) = name.rsplit_once('.')?;
@@ -72,10 +78,14 @@ impl ModelFormat {
 
 /// Binary glTF by its magic, text by an object with the key that it must have.
 fn is_gltf(bytes: &[u8]) -> bool {
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let key = b"\"asset\"";
     bytes.starts_with(b"glTF")
-        || (text.starts_with(b"{") && text.windows(key.len()).any(|w| w == key))
+        || (starts_as_json(bytes) && bytes.windows(key.len()).any(|w| w == key))
+}
+
+fn starts_as_json(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    text.trim_ascii_start().starts_with(b"{")
 }
 
 /// Whether the first statement that is neither a comment nor empty is one of OBJ's.

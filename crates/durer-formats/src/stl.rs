@@ -11,20 +11,33 @@
 //! under 4 times an ascii file.
 
 use crate::text::{Cursor, Tally, utf8};
-use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result, color, place};
+use crate::{
+    Error, Limits, Model, ModelFormat, Place, ReadOptions, Resources, Result, color, place,
+};
 use durer::math::{DVec3, Vec3, Vec4};
-use durer::scene::{Instance, Mesh, Part, UpAxis};
+use durer::scene::{Instance, Material, Mesh, Part, UpAxis};
 
 /// Bytes of a binary file before its first triangle: 80 of text, and the count.
-const HEADER: usize = 84;
+pub const HEADER: usize = 84;
 /// Bytes of a triangle in a binary file: normal, three vertices, two bytes of attributes.
 const RECORD: usize = 50;
+/// What the format is called in a model.
+const BINARY: &str = "STL, binary";
 /// How far into a file that begins with `solid` a keyword of ascii STL is looked for.
 const PROBE: usize = 4096;
 
 /// Whether the content looks like STL.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
     has_exact_length(bytes) || is_ascii(bytes)
+}
+
+/// Bytes of a binary file that [`read_binary_stream`] works on at a time: few enough for the cache.
+const AT_ONCE: usize = 1024;
+
+/// Whether a file of `length` bytes that begins with `head`, [`HEADER`] bytes or more, is binary STL
+/// as long as its header says; [`read_binary_stream`] reads such a file.
+pub fn is_whole_binary(head: &[u8], length: u64) -> bool {
+    is_length_in_header(head, length) && ModelFormat::may_be_stl(head)
 }
 
 fn count_in_header(bytes: &[u8]) -> Option<u32> {
@@ -34,8 +47,12 @@ fn count_in_header(bytes: &[u8]) -> Option<u32> {
 
 /// Whether the file is as long as a binary header says; such a file is binary whatever it begins with.
 fn has_exact_length(bytes: &[u8]) -> bool {
-    let length = |count: u32| HEADER as u64 + RECORD as u64 * u64::from(count);
-    count_in_header(bytes).is_some_and(|count| length(count) == bytes.len() as u64)
+    is_length_in_header(bytes, bytes.len() as u64)
+}
+
+fn is_length_in_header(head: &[u8], length: u64) -> bool {
+    let expected = |count: u32| HEADER as u64 + RECORD as u64 * u64::from(count);
+    count_in_header(head).is_some_and(|count| expected(count) == length)
 }
 
 /// Whether the file begins as ascii STL does, and goes on as text.
@@ -57,16 +74,45 @@ fn is_ascii(bytes: &[u8]) -> bool {
 /// [`Error::Decode`] for a file too short to be binary STL, cut off before its first triangle, or
 /// for a vertex without three numbers (ascii); [`Error::Limit`] for too many triangles.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
-    let mut model = if !has_exact_length(bytes) && is_ascii(bytes) {
+    let model = if !has_exact_length(bytes) && is_ascii(bytes) {
         read_ascii(&utf8(bytes), &options.limits)?
     } else {
         read_binary(bytes, &options.limits)?
     };
+    finished(model)
+}
+
+/// Reads a binary STL file as it comes: the bytes after `head`, for which [`is_whole_binary`] holds.
+/// The same model as [`read`] gives, without holding the file's bytes.
+///
+/// # Errors
+/// [`Error::Limit`] for too many triangles, [`Error::Io`] where reading fails or ends too early.
+pub fn read_binary_stream(
+    head: &[u8; HEADER],
+    mut source: impl std::io::Read,
+    options: &ReadOptions,
+) -> Result<Model> {
+    let mut left = count_in_header(head).unwrap_or(0) as usize;
+    check_limit(left as u64, &options.limits)?;
+    let mut facets = Facets::new(head, left);
+    let mut buffer = vec![0; left.min(AT_ONCE) * RECORD];
+    while left > 0 {
+        let count = left.min(AT_ONCE);
+        let bytes = &mut buffer[..count * RECORD];
+        source.read_exact(bytes).map_err(Error::Io)?;
+        facets.add(bytes.as_chunks().0);
+        left -= count;
+    }
+    finished(facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() }))
+}
+
+/// What files of both kinds have in common.
+fn finished(mut model: Model) -> Result<Model> {
     model.scene.up_axis = UpAxis::Z;
     let positions = || model.scene.meshes.iter().flat_map(|m| &m.positions);
-    let (empty, infinite) =
-        (positions().next().is_none(), positions().filter(|p| !p.is_finite()).count());
-    if empty {
+    // Counted in one sweep, for there are hardly ever any.
+    let infinite: usize = positions().map(|p| usize::from(!p.is_finite())).sum();
+    if positions().next().is_none() {
         model.warn(Place::Whole, "holds no triangles");
     }
     if infinite > 0 {
@@ -95,7 +141,7 @@ fn add(model: &mut Model, mesh: Mesh, origin: DVec3) {
 }
 
 fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Model> {
-    let mut model = Model { format: "STL, binary".to_owned(), ..Model::default() };
+    let mut model = Model { format: BINARY.to_owned(), ..Model::default() };
     let (Some(count), Some(data)) = (count_in_header(bytes), bytes.get(HEADER..)) else {
         let message = format!(
             "the file has {} bytes; a binary STL has at least {HEADER}, an ascii one begins with `solid`",
@@ -105,16 +151,9 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Model> {
     };
     let records = records(&mut model, data, count)?;
     check_limit(records.len() as u64, limits)?;
-    let mut mesh = Mesh { positions: Vec::with_capacity(3 * records.len()), ..Mesh::default() };
-    mesh.positions.extend(records.iter().flat_map(vertices));
-    if let Some(colors) = facet_colors(bytes, records) {
-        mesh.colors = colors;
-        let range = 0..records.len() as u32;
-        mesh.parts.push(Part { range, material: Some(0), name: String::new() });
-        model.scene.materials.push(color::vertex_color_material());
-    }
-    add(&mut model, mesh, DVec3::ZERO);
-    Ok(model)
+    let mut facets = Facets::new(bytes, records.len());
+    records.chunks(AT_ONCE).for_each(|some| facets.add(some));
+    Ok(facets.into_model(model))
 }
 
 /// The triangles that are really there.
@@ -148,35 +187,91 @@ fn vertices(record: &[u8; RECORD]) -> [Vec3; 3] {
     [12, 24, 36].map(|at| Vec3::new(float(at), float(at + 4), float(at + 8)))
 }
 
-/// Colors of the three vertices of each triangle, where the file has any.
+/// The facets of a binary file so far.
+struct Facets {
+    mesh: Mesh,
+    /// How many there will be.
+    count: usize,
+    palette: Palette,
+}
+
+impl Facets {
+    /// For a file that begins so and has so many facets.
+    fn new(head: &[u8], count: usize) -> Self {
+        let mesh = Mesh { positions: Vec::with_capacity(3 * count), ..Mesh::default() };
+        Self { mesh, count, palette: Palette::new(head) }
+    }
+
+    fn add(&mut self, records: &[[u8; RECORD]]) {
+        let Mesh { positions, colors, .. } = &mut self.mesh;
+        let before = positions.len();
+        positions.resize(before + 3 * records.len(), Vec3::ZERO);
+        for (to, record) in positions[before..].as_chunks_mut().0.iter_mut().zip(records) {
+            *to = vertices(record);
+        }
+        let attribute = |r: &[u8; RECORD]| u16::from_le_bytes([r[48], r[49]]);
+        let marked = |r: &[u8; RECORD]| attribute(r) & PAINTED;
+        let colored = !colors.is_empty() || self.palette.body.is_some();
+        if !colored && records.iter().fold(0, |any, r| any | marked(r)) == 0 {
+            return;
+        }
+        colors.reserve_exact(3 * self.count - colors.len());
+        // The first facet with a color: those before have none.
+        colors.resize(before, Material::default().base_color);
+        colors.extend(records.iter().flat_map(|r| [self.palette.color(attribute(r)); 3]));
+    }
+
+    fn into_model(mut self, mut model: Model) -> Model {
+        if !self.mesh.colors.is_empty() {
+            let range = 0..self.count as u32;
+            self.mesh.parts.push(Part { range, material: Some(0), name: String::new() });
+            model.scene.materials.push(color::vertex_color_material());
+        }
+        add(&mut model, self.mesh, DVec3::ZERO);
+        model
+    }
+}
+
+/// The bit of a facet's attributes that says which color it has.
+const PAINTED: u16 = 1 << 15;
+
+/// Colors of facets.
 ///
 /// Magics writes `COLOR=` and the body's RGBA into the header, and per facet 5 bits of red, green
 /// and blue from the lowest bit on, with bit 15 set where the facet has the body's color. VisCAM
 /// has no mark in the header, blue lowest, and bit 15 set where the facet has a color of its own.
-fn facet_colors(bytes: &[u8], records: &[[u8; RECORD]]) -> Option<Vec<Vec4>> {
-    let attribute = |r: &[u8; RECORD]| u16::from_le_bytes([r[48], r[49]]);
-    let table = color::linear_bytes();
-    let of_bytes = |[r, g, b, a]: [u8; 4]| {
-        let linear = |v: u8| table[usize::from(v)];
+struct Palette {
+    /// Linear values of sRGB bytes.
+    table: [f32; 256],
+    /// The body's color, where the file is Magics'.
+    body: Option<Vec4>,
+}
+
+impl Palette {
+    fn new(head: &[u8]) -> Self {
+        let mut palette = Self { table: color::linear_bytes(), body: None };
+        let text = head.get(..80).unwrap_or_default();
+        let mark = text.windows(10).find(|w| w.starts_with(b"COLOR="));
+        let bytes = mark.and_then(|w| w.get(6..)?.try_into().ok());
+        palette.body = bytes.map(|bytes| palette.of_bytes(bytes));
+        palette
+    }
+
+    fn of_bytes(&self, [r, g, b, a]: [u8; 4]) -> Vec4 {
+        let linear = |v: u8| self.table[usize::from(v)];
         Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0)
-    };
-    let five = |bits: u16| ((bits & 31) * 255 / 31) as u8;
-    let header = bytes.get(..80)?;
-    let body = header.windows(10).find(|w| w.starts_with(b"COLOR="));
-    let body = body.and_then(|w| w.get(6..)?.try_into().ok()).map(of_bytes);
-    let color = |a: u16| match (body, a >> 15 == 1) {
-        (Some(body), true) => body,
-        (Some(_), false) => of_bytes([five(a), five(a >> 5), five(a >> 10), 255]),
-        (None, true) => of_bytes([five(a >> 10), five(a >> 5), five(a), 255]),
-        (None, false) => durer::scene::Material::default().base_color,
-    };
-    let colored = body.is_some() || records.iter().any(|r| attribute(r) >> 15 == 1);
-    let repeated = |r| [color(attribute(r)); 3];
-    colored.then(|| {
-        let mut colors = Vec::with_capacity(3 * records.len());
-        colors.extend(records.iter().flat_map(repeated));
-        colors
-    })
+    }
+
+    fn color(&self, attribute: u16) -> Vec4 {
+        let five = |bits: u16| ((bits & 31) * 255 / 31) as u8;
+        let [low, middle, high] = [attribute, attribute >> 5, attribute >> 10].map(five);
+        match (self.body, attribute & PAINTED != 0) {
+            (Some(body), true) => body,
+            (Some(_), false) => self.of_bytes([low, middle, high, 255]),
+            (None, true) => self.of_bytes([high, middle, low, 255]),
+            (None, false) => Material::default().base_color,
+        }
+    }
 }
 
 /// State of the ascii reader.
@@ -422,6 +517,36 @@ mod tests {
             format!("{start}vertex 1 2 3\nvertex 2 3 4\nvertex 1 5 6\nendloop\nendfacet\nfacet");
         let model = read_ok(cut.as_bytes());
         assert_eq!((model.scene.triangle_count(), model.warnings.len()), (1, 1));
+    }
+
+    #[test]
+    fn a_stream_gives_the_same_model() {
+        let many = |attribute: &dyn Fn(usize) -> u16| -> Vec<([f32; 9], u16)> {
+            let place = |i: usize| ONE.map(|n| n + i as f32);
+            (0..2 * AT_ONCE + 7).map(|i| (place(i), attribute(i))).collect()
+        };
+        let late = |i: usize| if i == AT_ONCE + 3 { PAINTED | 31 } else { 0 };
+        for (header, triangles) in [
+            (&b"x"[..], many(&|_| 0)),
+            (b"solid", many(&late)),
+            (b"COLOR=\x00\xff\x00\xff", many(&|i| i as u16)),
+            (b"x", vec![]),
+            (b"x", vec![([f32::NAN; 9], 0)]),
+        ] {
+            let bytes = binary(header, triangles.len() as u32, &triangles);
+            assert!(is_whole_binary(&bytes[..HEADER], bytes.len() as u64));
+            assert!(!is_whole_binary(&bytes[..HEADER], bytes.len() as u64 + 1));
+            let (head, rest) = bytes.split_first_chunk().unwrap();
+            let options = ReadOptions::default();
+            let streamed = read_binary_stream(head, rest, &options).unwrap();
+            assert_eq!(format!("{streamed:?}"), format!("{:?}", read_ok(&bytes)));
+            let cut = rest.get(1..).unwrap_or_default();
+            assert_eq!(read_binary_stream(head, cut, &options).is_ok(), rest.is_empty());
+        }
+        for other in [&b"glTF"[..], b"ply\n", b"PK\x03\x04", b" {"] {
+            let bytes = binary(other, 1, &[(ONE, 0)]);
+            assert!(!is_whole_binary(&bytes, bytes.len() as u64));
+        }
     }
 
     #[test]

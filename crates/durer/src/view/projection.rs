@@ -227,19 +227,24 @@ pub fn fit_points(
     options: &FitOptions,
 ) -> Result<Camera> {
     let mut outermost = Outermost::new(direction, &Frame::new(options)?);
-    let mut finite = points.into_iter().filter(|p| p.is_finite());
     let mut bounds: Option<Aabb> = None;
-    let mut batch = [DVec3::ZERO; BATCH];
-    loop {
-        let mut count = 0;
-        for (to, point) in batch.iter_mut().zip(&mut finite) {
-            *to = point;
-            count += 1;
+    let mut add = |batch: &[DVec3]| {
+        if let Some(around) = Aabb::around(batch.iter().copied()) {
+            outermost.add(batch, &around);
+            bounds = Some(bounds.map_or(around, |b| b.union(&around)));
         }
-        let Some(around) = Aabb::around(batch[..count].iter().copied()) else { break };
-        outermost.add(&batch[..count], &around);
-        bounds = Some(bounds.map_or(around, |b| b.union(&around)));
-    }
+    };
+    let (mut batch, mut count) = ([DVec3::ZERO; BATCH], 0);
+    // The iterator drives, which is faster where it is made of several.
+    points.into_iter().filter(|p| p.is_finite()).for_each(|point| {
+        batch[count] = point;
+        count += 1;
+        if count == BATCH {
+            add(&batch);
+            count = 0;
+        }
+    });
+    add(&batch[..count]);
     let extent = visible_extent(bounds.as_ref());
     if bounds == Some(extent) {
         fit(&outermost.points(), &extent, direction, options)

@@ -10,6 +10,7 @@
 //! pixel.
 
 mod bins;
+mod front_to_back;
 mod rasterize;
 mod resolve;
 mod tile;
@@ -28,6 +29,7 @@ use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
 use fearless_simd::dispatch;
+use front_to_back::FrontToBack;
 use rasterize::{AllPass, FragmentTest, rasterize};
 use resolve::{Area, Fragments, MaskTest, Output, resolve};
 use tile::{SamplePlane, TILE};
@@ -175,9 +177,10 @@ struct Scratch<'a> {
     fragments: Fragments,
     mixed: Mixed,
     lit: Lit<'a>,
+    order: FrontToBack<'a>,
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
     fn render_band(&self, mut band: Band<'_>) {
         let grid = TileGrid::new(self.view.width(), self.view.height());
         let offsets = self.options.samples.offsets();
@@ -188,6 +191,7 @@ impl Frame<'_> {
             fragments: Fragments::new(offsets),
             mixed: Mixed::new(tile::TILE_PIXELS),
             lit: Lit::new(self.lighting),
+            order: FrontToBack::default(),
         };
         for column in 0..grid.columns {
             let tile = [column * TILE, band.row * TILE];
@@ -220,17 +224,40 @@ impl Frame<'_> {
         }
     }
 
+    /// Rasterizes the tile's opaque triangles.
+    fn rasterize_opaque(
+        &self,
+        order: &mut FrontToBack<'a>,
+        planes: &mut [SamplePlane],
+        area: [[i32; 2]; 2],
+        index: u32,
+    ) {
+        // Without the faces that look away little is hidden, and an order would not pay.
+        if self.options.cull == Cull::Back {
+            return self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
+        }
+        for (i, part) in order.parts(self.bins, index).enumerate() {
+            dispatch!(self.options.level, simd => {
+                if i > 0 {
+                    planes.iter_mut().for_each(|plane| plane.find_farthest(simd));
+                }
+                let triangles = part.iter().copied();
+                rasterize(simd, planes, area, triangles, None::<&mut AllPass>)
+            });
+        }
+    }
+
     fn color_tile(
         &self,
         band: &mut Band<'_>,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch<'a>,
         area: [[i32; 2]; 2],
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, fragments, mixed, lit, .. } = scratch;
+        let Scratch { planes, fragments, mixed, lit, order, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
-        self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
+        self.rasterize_opaque(order, planes, area, index);
         let mut mask = MaskTest { lit, tile };
         self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
         fragments.clear(tile);

@@ -1,6 +1,6 @@
 //! Triangles into the samples of a tile: coverage, depth test, write.
 
-use super::tile::{SamplePlane, TILE};
+use super::tile::{BLOCK, SamplePlane, TILE};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
@@ -21,9 +21,6 @@ impl FragmentTest for AllPass {
         true
     }
 }
-
-/// Pixels along the side of a block.
-const BLOCK: i32 = 8;
 
 /// Edge functions of triangles of less than this extent fit i32, in units of 1/65536 pixel², at all
 /// pixels of their bounding box and seven beside it: at most 2 · 2¹⁴ · (2¹⁴ + 2¹²) < 2³⁰.
@@ -112,6 +109,9 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
             let (y0, y1) = ((y0 - tile[1]).max(0), (y1 - tile[1]).min(size[1] - 1));
             // Most triangles of a fine mesh lie between the samples.
             if x0 > x1 || y0 > y1 {
+                continue;
+            }
+            if plane.hides([x0, y0, x1, y1], t.depth_min.to_bits() as i32) {
                 continue;
             }
             if small && x1 - x0 < SMALL && y1 - y0 < SMALL {

@@ -6,7 +6,8 @@
 use crate::raster::fixed::SUBPIXELS;
 use crate::target::NO_ITEM;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, u32x8};
+use fearless_simd::{Simd, i32x8, u32x8};
+use fearless_simd_macros::simd;
 
 /// Pixels along the side of a tile: depth and item of one sample of each of its pixels, 32 kB, fit
 /// the first-level cache.
@@ -14,6 +15,12 @@ pub const TILE: i32 = 64;
 
 /// Pixels of a tile.
 pub const TILE_PIXELS: usize = (TILE * TILE) as usize;
+
+/// Pixels along the side of a block.
+pub const BLOCK: i32 = 8;
+
+/// Blocks of a tile.
+const BLOCKS: usize = (TILE * TILE / (BLOCK * BLOCK)) as usize;
 
 /// Bits of 1.0, the cleared depth.
 const FAR: i32 = 0x3f80_0000;
@@ -34,6 +41,8 @@ pub struct SamplePlane {
     pub lanes: [[i32; 8]; 2],
     /// The same in pixels.
     pub lanes_in_pixels: [[f32; 8]; 2],
+    /// Bits of a depth for each block of 8 × 8 pixels, row by row, beyond which nothing is seen there.
+    pub farthest: [i32; BLOCKS],
     /// Bits of the depths.
     pub depth: Vec<i32>,
     /// Items.
@@ -65,14 +74,31 @@ impl SamplePlane {
             reach: [[least(0), largest(0)], [least(1), largest(1)]],
             lanes,
             lanes_in_pixels: lanes.map(|axis| axis.map(|v| v as f32 / SUBPIXELS as f32)),
+            farthest: [FAR; BLOCKS],
             depth: vec![FAR; count * TILE_PIXELS],
             item: vec![NO_ITEM; count * TILE_PIXELS],
         }
     }
 
     pub fn clear(&mut self) {
+        self.farthest.fill(FAR);
         self.depth.fill(FAR);
         self.item.fill(NO_ITEM);
+    }
+
+    /// Brings [`Self::farthest`] up to date; what was right stays right, for depths only shrink.
+    pub fn find_farthest<S: Simd>(&mut self, simd: S) {
+        find_farthest(simd, &self.depth, self.shift, &mut self.farthest);
+    }
+
+    /// Whether nothing that is at least as far as `depth` (bits) can be seen in a box of pixels.
+    #[inline(always)]
+    pub fn hides(&self, [x0, y0, x1, y1]: [i32; 4], depth: i32) -> bool {
+        const COLUMNS: i32 = TILE / BLOCK;
+        (y0 / BLOCK..=y1 / BLOCK).all(|y| {
+            let blocks = (y * COLUMNS + x0 / BLOCK) as usize..=(y * COLUMNS + x1 / BLOCK) as usize;
+            self.farthest[blocks].iter().all(|&farthest| depth > farthest)
+        })
     }
 
     /// The items at the samples of a pixel.
@@ -107,5 +133,26 @@ impl SamplePlane {
         let second = simd.unzip_low_u32x8(odd_ab, odd_cd);
         let fourth = simd.unzip_high_u32x8(odd_ab, odd_cd);
         [first, (first ^ second) | (first ^ third) | (first ^ fourth)]
+    }
+}
+
+/// The largest depth of each block.
+#[simd]
+fn find_farthest<S: Simd>(simd: S, depth: &[i32], shift: u32, farthest: &mut [i32; BLOCKS]) {
+    const COLUMNS: usize = (TILE / BLOCK) as usize;
+    let rows_of_blocks = depth.chunks_exact(((TILE * BLOCK) as usize) << shift);
+    for (rows, farthest) in rows_of_blocks.zip(farthest.as_chunks_mut::<COLUMNS>().0) {
+        let mut most = [i32x8::splat(simd, 0); COLUMNS];
+        for row in rows.chunks_exact((TILE as usize) << shift) {
+            for (block, most) in row.chunks_exact((BLOCK as usize) << shift).zip(&mut most) {
+                for samples in block.as_chunks::<8>().0 {
+                    *most = most.max(i32x8::from_slice(simd, samples));
+                }
+            }
+        }
+        for (to, most) in farthest.iter_mut().zip(most) {
+            let lanes: [i32; 8] = most.into();
+            *to = lanes.into_iter().fold(0, i32::max);
+        }
     }
 }
