@@ -1,9 +1,11 @@
-//! The bodies of the fuzz targets for map data and models, on their seeds, on seeds with changes, and on
+//! The bodies of the fuzz targets for map data, drawings and models, on their seeds, on seeds with changes, and on
 //! random bytes.
 
 use proptest::prelude::*;
 use std::path::Path;
 
+#[path = "../../../../fuzz/bodies/drawing.rs"]
+mod drawing;
 #[path = "../../../../fuzz/bodies/geo.rs"]
 mod geo;
 #[path = "../../../../fuzz/bodies/model.rs"]
@@ -12,11 +14,12 @@ mod model;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 12] = [
+const TARGETS: [(&str, Body); 13] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
     ("svg", geo::svg),
+    ("drawing", drawing::drawing),
     ("gltf", model::gltf),
     ("draco", model::draco),
     ("meshopt", model::meshopt),

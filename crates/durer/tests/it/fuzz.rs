@@ -1,4 +1,4 @@
-//! The bodies of the fuzz targets for clipping, on their seeds and on random bytes.
+//! The bodies of the fuzz targets for clipping and rasterizing, on their seeds and on random bytes.
 
 use crate::overlay::validity;
 use proptest::prelude::*;
@@ -6,6 +6,8 @@ use std::path::Path;
 
 #[path = "../../../../fuzz/bodies/clip.rs"]
 mod clip;
+#[path = "../../../../fuzz/bodies/raster.rs"]
+mod raster;
 
 /// Runs a body on the files of its folder of seeds; there must be some.
 fn seeds(target: &str, body: impl Fn(&[u8])) {
@@ -30,6 +32,12 @@ fn seeds_of_lines_polygons_and_overlays() {
     seeds("overlay", overlay);
 }
 
+#[test]
+fn seeds_of_paths_and_seed_fills() {
+    seeds("raster", raster::raster);
+    seeds("seed_fill", raster::seed_fill);
+}
+
 fn bytes(most: usize) -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(any::<u8>(), 0..most)
 }
@@ -50,5 +58,19 @@ proptest! {
     #[test]
     fn overlays_of_any_bytes(bytes in bytes(256)) {
         overlay(&bytes);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn paths_of_any_bytes(bytes in bytes(512)) {
+        raster::raster(&bytes);
+    }
+
+    #[test]
+    fn seed_fills_of_any_bytes(bytes in bytes(512)) {
+        raster::seed_fill(&bytes);
     }
 }

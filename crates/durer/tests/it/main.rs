@@ -26,6 +26,7 @@ mod raster_interpolate;
 mod raster_line;
 mod raster_paint;
 mod raster_polygon;
+mod raster_robust;
 mod raster_seed_fill;
 mod raster_triangle;
 mod scenes;

@@ -407,6 +407,11 @@ mod conformance_text {
         assert!(bounds.min().y < -70.0 && bounds.max().y > 15.0 && bounds.max().x <= line.advance);
         assert!(line.ascent > 70.0 && line.descent > 15.0);
         assert!(Font::new(b"not a font", 0).is_err());
+        for size in [f64::NAN, f64::INFINITY, -1.0, 1e30, 1e-300] {
+            let line = font.line("Hx\u{0}g", size);
+            let finite = line.path.bounds().is_none_or(|b| (b.max() - b.min()).is_finite());
+            assert!(finite && line.advance.is_finite() && line.ascent.is_finite(), "{size}");
+        }
         // A file cut short has no outlines where they are missing, and nothing breaks.
         let cut = Font::new(&bytes[..bytes.len() / 2], 0).map(|f| f.line("Hxg", 100.0).advance);
         assert!(cut.is_ok_and(|advance| advance.is_finite()));

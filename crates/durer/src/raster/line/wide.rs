@@ -3,7 +3,7 @@
 //! Offsets of curves, caps and joins come from kurbo (R. Levien, *Parallel curves of cubic Béziers*,
 //! 2022); this module states the style in the terms of SVG and keeps strange input out.
 
-use kurbo::{BezPath, PathEl, Point, StrokeOpts};
+use kurbo::{Affine, BezPath, PathEl, Point, StrokeOpts};
 
 use crate::curve::{Path, PathElement};
 use crate::math::DVec2;
@@ -57,15 +57,25 @@ impl Default for Stroke {
     }
 }
 
-/// No contour gets more dashes than this; with more the line is drawn solid, as it looks anyway.
+/// No path gets more dashes and gaps than this; with more the line is drawn solid.
 const MAX_DASHES: f64 = 100_000.0;
+
+/// With more dashes and gaps than this, lengths are those of chords, not those of curves.
+const MAX_MEASURED: f64 = 2000.0;
+
+/// Paths that are longer are made this long while they are cut into dashes.
+const MEASURED: f64 = 1e4;
 
 /// Dots — dashes and contours without length, with round or square caps — are lines as long as this share
 /// of the width: too short to be seen, long enough to have a direction.
 const DOT: f64 = 1e-4;
 
+/// Points farther out and greater widths are moved here first, so that products stay finite.
+const FARTHEST: f64 = 1e15;
+
 /// The outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is
-/// at most `tolerance`. Elements with points that are not finite are left out.
+/// at most `tolerance`. Elements with points that are not finite are left out; coordinates and widths
+/// beyond ±10¹⁵ count as that.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a negative width, a miter limit below 1, or negative or non-finite dashes.
@@ -80,17 +90,19 @@ pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
     if !stroke.dashes.iter().all(|d| not_negative(*d)) || !stroke.dash_offset.is_finite() {
         return Err(Error::parameter("dashes", "given", "finite lengths of at least 0"));
     }
+    let stroke = &Stroke { width: stroke.width.min(FARTHEST), ..stroke.clone() };
     let source = to_kurbo(path);
     if stroke.width == 0.0 || source.elements().is_empty() {
         return Ok(Path::new());
     }
     let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
-    let style = style(stroke, &source);
+    let mut style = style(stroke);
     let tolerance = tolerance.max(1e-3);
+    let source = dashed(source, stroke, &mut style, tolerance);
     Ok(from_kurbo(&kurbo::stroke(source, &style, &StrokeOpts::default(), tolerance)))
 }
 
-fn style(stroke: &Stroke, source: &BezPath) -> kurbo::Stroke {
+fn style(stroke: &Stroke) -> kurbo::Stroke {
     let cap = match stroke.cap {
         Cap::Butt => kurbo::Cap::Butt,
         Cap::Round => kurbo::Cap::Round,
@@ -101,28 +113,67 @@ fn style(stroke: &Stroke, source: &BezPath) -> kurbo::Stroke {
         Join::Round => kurbo::Join::Round,
         Join::Bevel => kurbo::Join::Bevel,
     };
-    let mut style = kurbo::Stroke::new(stroke.width)
+    kurbo::Stroke::new(stroke.width)
         .with_caps(cap)
         .with_join(join)
-        .with_miter_limit(stroke.miter_limit);
+        .with_miter_limit(stroke.miter_limit)
+}
+
+/// Cuts the path into its dashes, where it has any and not too many. Changes the style where dots need it.
+fn dashed(source: BezPath, stroke: &Stroke, style: &mut kurbo::Stroke, tolerance: f64) -> BezPath {
     let period: f64 = stroke.dashes.iter().sum();
-    let bounds = source.control_box();
-    let reach = (bounds.width() + bounds.height()) * source.elements().len() as f64;
-    if period > 0.0 && reach / period < MAX_DASHES {
-        // SVG repeats a list of odd length, so that dashes and gaps change places.
-        let twice = if stroke.dashes.len() % 2 == 1 { 2 } else { 1 };
-        let mut dashes: Vec<f64> = (0..twice).flat_map(|_| stroke.dashes.iter().copied()).collect();
-        if stroke.cap != Cap::Butt {
-            if dashes.iter().step_by(2).all(|d| *d == 0.0) {
-                // Dots at corners have none themselves.
-                style = style.with_join(kurbo::Join::Round);
-            }
-            lengthen_dots(&mut dashes, stroke.width * DOT);
-        }
-        let offset = stroke.dash_offset.rem_euclid(dashes.iter().sum());
-        style = style.with_dashes(offset, dashes);
+    let length = control_length(&source);
+    let count = length / period * stroke.dashes.len() as f64;
+    if !(period > 0.0 && length > 0.0 && count < MAX_DASHES) {
+        return source;
     }
-    style
+    // SVG repeats a list of odd length, so that dashes and gaps change places.
+    let twice = if stroke.dashes.len() % 2 == 1 { 2 } else { 1 };
+    let mut dashes: Vec<f64> = (0..twice).flat_map(|_| stroke.dashes.iter().copied()).collect();
+    if stroke.cap != Cap::Butt {
+        if dashes.iter().step_by(2).all(|d| *d == 0.0) {
+            // Dots at corners have none themselves.
+            style.join = kurbo::Join::Round;
+        }
+        lengthen_dots(&mut dashes, stroke.width * DOT);
+    }
+    let offset = stroke.dash_offset.rem_euclid(dashes.iter().sum());
+    // kurbo measures to a fixed accuracy, which takes for ever on paths much longer than this.
+    let scale = libm::exp2(-libm::ceil(libm::log2((length / MEASURED).max(1.0))));
+    let source = if count < MAX_MEASURED { source } else { chords(&source, length, tolerance) };
+    dashes.iter_mut().for_each(|d| *d *= scale);
+    let small = Affine::scale(scale) * source;
+    let dashed: BezPath = kurbo::dash(small.into_iter(), offset * scale, &dashes).collect();
+    Affine::scale(1.0 / scale) * dashed
+}
+
+/// The curves as chains of chords.
+fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
+    let mut out = BezPath::new();
+    kurbo::flatten(path.iter(), tolerance.max(length * 1e-7), |element| out.push(element));
+    out
+}
+
+/// The lengths of the lines through all control points, which are not less than those of the curves.
+fn control_length(path: &BezPath) -> f64 {
+    let (mut start, mut at, mut sum) = (Point::ORIGIN, Point::ORIGIN, 0.0);
+    for element in path.elements() {
+        let chain = match *element {
+            PathEl::MoveTo(p) => {
+                (start, at) = (p, p);
+                continue;
+            }
+            PathEl::LineTo(p) => [p, p, p],
+            PathEl::QuadTo(a, p) => [a, p, p],
+            PathEl::CurveTo(a, b, p) => [a, b, p],
+            PathEl::ClosePath => [start; 3],
+        };
+        for p in chain {
+            sum += at.distance(p);
+            at = p;
+        }
+    }
+    sum
 }
 
 /// Dashes without length get one, at the cost of the gap after them, where it has enough.
@@ -160,7 +211,9 @@ fn with_dots(path: &BezPath, width: f64) -> BezPath {
 }
 
 fn to_kurbo(path: &Path) -> BezPath {
-    let at = |p: DVec2| Point::new(p.x, p.y);
+    // Clamping leaves NaN as it is, infinity must not become finite.
+    let near = |v: f64| if v.is_finite() { v.clamp(-FARTHEST, FARTHEST) } else { v };
+    let at = |p: DVec2| Point::new(near(p.x), near(p.y));
     let mut out = BezPath::new();
     let mut open = false;
     for element in path.elements() {
@@ -188,7 +241,8 @@ fn to_kurbo(path: &Path) -> BezPath {
 fn from_kurbo(path: &BezPath) -> Path {
     let at = |p: Point| DVec2::new(p.x, p.y);
     let mut out = Path::new();
-    for element in path.elements() {
+    // Offsets of curves that turn back in one point can have no direction.
+    for element in path.elements().iter().filter(|e| e.is_finite()) {
         out.push(match *element {
             PathEl::MoveTo(p) => PathElement::MoveTo(at(p)),
             PathEl::LineTo(p) => PathElement::LineTo(at(p)),

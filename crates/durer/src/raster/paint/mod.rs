@@ -50,8 +50,8 @@ pub struct Options {
     pub blending: Blending,
     /// What happens where a path overlaps itself inside a pixel.
     pub overlap: Overlap,
-    /// Largest distance between a curve and its chords in pixels. 0.05 is at most
-    /// 13/255 of coverage where a curve bends most; cost grows with its inverse square root.
+    /// Largest distance between a curve and its chords in pixels. 0.025 is at most 6/255 of coverage
+    /// where a curve bends most; the number of chords grows with its inverse square root.
     pub tolerance: f64,
     /// Whether edges are smoothed; otherwise a pixel is painted when at least half of it is covered.
     /// [`Canvas::set_anti_alias`] changes it for what follows.
@@ -60,7 +60,12 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { blending: Blending::Srgb, overlap: Overlap::Exact, tolerance: 0.1, anti_alias: true }
+        Self {
+            blending: Blending::Srgb,
+            overlap: Overlap::Exact,
+            tolerance: 0.025,
+            anti_alias: true,
+        }
     }
 }
 
