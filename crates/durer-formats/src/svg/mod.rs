@@ -11,8 +11,8 @@
 //! use durer::target::Pixels;
 //! use durer_formats::svg::{Drawing, ReadOptions};
 //!
-//! let text = br#"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4">
-//!     <rect width="4" height="4" fill="#c00"/></svg>"#;
+//! let text = b"<svg xmlns='http://www.w3.org/2000/svg' width='8' height='4'>
+//!     <rect width='4' height='4' fill='rgb(204,0,0)'/></svg>";
 //! let drawing = Drawing::read(text, &ReadOptions::default())?;
 //! assert_eq!(drawing.size().to_array(), [8.0, 4.0]);
 //! let mut canvas = Canvas::new(8, 4, Options::default())?;

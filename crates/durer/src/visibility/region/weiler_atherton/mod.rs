@@ -147,7 +147,8 @@ pub struct VisibleMap {
 ///     far: 10.0,
 /// };
 /// let map = solve(&scene, &View::new(camera, 100, 100)?, &Default::default(), &mut NoTrace)?;
-/// let regions = map.regions(|item| u64::from(item));
+/// let mut regions = map.regions(|item| u64::from(item));
+/// regions.sort_by_key(|r| r.item);
 /// let areas: Vec<f64> = regions.iter().map(|r| r.area()).collect();
 /// assert_eq!(regions.iter().map(|r| r.item).collect::<Vec<_>>(), [0, 1]);
 /// assert!((areas[0] - 1.5).abs() < 1e-8 && (areas[1] - 0.5).abs() < 1e-8);
