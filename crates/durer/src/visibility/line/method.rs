@@ -1,13 +1,15 @@
-//! All ways to draw the lines of a scene.
+//! All ways to draw lines.
 
-use super::{hidden_line, wireframe};
+use super::{floating_horizon, hidden_line, wireframe};
 
 crate::info::family! {
-    /// The algorithms that draw lines.
+    /// The algorithms that draw lines: those of scenes, and that of height fields.
     pub enum LineMethod {
         /// All edges, whatever lies in front.
         Wireframe => wireframe::INFO,
         /// What can be seen of the edges, and how many surfaces hide the rest.
         HiddenLine => hidden_line::INFO,
+        /// The lines of a surface y = f(x, z) that rise above or sink below those before them.
+        FloatingHorizon => floating_horizon::INFO,
     }
 }
