@@ -116,7 +116,7 @@ pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     let room = (options.page - DVec2::splat(2.0 * MARGIN)).max(DVec2::ONE);
     let fit = FitOptions { lens: options.lens, aspect: room.x / room.y, margin: 0.0 };
     let camera = fit_box(Some(&bounds), &options.direction, &fit)?;
-    let plane = PicturePlane::new(&camera)?;
+    let plane = PicturePlane::of_camera(&camera, fit.aspect)?;
     let layout = Layout::new(&bounds, &plane, options);
     let mut drawing = Drawing { window: None, ..Drawing::default() };
     if options.fill {

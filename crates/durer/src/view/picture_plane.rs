@@ -1,95 +1,237 @@
-//! The plane of the picture: where exact drawings have their coordinates.
+//! From world space to the plane of the picture, with a depth that is linear there.
 
+use super::View;
 use crate::Result;
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Camera, Projection};
 
-/// The plane through a camera's target at right angles to the line of sight; its points are in plane
-/// units, as in [`crate::target::drawing::Drawing`].
+/// A point of the picture and how far behind it something lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanePoint {
+    /// Plane units, as [`crate::target::drawing::Drawing`] says.
+    pub at: DVec2,
+    /// 0 in the plane through the target, growing away from the eye, there in model units. Affine over
+    /// a projected plane: parallel projection has the distance from the target's plane, perspective
+    /// d − d²/w for a point at distance w along the line of sight, d that of the target.
+    pub depth: f64,
+}
+
+/// Which borders of the view volume faces and lines are cut at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Borders {
+    /// Cut at the near and the far plane.
+    pub depth: bool,
+    /// Cut at the sides of the window, widened by this factor (at least 1); `None` leaves them.
+    pub sides: Option<f64>,
+}
+
+/// The map from the world to the plane of the picture.
+///
+/// View space here is x right, y up, z = distance from the eye along the line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PicturePlane {
     eye: DVec3,
-    right: DVec3,
-    up: DVec3,
-    ahead: DVec3,
-    /// From the eye to the plane; `None` for a parallel projection.
-    distance: Option<f64>,
-    target: DVec3,
+    axes: [DVec3; 3],
+    /// Of the target along the line of sight.
+    distance: f64,
+    perspective: bool,
     near: f64,
-    /// Half of the height that the camera sees of the plane.
-    half_height: f64,
+    far: f64,
+    half: DVec2,
 }
 
 impl PicturePlane {
-    /// The plane of a camera.
+    /// The plane of a view's picture.
+    pub fn new(view: &View) -> Self {
+        let aspect = f64::from(view.width()) / f64::from(view.height());
+        Self::seen_by(view.camera(), aspect)
+    }
+
+    /// The plane of a camera, for pictures whose width / height is `aspect`; that bears on the window and
+    /// its sides only.
     ///
     /// # Errors
     /// What [`Camera::check`] finds.
-    pub fn new(camera: &Camera) -> Result<Self> {
+    pub fn of_camera(camera: &Camera, aspect: f64) -> Result<Self> {
         camera.check()?;
+        Ok(Self::seen_by(camera, aspect))
+    }
+
+    fn seen_by(camera: &Camera, aspect: f64) -> Self {
         let [right, up, back] = camera.axes();
-        let distance = camera.eye.distance(camera.target);
-        let (distance, half_height) = match camera.projection {
-            Projection::Perspective { fov_y } => {
-                (Some(distance), distance * libm::tan(fov_y * 0.5))
-            }
-            Projection::Orthographic { height } => (None, height * 0.5),
+        let distance = (camera.target - camera.eye).length();
+        let (half_height, perspective) = match camera.projection {
+            Projection::Perspective { fov_y } => (distance * libm::tan(fov_y * 0.5), true),
+            Projection::Orthographic { height } => (height * 0.5, false),
         };
-        let Camera { eye, target, near, .. } = *camera;
-        Ok(Self { eye, right, up, ahead: -back, distance, target, near, half_height })
+        Self {
+            eye: camera.eye,
+            axes: [right, up, -back],
+            distance,
+            perspective,
+            near: camera.near,
+            far: camera.far,
+            half: DVec2::new(half_height * aspect, half_height),
+        }
     }
 
-    /// Distance of a point from the plane through the eye, along the line of sight; world units.
-    pub fn depth(&self, p: DVec3) -> f64 {
-        (p - self.eye).dot(self.ahead)
+    /// What the view shows of the plane, plane units.
+    pub fn window(&self) -> Option<Rect> {
+        Rect::new(-self.half, self.half).ok()
     }
 
-    /// Distance of the near plane from the eye, as [`Self::depth`] measures it.
-    pub fn near(&self) -> f64 {
-        self.near
+    /// Whether lines of sight meet in the eye.
+    pub fn is_perspective(&self) -> bool {
+        self.perspective
+    }
+
+    /// Where the eye is, world space; for parallel projection, a point in front.
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// The way sight travels at a point of the world; not of unit length in perspective.
+    pub fn sight_at(&self, p: DVec3) -> DVec3 {
+        if self.perspective { p - self.eye } else { self.axes[2] }
+    }
+
+    /// World to view space: right, up, distance from the eye.
+    #[inline]
+    pub fn view_from_world(&self, p: DVec3) -> DVec3 {
+        let d = p - self.eye;
+        let [right, up, sight] = self.axes;
+        DVec3::new(right.dot(d), up.dot(d), sight.dot(d))
+    }
+
+    /// View space to the plane; in perspective only for points in front of the eye.
+    #[inline]
+    pub fn plane_from_view(&self, p: DVec3) -> PlanePoint {
+        if self.perspective {
+            let scale = self.distance / p.z;
+            PlanePoint { at: p.truncate() * scale, depth: (p.z - self.distance) * scale }
+        } else {
+            PlanePoint { at: p.truncate(), depth: p.z - self.distance }
+        }
+    }
+
+    /// World to the plane; in perspective only for points in front of the eye.
+    #[inline]
+    pub fn plane_from_world(&self, p: DVec3) -> PlanePoint {
+        self.plane_from_view(self.view_from_world(p))
+    }
+
+    /// Whether a point of the world does not lie before the near plane.
+    pub fn is_behind_near(&self, p: DVec3) -> bool {
+        self.view_from_world(p).z >= self.near
     }
 
     /// Where a point of the world is seen; `None` where it lies before the near plane.
     pub fn project(&self, p: DVec3) -> Option<DVec2> {
-        let depth = self.depth(p);
-        (depth >= self.near).then(|| self.project_at(p, depth))
-    }
-
-    fn project_at(&self, p: DVec3, depth: f64) -> DVec2 {
-        match self.distance {
-            Some(distance) => {
-                let q = p - self.eye;
-                DVec2::new(q.dot(self.right), q.dot(self.up)) * (distance / depth)
-            }
-            None => {
-                let q = p - self.target;
-                DVec2::new(q.dot(self.right), q.dot(self.up))
-            }
-        }
+        let p = self.view_from_world(p);
+        (p.z >= self.near).then(|| self.plane_from_view(p).at)
     }
 
     /// The part of a segment of the world that lies behind the near plane, as seen; `None` where all
     /// of it lies before.
     pub fn project_segment(&self, a: DVec3, b: DVec3) -> Option<[DVec2; 2]> {
-        let (da, db) = (self.depth(a), self.depth(b));
-        let cut = || {
-            let t = (self.near - da) / (db - da);
-            self.project_at(a + (b - a) * t, self.near)
-        };
-        match (da >= self.near, db >= self.near) {
-            (true, true) => Some([self.project_at(a, da), self.project_at(b, db)]),
-            (true, false) => Some([self.project_at(a, da), cut()]),
-            (false, true) => Some([cut(), self.project_at(b, db)]),
-            (false, false) => None,
+        let ends = cut(|p| self.inside(0, p, 1.0), [a, b].map(|p| self.view_from_world(p)))?;
+        Some(ends.map(|p| self.plane_from_view(p).at))
+    }
+
+    /// Back from the plane to view space.
+    pub fn view_from_plane(&self, p: PlanePoint) -> DVec3 {
+        if self.perspective {
+            let w = self.distance * self.distance / (self.distance - p.depth);
+            (p.at * (w / self.distance)).extend(w)
+        } else {
+            p.at.extend(p.depth + self.distance)
         }
     }
 
-    /// What a picture of this width / height shows of the plane, plane units.
-    ///
-    /// # Errors
-    /// [`crate::Error::Parameter`] for an aspect that gives no finite rectangle.
-    pub fn window(&self, aspect: f64) -> Result<Rect> {
-        let half = DVec2::new(self.half_height * aspect, self.half_height);
-        Rect::new(-half, half)
+    /// Back from the plane to the world.
+    pub fn world_from_plane(&self, p: PlanePoint) -> DVec3 {
+        let v = self.view_from_plane(p);
+        let [right, up, sight] = self.axes;
+        self.eye + right * v.x + up * v.y + sight * v.z
     }
+
+    /// How far inside the border `index` (0 near, 1 far, 2…5 left, right, bottom, top) a point of view
+    /// space lies; below 0 it is outside. Linear, so that edges can be cut where it is 0.
+    fn inside(&self, index: usize, p: DVec3, widened: f64) -> f64 {
+        let half = self.half * widened;
+        let slope = if self.perspective { p.z / self.distance } else { 1.0 };
+        match index {
+            0 => p.z - self.near,
+            1 => self.far - p.z,
+            2 => half.x * slope + p.x,
+            3 => half.x * slope - p.x,
+            4 => half.y * slope + p.y,
+            _ => half.y * slope - p.y,
+        }
+    }
+
+    fn borders(borders: Borders) -> std::ops::Range<usize> {
+        let from = if borders.depth { 0 } else { 2 };
+        from..if borders.sides.is_some() { 6 } else { 2.max(from) }
+    }
+
+    /// Whether a point of view space lies inside the borders.
+    #[inline]
+    pub fn contains(&self, p: DVec3, borders: Borders) -> bool {
+        Self::borders(borders).all(|b| self.inside(b, p, borders.sides.unwrap_or(1.0)) >= 0.0)
+    }
+
+    /// The part of a segment in view space that lies inside the borders. Either direction gives the
+    /// same points.
+    pub fn clip_segment(&self, ends: [DVec3; 2], borders: Borders) -> Option<[DVec3; 2]> {
+        let mut ends = ends;
+        for border in Self::borders(borders) {
+            ends = cut(|p| self.inside(border, p, borders.sides.unwrap_or(1.0)), ends)?;
+        }
+        Some(ends)
+    }
+
+    /// The part of a convex polygon in view space that lies inside the borders: what neighbours share
+    /// they still share. Empty where nothing is left. (Sutherland–Hodgman, border by border.)
+    pub fn clip_face(&self, corners: &[DVec3], borders: Borders) -> Vec<DVec3> {
+        let mut ring = corners.to_vec();
+        for border in Self::borders(borders) {
+            let d = |p: DVec3| self.inside(border, p, borders.sides.unwrap_or(1.0));
+            if ring.iter().all(|p| d(*p) >= 0.0) {
+                continue;
+            }
+            let mut kept = Vec::with_capacity(ring.len() + 1);
+            for (i, &p) in ring.iter().enumerate() {
+                let q = ring[(i + 1) % ring.len()];
+                let (dp, dq) = (d(p), d(q));
+                if dp >= 0.0 {
+                    kept.push(p);
+                }
+                if dp >= 0.0 && dq < 0.0 {
+                    kept.push(crossing(p, dp, q, dq));
+                } else if dp < 0.0 && dq >= 0.0 {
+                    kept.push(crossing(q, dq, p, dp));
+                }
+            }
+            ring = kept;
+        }
+        if ring.len() < 3 { Vec::new() } else { ring }
+    }
+}
+
+/// The part of a segment where `inside` is not below 0.
+fn cut(inside: impl Fn(DVec3) -> f64, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> {
+    let (da, db) = (inside(a), inside(b));
+    match (da >= 0.0, db >= 0.0) {
+        (true, true) => Some([a, b]),
+        (true, false) => Some([a, crossing(a, da, b, db)]),
+        (false, true) => Some([crossing(b, db, a, da), b]),
+        (false, false) => None,
+    }
+}
+
+/// Where the border is met between a point inside and one outside; the inside one comes first, so
+/// both directions of an edge give the same bits.
+fn crossing(inside: DVec3, d_in: f64, outside: DVec3, d_out: f64) -> DVec3 {
+    (outside * d_in - inside * d_out) / (d_in - d_out)
 }

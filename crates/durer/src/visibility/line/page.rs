@@ -4,7 +4,8 @@
 //! rounding is at one place.
 
 use crate::math::{DVec2, DVec3, Rect};
-use crate::visibility::object::{Borders, Faces, PicturePlane, PlanePoint};
+use crate::view::picture_plane::{Borders, PicturePlane, PlanePoint};
+use crate::visibility::object::Faces;
 
 /// Half the page is at most this many steps; products of two differences stay far below 2⁶³.
 const HALF_PAGE: f64 = (1u32 << 27) as f64;

@@ -7,7 +7,8 @@
 use super::edge_lines::NO_ITEM;
 use crate::math::{DMat3, DVec3};
 use crate::scene::{Mesh, Scene};
-use crate::visibility::object::{Faces, PicturePlane};
+use crate::view::picture_plane::PicturePlane;
+use crate::visibility::object::Faces;
 
 /// A line across one triangle, world space.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -14,7 +14,8 @@ use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
-use crate::visibility::object::{Bodies, Faces, PicturePlane, Side};
+use crate::view::picture_plane::PicturePlane;
+use crate::visibility::object::{Bodies, Faces, Side};
 use crate::{Error, Result};
 
 /// The facts.

@@ -87,7 +87,7 @@ pub fn projected(points: &[DVec3], plane: &PicturePlane) -> Vec<Vec<DVec2>> {
         {
             chain.push(b);
         }
-        open = plane.depth(pair[1]) >= plane.near();
+        open = plane.is_behind_near(pair[1]);
     }
     chains.retain(|c| c.len() > 1);
     chains

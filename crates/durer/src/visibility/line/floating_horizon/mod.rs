@@ -174,7 +174,7 @@ pub fn draw(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
-    let plane = PicturePlane::new(camera)?;
+    let plane = PicturePlane::of_camera(camera, 1.0)?;
     let curves = curves(field, camera, options, t)?;
     let mut lines = Vec::with_capacity(curves.len());
     for (index, curve) in curves.iter().enumerate() {

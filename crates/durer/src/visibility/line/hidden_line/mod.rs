@@ -35,7 +35,8 @@ use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
-use crate::visibility::object::{Bodies, Faces, PicturePlane};
+use crate::view::picture_plane::PicturePlane;
+use crate::visibility::object::{Bodies, Faces};
 use crate::{Error, Result, parallel};
 
 /// The facts.
