@@ -199,9 +199,14 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
         highest[i] = x_first.max(x_last) + y_first.max(y_last);
     }
     let (x0, mut y) = (x0 & -BLOCK, y0 & -BLOCK);
+    let nearest = t.depth_min.to_bits() as i32;
     while y <= y1 {
         let mut x = x0;
         while x <= x1 {
+            if plane.hides([x, y, x, y], nearest) {
+                x += BLOCK;
+                continue;
+            }
             let (fx, fy) = (i64::from(x * SUBPIXELS), i64::from(y * SUBPIXELS));
             let mut edges = LaneEdges { row: [i32x8::splat(simd, 0); 3], step_y: [0; 3] };
             let (mut step_x, mut outside) = ([0; 3], false);
