@@ -1,7 +1,10 @@
-//! A thousand random scenes through all methods: the body of the fuzz target, without the fuzzer.
+//! A thousand random scenes through all methods, and drawn as lines and regions: the bodies of the
+//! fuzz targets, without the fuzzer.
 
+#[path = "../../../../fuzz/bodies/drawn.rs"]
+mod drawn;
 #[path = "../../../../fuzz/bodies/surfaces.rs"]
-mod body;
+mod surfaces;
 
 use crate::scenes::Numbers;
 
@@ -13,7 +16,7 @@ fn bytes(seed: u64) -> Vec<u8> {
 
 /// A quarter of the thousand, so that they run side by side.
 fn quarter(k: u64) {
-    (250 * k..250 * (k + 1)).for_each(|seed| body::body(&bytes(seed)));
+    (250 * k..250 * (k + 1)).for_each(|seed| surfaces::body(&bytes(seed)));
 }
 
 #[test]
@@ -41,18 +44,30 @@ fn all_methods_agree_at_odd_sizes() {
     for (seed, (width, height)) in
         (5000..).zip([(1, 1), (1, 2048), (2048, 1), (3, 700), (700, 3), (65, 64), (513, 130)])
     {
-        body::compare(&bytes(seed), width, height);
+        surfaces::compare(&bytes(seed), width, height);
     }
 }
 
 #[test]
 fn all_methods_agree_on_a_large_picture() {
-    body::compare(&bytes(77)[..200], 2048, 2048);
+    surfaces::compare(&bytes(77)[..200], 2048, 2048);
+}
+
+#[test]
+fn lines_of_random_scenes_are_sound() {
+    (0..200).for_each(|seed| drawn::lines(&bytes(seed)));
+}
+
+#[test]
+fn regions_of_random_scenes_are_sound() {
+    (0..200).for_each(|seed| drawn::regions(&bytes(seed)));
 }
 
 #[test]
 fn any_bytes_do() {
     for data in [&[][..], &[0], &[255; 3], &[7; 4000]] {
-        body::body(data);
+        surfaces::body(data);
+        drawn::lines(data);
+        drawn::regions(data);
     }
 }
