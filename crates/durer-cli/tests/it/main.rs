@@ -9,6 +9,7 @@ mod drawings;
 mod faults;
 mod fill;
 mod harness;
+mod limits;
 mod memory;
 mod options;
 mod outputs;

@@ -9,6 +9,9 @@ use crate::scene::{Aabb, Scene};
 /// Points that are looked at together: neighbours in the file mostly are neighbours in space.
 const BATCH: usize = 64;
 
+/// Every so-manieth batch of a mesh is looked at before the others.
+const SAMPLED: usize = 16;
+
 /// What a box of transformed points grows by, relative to its numbers, so that rounding does not
 /// leave a point outside: far above the 2⁻⁵³ that each of a few operations may be off.
 const SLACK: f64 = 1e-14;
@@ -89,7 +92,7 @@ impl<const N: usize> Outermost<N> {
     }
 
     fn add_mesh(&mut self, positions: &[Vec3], used: Option<&[bool]>, place: &DMat4) {
-        for (i, batch) in positions.chunks(BATCH).enumerate() {
+        let mut add = |(i, batch): (usize, &[Vec3])| {
             let used = used.and_then(|used| used.get(BATCH * i..));
             let drawn = |j: &usize| used.is_none_or(|used| used.get(*j).is_some_and(|&u| u));
             let points = (0..batch.len())
@@ -97,7 +100,13 @@ impl<const N: usize> Outermost<N> {
                 .map(|j| place.transform_point3(batch[j].as_dvec3()))
                 .filter(|p| p.is_finite());
             self.add(points, &around(batch, place));
-        }
+        };
+        // Some from everywhere first: of those that follow few reach beyond, though a file may run
+        // from the bottom of a model to its top.
+        let sampled = |(i, _): &(usize, &[Vec3])| i.is_multiple_of(SAMPLED);
+        let batches = || positions.chunks(BATCH).enumerate();
+        batches().filter(sampled).for_each(&mut add);
+        batches().filter(|batch| !sampled(batch)).for_each(add);
     }
 
     fn add(&mut self, points: impl Iterator<Item = DVec3> + Clone, around: &Aabb) {
