@@ -18,4 +18,5 @@ mod pictures;
 mod plot;
 mod readme;
 mod resources;
+mod same_bytes;
 mod streams;

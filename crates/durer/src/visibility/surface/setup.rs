@@ -157,7 +157,7 @@ fn coverage(scene: &Scene, material: Option<usize>) -> Coverage {
     }
 }
 
-/// Bits of [`ScreenVertex::code`], from the lowest: beyond which border of the view volume a vertex lies.
+/// Bits of [`ScreenVertex::code`]: beyond which border of the view volume a vertex lies.
 mod code {
     pub const LEFT: u32 = 1;
     pub const RIGHT: u32 = 2;
@@ -294,24 +294,22 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     let (grid_x, grid_y) = (x * snap_scale, y * snap_scale);
     let (snapped_x, snapped_y) = (grid_x + magic, grid_y + magic);
     let (rest_x, rest_y) = (grid_x - (snapped_x - magic), grid_y - (snapped_y - magic));
-    let beyond = [left, right, top, bottom, near, far, outside_guard, non_finite];
-    let mut codes = [0; 4];
-    // Mostly everything is within all borders.
-    if beyond.iter().fold(0, |any, mask| any | mask) != 0 {
-        for (bit, mask) in beyond.iter().enumerate() {
-            for (lane, code) in codes.iter_mut().enumerate() {
-                *code |= ((mask >> lane) as u32 & 1) << bit;
-            }
-        }
-    }
     for i in 0..4 {
+        let bit = |mask: u64, code: u32| ((mask >> i) as u32 & 1) * code;
         to[i] = ScreenVertex {
             x: snapped_x[i].to_bits() as i32,
             y: snapped_y[i].to_bits() as i32,
             rest_x: rest_x[i] as f32,
             rest_y: rest_y[i] as f32,
             depth: z[i] as f32,
-            code: codes[i],
+            code: bit(left, code::LEFT)
+                | bit(right, code::RIGHT)
+                | bit(top, code::TOP)
+                | bit(bottom, code::BOTTOM)
+                | bit(near, code::NEAR)
+                | bit(far, code::FAR)
+                | bit(outside_guard, code::GUARD)
+                | bit(non_finite, code::NON_FINITE),
         };
     }
 }
