@@ -7,6 +7,7 @@ mod drawn;
 mod surfaces;
 
 use crate::scenes::Numbers;
+use std::path::Path;
 
 fn bytes(seed: u64) -> Vec<u8> {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));
@@ -61,6 +62,20 @@ fn lines_of_random_scenes_are_sound() {
 #[test]
 fn regions_of_random_scenes_are_sound() {
     (0..200).for_each(|seed| drawn::regions(&bytes(seed)));
+}
+
+#[test]
+fn seeds_of_lines_and_regions() {
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
+    let bodies: [(&str, fn(&[u8])); 2] = [("lines", drawn::lines), ("regions", drawn::regions)];
+    for (target, body) in bodies {
+        let files =
+            std::fs::read_dir(seeds.join(target)).expect("seeds are part of the repository");
+        let read = |f: std::io::Result<std::fs::DirEntry>| std::fs::read(f.expect("a file").path());
+        let all: Vec<_> = files.map(|f| read(f).expect("a seed")).collect();
+        assert!(!all.is_empty(), "{target}");
+        all.iter().for_each(|seed| body(seed));
+    }
 }
 
 #[test]
