@@ -4,8 +4,8 @@ use crate::math::{DMat3, Vec2, Vec3, Vec4};
 use crate::scene::{Mesh, Projection, Scene, Topology};
 use crate::shade::lane::Vec3Lane;
 use crate::shade::{
-    Points, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Shading, Surface,
-    TexCoord, shade, shade_face, shade_points, shade_vertex,
+    Points, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Sample, Samples,
+    Shading, Surface, TexCoord, shade, shade_face, shade_points, shade_vertex,
 };
 use crate::simd::Level;
 use crate::target::NO_ITEM;
@@ -51,6 +51,8 @@ struct RunInfo<'a> {
     shading: Shading,
     /// Whether eight pixels can be shaded at a time.
     plain: bool,
+    /// Whether eight pixels can be lit at a time, after their textures were looked up one by one.
+    together: bool,
 }
 
 /// From where a point of an item is seen.
@@ -113,6 +115,7 @@ impl<'a> Lit<'a> {
             None => material.shading(),
         };
         let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
+        let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
         let info = RunInfo {
             run: index,
             first_item: run.first_item,
@@ -120,7 +123,8 @@ impl<'a> Lit<'a> {
             mesh,
             material,
             shading,
-            plain: material.is_plain() && mesh.colors.is_empty() && per_pixel,
+            plain,
+            together: !plain && material.is_lit_together(shading),
         };
         self.latest = Some(info);
         info
@@ -305,6 +309,8 @@ impl<'a> Lit<'a> {
                     return self.one_triangle_x8(simd, &info, items[0], [x, y], colors);
                 }
                 self.plain_x8(simd, &info, items, [x, y], &mut done, colors);
+            } else if info.together {
+                self.textured_x8(simd, &info, items, [x, y], &mut done, colors);
             } else {
                 let color = self.color(items[i], x + i as i32, y);
                 set_lane(colors, i, color.truncate());
@@ -353,6 +359,38 @@ impl<'a> Lit<'a> {
         for (to, from) in colors.iter_mut().zip(&shaded) {
             fill_axis(*from, &mine, to);
         }
+    }
+
+    /// Shades all of eight pixels whose items belong to one run that is lit together.
+    #[inline(always)]
+    fn textured_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 8],
+        [x, y]: [i32; 2],
+        done: &mut [bool; 8],
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let mut samples = Samples::default();
+        let mut mine = [0; 8];
+        for i in 0..8 {
+            if !done[i] && items[i].wrapping_sub(info.first_item) < info.count {
+                (done[i], mine[i]) = (true, u32::MAX);
+                samples.set(i, &self.sample(items[i], x + i as i32, y));
+            }
+        }
+        let shaded = samples.shade(simd, self.shared.lights, info.shading);
+        for (to, from) in colors.iter_mut().zip(&shaded) {
+            fill_axis(*from, &mine, to);
+        }
+    }
+
+    /// What the textures say of an item at a pixel's centre.
+    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample {
+        self.with_surface(item, x, y, |surface, material, _, shading| {
+            material.sample(surface, shading)
+        })
     }
 
     #[inline(always)]
