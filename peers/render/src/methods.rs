@@ -25,12 +25,14 @@ const FOV_Y: f64 = 30.0;
 /// Measures all methods on each model, one thread.
 pub fn run(options: &Options) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let default = [format!("{}/meshes/3DBenchy.stl", std::env::var("DURER_DATA").unwrap_or_default())];
+    let default =
+        [format!("{}/meshes/3DBenchy.stl", std::env::var("DURER_DATA").unwrap_or_default())];
     let names = if options.names.is_empty() { &default[..] } else { &options.names };
     table::head(&["model", "what", "CPU ms", "CPU / z-buffer's"]);
     for name in names {
         let scene = read_stl(name.as_ref())?;
-        pool.install(|| contest(name, &scene, options.rounds))?;
+        // Errors of this workspace cannot go from thread to thread.
+        pool.install(|| contest(name, &scene, options.rounds).map_err(|e| e.to_string()))?;
     }
     Ok(())
 }
@@ -67,10 +69,18 @@ fn contest(name: &str, scene: &Scene, rounds: usize) -> Result<()> {
     let lights = PreparedLights::of(scene, &camera);
     let mut costs: Vec<Vec<Cost>> = vec![Vec::new(); SurfaceMethod::ALL.len()];
     let mut rays: [Vec<Cost>; 2] = Default::default();
+    let mut finer: [Vec<Cost>; 2] = Default::default();
     let mut hits = 0;
     for _ in 0..=rounds {
         for (&method, costs) in SurfaceMethod::ALL.iter().zip(&mut costs) {
-            let (result, cost) = measure(|| picture(method, scene, &view, &lights));
+            let work = || picture(method, Samples::One, scene, &view, &lights);
+            let (result, cost) = measure(work);
+            result?;
+            costs.push(cost);
+        }
+        for (samples, costs) in [Samples::Four, Samples::Sixteen].into_iter().zip(&mut finer) {
+            let work = || picture(SurfaceMethod::ZBuffer, samples, scene, &view, &lights);
+            let (result, cost) = measure(work);
             result?;
             costs.push(cost);
         }
@@ -83,14 +93,23 @@ fn contest(name: &str, scene: &Scene, rounds: usize) -> Result<()> {
         hits = found;
     }
     // The first round warms up.
-    costs.iter_mut().chain(&mut rays).for_each(|costs| drop(costs.remove(0)));
+    costs.iter_mut().chain(&mut rays).chain(&mut finer).for_each(|costs| {
+        costs.remove(0);
+    });
     let row = |what: &str, costs: &[Cost], base: &[Cost]| {
         let ms = format!("{:.1}", median_cost(costs).cpu * 1e3);
-        table::row(&[name.into(), what.into(), ms, format!("{:.2}", ratio(costs, base, |c| c.cpu))]);
+        table::row(&[
+            name.into(),
+            what.into(),
+            ms,
+            format!("{:.2}", ratio(costs, base, |c| c.cpu)),
+        ]);
     };
     for (&method, own) in SurfaceMethod::ALL.iter().zip(&costs) {
         row(method.name(), own, &costs[0]);
     }
+    row("z-buffer, 4 samples", &finer[0], &costs[0]);
+    row("z-buffer, 16 samples", &finer[1], &costs[0]);
     row("primary rays: hierarchy", &rays[0], &costs[0]);
     row(&format!("primary rays: {} rays, {hits} hits", SIDE * SIDE), &rays[1], &costs[0]);
     Ok(())
@@ -98,19 +117,18 @@ fn contest(name: &str, scene: &Scene, rounds: usize) -> Result<()> {
 
 fn picture(
     method: SurfaceMethod,
+    samples: Samples,
     scene: &Scene,
     view: &View,
     lights: &PreparedLights,
 ) -> Result<Framebuffer> {
     let filter = Filter { cull: Cull::None, sample_reach: method.sample_reach() };
     // The production path makes no list of triangles.
-    let input = match method {
-        SurfaceMethod::ZBuffer => SurfaceInput::new(&Scene::default(), view, filter)?,
-        _ => SurfaceInput::new(scene, view, filter)?,
-    };
-    let input = SurfaceInput { scene, ..input };
+    let nothing = Scene::default();
+    let listed = if method == SurfaceMethod::ZBuffer { &nothing } else { scene };
+    let input = SurfaceInput { scene, ..SurfaceInput::new(listed, view, filter)? };
     let mut framebuffer = Framebuffer::new(SIDE, SIDE);
-    let options = method::Options { samples: Samples::One, ..Default::default() };
+    let options = method::Options { samples, ..Default::default() };
     render_with(method, &input, lights, &options, &mut framebuffer, &mut NoTrace)?;
     Ok(framebuffer)
 }

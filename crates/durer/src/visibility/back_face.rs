@@ -157,7 +157,9 @@ fn stays(
     t: &mut impl Tracer<Step>,
 ) -> bool {
     let area = newell_area(ring) * sign;
-    let side = ring.first().map_or(Face::Edge, |&point| eye.side(area, point));
+    // Newell's plane goes through the mean of the corners.
+    let mean = ring.iter().sum::<DVec3>() / ring.len() as f64;
+    let side = eye.side(area, mean);
     t.step(|| Step::Tested { face, area, side });
     match side {
         Face::Front => true,

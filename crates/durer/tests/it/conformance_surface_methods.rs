@@ -101,7 +101,7 @@ fn all_methods_agree_on_all_models() {
     });
     let (read, covered) = (read.into_inner(), covered.into_inner());
     println!("{read} of {} models, {covered} covered pixels", paths.len());
-    assert!(read * 20 >= paths.len() * 19 && covered > 60_000, "{read}, {covered}");
+    assert!(read * 20 >= paths.len() * 19 && covered > 30_000, "{read}, {covered}");
 }
 
 #[test]

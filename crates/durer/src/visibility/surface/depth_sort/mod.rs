@@ -159,8 +159,9 @@ pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Vec<ScreenP
 }
 
 /// [`order`] with frame-to-frame coherence: polygons are looked at as they stood in an order of the same
-/// scene seen before, not from far to near, so that fewer are in the wrong place. `previous` has that
-/// order's items. Any list gives an order that is as right; the picture is the same.
+/// scene seen before, not from far to near. `previous` has that order's items. Any list gives an order that is
+/// as right; the picture is the same. Little is saved: a tenth of the moves, where frames are a degree
+/// apart.
 pub fn order_after(
     input: &SurfaceInput<'_>,
     previous: &[u32],

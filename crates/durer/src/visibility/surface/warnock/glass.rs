@@ -2,6 +2,7 @@
 
 use super::{BAND, Options, Solver, Step, pixel_mean};
 use crate::math::Vec4;
+use crate::shade::color::premultiply;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{SampleGrid, Window};
@@ -142,7 +143,7 @@ fn write_colors(visible: &Visible, glass: &Glass, picture: &mut Picture<'_>) {
     for layers in glass.layers.chunk_by(|a, b| a.place == b.place) {
         let place = layers[0].place as usize;
         let [x, y] = visible.place(place);
-        let behind = crate::shade::color::premultiply(picture.behind(y));
+        let behind = premultiply(picture.behind(y));
         let items = layers.iter().map(|l| l.item);
         let sum = compose(&mut picture.lit, visible.item[place], items, behind, [x, y]);
         picture.set_color(x as u32, y as u32, sum);
