@@ -11,6 +11,7 @@ use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, Shading};
 use crate::visibility::surface::Background;
 use crate::visibility::surface::attributes::{blend, run_of};
+use crate::visibility::surface::layers::compose;
 use crate::visibility::surface::lit::{Lighting, Lit, Seen};
 use crate::visibility::surface::setup::Coverage;
 
@@ -81,16 +82,18 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// Linear premultiplied colour of an item at a pixel's centre.
+    /// Linear premultiplied colour at a pixel's centre of what a ray from the eye sees: an item, or
+    /// [`crate::target::NO_ITEM`], and what was seen through without secondary rays, far ones first.
     pub fn at_pixel(
         &mut self,
-        item: u32,
+        stack: &[u32],
         [x, y]: [i32; 2],
         behind: Vec4,
         hear: &mut impl FnMut(RayKind, u32, Option<u32>),
     ) -> Vec4 {
+        let Some((&item, blended)) = stack.split_first() else { return behind };
         let Some(world) = self.world.filter(|_| u64::from(item) < self.triangle_count()) else {
-            return self.lit.color(item, x, y).truncate().extend(1.0);
+            return compose(&mut self.lit, item, blended.iter().copied(), behind, [x, y]);
         };
         let camera = self.shared.view.camera();
         let weights = self.lit.triangle(item).weights(x, y, [0.0; 2]);
