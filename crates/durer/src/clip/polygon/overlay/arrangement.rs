@@ -343,10 +343,10 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         let mut kept = 0;
         let mut renamed = vec![0; self.edges.len()];
         joined.iter().for_each(|&e| renamed[e as usize] = NONE);
-        for e in 0..self.edges.len() {
+        for (e, name) in renamed.iter_mut().enumerate() {
             let edge = self.edges[e];
-            let drops = renamed[e] == NONE || !keeps(&edge);
-            renamed[e] = if drops { NONE } else { kept as u32 };
+            let drops = *name == NONE || !keeps(&edge);
+            *name = if drops { NONE } else { kept as u32 };
             if !drops {
                 self.edges[kept] = edge;
                 kept += 1;
