@@ -175,6 +175,10 @@ impl Surface {
 
     fn of_file(path: &Path, args: &PlotArgs, messages: &Messages) -> Result<Self, Failure> {
         let name = input::display_name(path);
+        if name != "-" && !path.exists() && Formula::parse(&name).is_ok() {
+            let message = format!("there is no file `{name}`; a formula is given with --formula");
+            return Err(Failure::Usage(message));
+        }
         let default = Limits::default();
         let decoded_bytes = args.surface.max_bytes.unwrap_or(default.decoded_bytes);
         let limits = Limits { decoded_bytes, ..default };

@@ -29,7 +29,7 @@ pub use flat::shade_face;
 pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub use material::{PreparedMaterial, PreparedMaterials, Surface, TexCoord, shade};
-pub use plain::{Batch, Points, shade_points, shade_x8};
+pub use plain::{Points, shade_points};
 pub use texture::PreparedTexture;
 
 crate::info::family! {

@@ -95,7 +95,7 @@ impl<'a> Whitted<'a> {
         let camera = self.shared.view.camera();
         let weights = self.lit.triangle(item).weights(x, y, [0.0; 2]);
         let towards_eye = match camera.projection {
-            Projection::Perspective { .. } => -blend(&self.lit.triangle(item).positions, weights),
+            Projection::Perspective { .. } => -blend(&self.lit.triangle(item).positions(), weights),
             Projection::Orthographic { .. } => camera.axes()[2].as_vec3(),
         };
         let point = self.point(item, Seen::Pixel(x, y), weights, towards_eye);
@@ -112,9 +112,9 @@ impl<'a> Whitted<'a> {
         let view = view.normalize_or_zero();
         let front = t.face_normal.dot(view) >= 0.0;
         let face_normal = if front { t.face_normal } else { -t.face_normal };
-        let normal = blend(&t.normals, weights).normalize_or(face_normal);
+        let normal = blend(&t.normals(), weights).normalize_or(face_normal);
         let normal = if normal.dot(view) < 0.0 { -normal } else { normal };
-        let position = blend(&t.positions, weights);
+        let position = blend(&t.positions(), weights);
         Point { item, seen, position, view, normal, face_normal, front }
     }
 
