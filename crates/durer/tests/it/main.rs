@@ -20,6 +20,7 @@ mod fuzz;
 mod golden;
 mod height_field;
 mod hidden_line;
+mod line_counts;
 mod line_oracle;
 mod line_scenes;
 mod overlay;
