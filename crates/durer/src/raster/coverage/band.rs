@@ -72,17 +72,19 @@ impl PathEdges {
         for (i, edge) in self.edges.iter().enumerate() {
             let i = i as u32;
             let (top, bottom) = edge.rows();
-            for b in band(top) - base..=(band((bottom - 1).max(top)) - base).min(count - 1) {
+            let (top, bottom) = (band(top) - base, band((bottom - 1).max(top)) - base);
+            let bands = self.first.iter_mut().zip(&mut last);
+            for (first, last) in bands.take(bottom + 1).skip(top) {
                 let new = self.stretches.len() as u32;
-                match self.stretches.get_mut(last[b] as usize) {
+                match self.stretches.get_mut(*last as usize) {
                     Some(stretch) if stretch.edges.1 == i => {
                         stretch.edges.1 = i + 1;
                         continue;
                     }
                     Some(stretch) => stretch.next = new,
-                    None => self.first[b] = new,
+                    None => *first = new,
                 }
-                last[b] = new;
+                *last = new;
                 self.stretches.push(Stretch { edges: (i, i + 1), next: NONE });
             }
         }
