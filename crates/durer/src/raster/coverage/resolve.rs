@@ -19,6 +19,8 @@ const FEW_SHARED: u32 = 2 * BAND_ROWS as u32;
 const OFTEN: u32 = 5;
 /// and so few of them for each edge that they do not come from long edges side by side.
 const PER_EDGE: u32 = 4;
+/// With more edges than this in a band it does not matter how long they are.
+const MANY_EDGES: u32 = 1024;
 /// End of a list.
 const NONE: u32 = u32::MAX;
 
@@ -96,7 +98,10 @@ impl Resolver {
                 found |= u64::from(mark.shared != 0) << row;
             }
         }
-        if shared > FEW_SHARED && shared > touched / OFTEN && shared < edges * PER_EDGE {
+        if shared > FEW_SHARED
+            && shared > touched / OFTEN
+            && (edges > MANY_EDGES || shared < edges * PER_EDGE)
+        {
             return 0;
         }
         self.pieces.clear();
