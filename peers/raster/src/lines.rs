@@ -69,11 +69,39 @@ pub fn aliased() {
     );
 }
 
-/// Flood fills of 4096²: empty, noise, serpentine.
+/// A maze by a random spanning tree (depth first): corridors and walls one pixel wide.
+fn maze(side: u32, r: &mut Random) -> Vec<u8> {
+    let n = ((side - 1) / 2) as usize;
+    let side = side as usize;
+    let mut pixels = vec![255; side * side];
+    let mut stack = vec![(0, 0)];
+    pixels[0] = 0;
+    while let Some((x, y)) = stack.last().copied() {
+        let around = [(1, 0), (-1, 0), (0, 1), (0, -1_i64)];
+        let open = around.iter().filter_map(|(dx, dy)| {
+            let (u, v) = ((x as i64 + dx) as usize, (y as i64 + dy) as usize);
+            (u < n && v < n && pixels[2 * v * side + 2 * u] != 0).then_some((u, v))
+        });
+        let open: Vec<(usize, usize)> = open.collect();
+        if open.is_empty() {
+            stack.pop();
+            continue;
+        }
+        let (u, v) = open[(r.next() * open.len() as f64) as usize % open.len()];
+        pixels[2 * v * side + 2 * u] = 0;
+        pixels[(y + v) * side + x + u] = 0;
+        stack.push((u, v));
+    }
+    pixels
+}
+
+/// Flood fills of 4096²: empty, noise, maze, serpentine; imageproc has 4-connected ones.
 pub fn floods() {
     let side = 4096_u32;
     let mut r = Random(5);
-    let noise: Vec<u8> = (0..side * side).map(|_| u8::from(r.next() < 0.35) * 255).collect();
+    let noise: Vec<u8> = (0..side * side)
+        .map(|i| u8::from(i != 0 && r.next() < 0.35) * 255)
+        .collect();
     let snake = (0..side * side).map(|i| {
         let (x, y) = (i % side, i / side);
         let open = if y / 2 % 2 == 0 { side - 1 } else { 0 };
@@ -82,21 +110,44 @@ pub fn floods() {
     let scenes = [
         ("empty", vec![0; (side * side) as usize]),
         ("noise", noise),
+        ("maze", maze(side, &mut r)),
         ("serpentine", snake.collect()),
     ];
+    println!("| flood fill, ms | durer, 4 | durer, 8 | imageproc, 4 | imageproc / durer, 4 | / durer, 8 |");
+    println!("|---|---|---|---|---|---|");
     for (name, data) in scenes {
-        let source = Pixels::from_data(side, side, data).unwrap();
-        for connectivity in [Connectivity::Four, Connectivity::Eight] {
+        let source = Pixels::from_data(side, side, data.clone()).unwrap();
+        let peer = image::GrayImage::from_raw(side, side, data).unwrap();
+        let (mut a, mut b, mut c) = (source.clone(), source.clone(), peer.clone());
+        let fill = |image: &mut Pixels<u8>, connectivity| {
+            image.data_mut().copy_from_slice(source.data());
             let options = seed_fill::Options { connectivity };
-            let mut times = Vec::new();
-            for _ in 0..7 {
-                let mut image = source.clone();
-                let start = std::time::Instant::now();
-                flood_fill(&mut image, (0, 0), 128, 0, SeedFill::Spans, &options, &mut NoTrace);
-                times.push(start.elapsed().as_secs_f64() * 1e3);
-            }
-            times.sort_by(f64::total_cmp);
-            println!("flood {name} {connectivity:?}: {:.1} ms", times[3]);
-        }
+            flood_fill(image, (0, 0), 128, 0, SeedFill::Spans, &options, &mut NoTrace);
+        };
+        // What each has to do before, to be taken off.
+        let mut copy = source.clone();
+        let m = medians(
+            5,
+            &mut [
+                ("four", Box::new(|| fill(&mut a, Connectivity::Four))),
+                ("eight", Box::new(|| fill(&mut b, Connectivity::Eight))),
+                (
+                    "imageproc",
+                    Box::new(|| {
+                        c.copy_from_slice(&peer);
+                        let (seed, value) = ((0, 0), image::Luma([128]));
+                        imageproc::drawing::flood_fill_mut(&mut c, seed.0, seed.1, value);
+                    }),
+                ),
+                ("copy", Box::new(|| copy.data_mut().copy_from_slice(source.data()))),
+            ],
+        );
+        assert!(a.data() == c.as_raw().as_slice(), "{name}: not the same pixels");
+        let [four, eight, other] = [0, 1, 2].map(|i| m[i] - m[3]);
+        println!(
+            "| {name} | {four:.1} | {eight:.1} | {other:.1} | {:.2} | {:.2} |",
+            other / four,
+            other / eight
+        );
     }
 }

@@ -4,14 +4,14 @@ mod fills;
 mod lines;
 mod scenes;
 
-use std::time::Instant;
+use cpu_time::ProcessTime;
 
-/// Milliseconds of every contestant, the median of `rounds` runs that alternate between them.
+/// CPU milliseconds of every contestant, the median of `rounds` runs that alternate between them.
 pub fn medians(rounds: usize, contestants: &mut [(&str, Box<dyn FnMut() + '_>)]) -> Vec<f64> {
     let mut times = vec![Vec::new(); contestants.len()];
     for round in 0..=rounds {
         for (i, (_, run)) in contestants.iter_mut().enumerate() {
-            let start = Instant::now();
+            let start = ProcessTime::now();
             run();
             if round > 0 {
                 times[i].push(start.elapsed().as_secs_f64() * 1e3);

@@ -86,6 +86,7 @@ impl PixelValue for bool {
 }
 
 impl PixelValue for u8 {
+    #[inline(always)]
     fn difference(self, other: Self) -> u8 {
         self.abs_diff(other)
     }
@@ -180,10 +181,8 @@ impl Region {
         let words = width.div_ceil(64);
         let mut open = Vec::with_capacity(words * height);
         for y in 0..image.height() {
-            for chunk in image.row(y).chunks(64) {
-                let bits = chunk.iter().enumerate();
-                open.push(bits.fold(0, |w, (i, p)| w | (u64::from(inside(*p)) << i)));
-            }
+            let chunks = image.row(y).chunks(64);
+            open.extend(chunks.map(|chunk| bits(chunk, &inside)));
         }
         Self { width, height, words, before: open.clone(), open }
     }
@@ -224,6 +223,22 @@ impl Region {
         }
         (start, end)
     }
+}
+
+/// One bit for each of at most 64 pixels.
+#[inline(always)]
+fn bits<P: Copy>(pixels: &[P], inside: impl Fn(P) -> bool) -> u64 {
+    // Bytes first, for those are compared many at a time.
+    let mut flags = [0_u8; 64];
+    for (flag, pixel) in flags.iter_mut().zip(pixels) {
+        *flag = u8::from(inside(*pixel));
+    }
+    let eights = flags.as_chunks::<8>().0.iter().enumerate();
+    // The product brings the lowest bits of eight bytes side by side into the highest byte.
+    eights.fold(0, |word, (i, eight)| {
+        let eight = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+        word | (eight << (8 * i))
+    })
 }
 
 /// The first bit from `x` on that is set after `map`.

@@ -7,14 +7,25 @@ use super::FillRule;
 use super::cells::{BAND_ROWS, Cells, Marks};
 use super::edge::{BITS, Edge, EdgeBuilder, ONE};
 use super::resolve::Resolver;
-use super::sweep::{Run, alpha, sweep};
+use super::sweep::{Row, Sink, alpha, sweep};
 use crate::curve::Contours;
+use crate::math::DVec2;
 
-/// Where edges touch the same pixels more often than this on average, what a pixel shows is noise;
-/// the integrals are taken as they are.
-const CROWDED: u64 = 6;
 /// Paths with fewer edges are gone through as a whole in every band.
 const FEW_EDGES: usize = 48;
+/// Paths that are not wider have cells of their own, few enough for the first-level cache.
+const NARROW: u32 = 112;
+/// No stretch of edges.
+const NONE: u32 = u32::MAX;
+
+/// Edges that follow each other in a path and all touch one band.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    /// First edge and one past the last.
+    edges: (u32, u32),
+    /// The band's next stretch.
+    next: u32,
+}
 
 /// The edges of one path and which of them each band needs.
 #[derive(Debug, Clone, Default)]
@@ -24,10 +35,12 @@ pub(crate) struct PathEdges {
     pub rows: (i32, i32),
     /// First and last pixel touched.
     columns: (i32, i32),
-    /// Indices of edges, band after band from the first one touched; empty for paths of few edges.
-    by_band: Vec<u32>,
-    /// Where each band's indices start.
-    starts: Vec<u32>,
+    /// Windings cannot differ by more than one anywhere.
+    convex: bool,
+    /// The stretches of all bands; empty for paths of few edges.
+    stretches: Vec<Stretch>,
+    /// Each band's first stretch, from the first band touched on.
+    first: Vec<u32>,
 }
 
 impl PathEdges {
@@ -39,9 +52,11 @@ impl PathEdges {
         for edge in &path.edges {
             let (first, last) = edge.rows();
             path.rows = (path.rows.0.min(first), path.rows.1.max(last));
-            path.columns.0 = path.columns.0.min(edge.x0.min(edge.x1) >> BITS);
-            path.columns.1 = path.columns.1.max(edge.x0.max(edge.x1) >> BITS);
+            path.columns.0 = path.columns.0.min(edge.x0.min(edge.x1));
+            path.columns.1 = path.columns.1.max(edge.x0.max(edge.x1));
         }
+        path.columns = (path.columns.0 >> BITS, path.columns.1 >> BITS);
+        path.convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
         if path.edges.len() > FEW_EDGES {
             path.sort_into_bands();
         }
@@ -51,24 +66,26 @@ impl PathEdges {
     fn sort_into_bands(&mut self) {
         let band = |row: i32| (row / BAND_ROWS) as usize;
         let base = band(self.rows.0);
-        let bands = |e: &Edge| {
-            let (first, last) = e.rows();
-            band(first) - base..band((last - 1).max(first)) - base + 1
-        };
-        let count = band((self.rows.1 - 1).max(self.rows.0)) - base + 2;
-        let mut ends = vec![0_u32; count + 1];
-        for edge in &self.edges {
-            bands(edge).for_each(|b| ends[b + 1] += 1);
-        }
-        for i in 1..ends.len() {
-            ends[i] += ends[i - 1];
-        }
-        self.starts = ends.clone();
-        self.by_band = vec![0; ends.last().copied().unwrap_or(0) as usize];
+        let count = band((self.rows.1 - 1).max(self.rows.0)) - base + 1;
+        self.first = vec![NONE; count];
+        let mut last = vec![NONE; count];
         for (i, edge) in self.edges.iter().enumerate() {
-            for b in bands(edge) {
-                self.by_band[ends[b] as usize] = i as u32;
-                ends[b] += 1;
+            let i = i as u32;
+            let (top, bottom) = edge.rows();
+            let (top, bottom) = (band(top) - base, band((bottom - 1).max(top)) - base);
+            let bands = self.first.iter_mut().zip(&mut last);
+            for (first, last) in bands.take(bottom + 1).skip(top) {
+                let new = self.stretches.len() as u32;
+                match self.stretches.get_mut(*last as usize) {
+                    Some(stretch) if stretch.edges.1 == i => {
+                        stretch.edges.1 = i + 1;
+                        continue;
+                    }
+                    Some(stretch) => stretch.next = new,
+                    None => *first = new,
+                }
+                *last = new;
+                self.stretches.push(Stretch { edges: (i, i + 1), next: NONE });
             }
         }
     }
@@ -78,152 +95,151 @@ impl PathEdges {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
 
-    /// The indices of the edges of the band at row `top`; `None` = all of them.
-    fn band(&self, top: i32) -> Option<&[u32]> {
-        if self.starts.is_empty() {
-            return None;
+    /// Calls `f` with the edges of the band at row `top` in the order of the path, moved so that pixel
+    /// `first` becomes the first one.
+    #[inline(always)]
+    fn for_each(&self, top: i32, first: usize, mut f: impl FnMut(Edge)) {
+        let first = (first as i32) << BITS;
+        if self.first.is_empty() {
+            self.edges.iter().for_each(|e| f(e.moved(first)));
+            return;
         }
         let band = (top / BAND_ROWS - self.rows.0 / BAND_ROWS).max(0) as usize;
-        let at = |i: usize| self.starts.get(i).copied().unwrap_or(0) as usize;
-        self.by_band.get(at(band)..at(band + 1))
-    }
-
-    /// Calls `f` with the edges of the band in the order of the path.
-    #[inline(always)]
-    fn for_each(&self, top: i32, f: impl FnMut(&Edge)) {
-        match self.band(top) {
-            None => self.edges.iter().for_each(f),
-            Some(indices) => {
-                indices.iter().filter_map(|i| self.edges.get(*i as usize)).for_each(f);
-            }
+        let mut at = self.first.get(band).copied().unwrap_or(NONE);
+        while let Some(stretch) = self.stretches.get(at as usize) {
+            let (start, end) = stretch.edges;
+            let edges = self.edges.get(start as usize..end as usize);
+            edges.unwrap_or_default().iter().for_each(|e| f(e.moved(first)));
+            at = stretch.next;
         }
     }
+}
+
+/// Whether a closed contour turns one way only, once around.
+fn is_convex(points: &[DVec2]) -> bool {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return true };
+    let mut from = *last;
+    let mut before = *last - points.iter().rev().find(|p| *p != last).unwrap_or(last);
+    let (mut turn, mut changes) = (0.0, (0, 0));
+    for to in points.iter().skip_while(|p| *p == first && first == last) {
+        let along = *to - from;
+        if along == DVec2::ZERO {
+            continue;
+        }
+        let cross = before.perp_dot(along);
+        if !cross.is_finite() || cross * turn < 0.0 {
+            return false;
+        }
+        turn = if cross == 0.0 { turn } else { cross.signum() };
+        changes.0 += i32::from((along.x < 0.0) != (before.x < 0.0));
+        changes.1 += i32::from((along.y < 0.0) != (before.y < 0.0));
+        (from, before) = (*to, along);
+    }
+    changes.0 <= 2 && changes.1 <= 2
 }
 
 /// The buffers for filling paths in a band; used again for the next path and band.
 #[derive(Debug)]
 pub(crate) struct BandFiller {
-    cells: Cells,
+    /// For paths of any width.
+    wide: Cells,
+    /// For narrow ones, wherever they are.
+    narrow: Cells,
     resolver: Resolver,
     width: usize,
-    coverage: Vec<u32>,
-    runs: Vec<Run>,
-    patches: Vec<(usize, u8)>,
+}
+
+/// Which pixels of a band a path may touch.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    /// Rows of the band.
+    rows: (i32, i32),
+    /// The pixel of the first cell.
+    first: usize,
+    /// Words of marks.
+    words: (usize, usize),
 }
 
 impl BandFiller {
     /// Buffers for rows of `width` pixels.
     pub fn new(width: u32) -> Self {
-        Self {
-            cells: Cells::new(width),
-            resolver: Resolver::default(),
-            width: width as usize,
-            coverage: vec![0; (width as usize).next_multiple_of(64) + 64],
-            runs: Vec::new(),
-            patches: Vec::new(),
+        let (wide, narrow) = (Cells::new(width), Cells::new(NARROW));
+        Self { wide, narrow, resolver: Resolver::default(), width: width as usize }
+    }
+
+    /// The cells for a path, and what it touches of the band that starts at row `top`.
+    fn choose(&mut self, path: &PathEdges, top: i32) -> (&mut Cells, &mut Resolver, Extent) {
+        let rows = ((path.rows.0 - top).max(0), (path.rows.1 - top).min(BAND_ROWS));
+        let first = path.columns.0.max(0) as usize & !7;
+        // Edges also change the two cells after the last pixel they touch.
+        let last = (path.columns.1.max(0) as usize + 2).min(self.width + 2);
+        if last <= first + NARROW as usize {
+            let words = (0, ((last - first) >> 6) + 1);
+            (&mut self.narrow, &mut self.resolver, Extent { rows, first, words })
+        } else {
+            let words = (first >> 6, (last >> 6) + 1);
+            (&mut self.wide, &mut self.resolver, Extent { rows, first: 0, words })
         }
     }
 
-    /// Adds the edges of a path to the cells of the band that starts at row `top`; returns the
-    /// path's rows within the band and its words of marks.
-    fn add(&mut self, path: &PathEdges, top: i32) -> ((i32, i32), (usize, usize)) {
-        let cells = &mut self.cells;
-        cells.touches = 0;
-        path.for_each(top, |edge| cells.add(edge, top));
-        let rows = ((path.rows.0 - top).max(0), (path.rows.1 - top).min(BAND_ROWS));
-        // Edges also change the two cells after the last pixel they touch.
-        let last = (path.columns.1.max(0) as usize + 2).min(self.width + 2);
-        let words = ((path.columns.0.max(0) >> 6) as usize, (last >> 6) + 1);
-        (rows, words)
-    }
-
-    /// Fills one path: calls `paint(row of the band, runs, coverage)` for its rows from the top.
+    /// Fills one path: hands the coverage of its rows, from the top, to the sink.
     #[simd]
-    pub fn fill<S: Simd>(
+    pub fn fill<S: Simd, K: Sink<S>>(
         simd: S,
         this: &mut Self,
         path: &PathEdges,
         top: i32,
         rule: FillRule,
         exact: bool,
-        mut paint: impl FnMut(S, i32, &[Run], &[u32]),
+        sink: &mut K,
     ) {
-        let (rows, words) = this.add(path, top);
-        let shared = if exact { this.shared_rows(rows, words) } else { 0 };
-        if shared != 0 {
-            this.gather(path, top, shared);
+        let width = this.width;
+        let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
+        let mut resolved = false;
+        if exact && !path.convex {
+            cells.any_shared = 0;
+            let mut edges = 0;
+            path.for_each(top, first, |edge| {
+                cells.add::<true>(&edge, top);
+                edges += 1;
+            });
+            let any = cells.any_shared != 0;
+            let shared = if any { resolver.begin(cells, rows, words, edges) } else { 0 };
+            resolved = shared != 0;
+            if resolved {
+                let marks = |row: i32| cells.marks_of(row);
+                path.for_each(top, first, |edge| resolver.add(&edge, top, shared, marks));
+            }
+        } else {
+            path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
         }
         for row in rows.0..rows.1 {
-            this.patches.clear();
-            if (shared >> row) & 1 != 0 {
-                this.resolve(row, words, rule);
-            }
-            let (cells, marks) = this.cells.row(row);
-            sweep(simd, cells, marks, words, this.width, rule, &mut this.coverage, &mut this.runs);
-            for (column, value) in &this.patches {
-                if let Some(lane) = this.coverage.get_mut(*column) {
-                    *lane = u32::from(*value);
-                }
-            }
-            if !this.runs.is_empty() {
-                paint(simd, row, &this.runs, &this.coverage);
-            }
+            let (cells, marks) = cells.row(row);
+            let resolver = resolved.then_some(&mut *resolver);
+            sweep(simd, cells, marks, Row { row, first, words, width, rule }, resolver, sink);
         }
     }
 
-    /// Rows with shared pixels, one bit each; none where the band is crowded.
-    fn shared_rows(&mut self, rows: (i32, i32), words: (usize, usize)) -> u64 {
-        let (mut found, mut touched) = (0, 0_u64);
-        for row in rows.0..rows.1 {
-            let (_, marks) = self.cells.row(row);
-            for mark in &marks[words.0..words.1] {
-                found |= u64::from(mark.shared != 0) << row;
-                touched += u64::from(mark.touched.count_ones());
-            }
-        }
-        if self.cells.touches > CROWDED * touched { 0 } else { found }
-    }
-
-    fn gather(&mut self, path: &PathEdges, top: i32, shared: u64) {
-        let (cells, resolver) = (&self.cells, &mut self.resolver);
-        let marks = |row: i32| cells.marks_of(row);
-        match path.band(top) {
-            None => resolver.gather(path.edges.iter(), top, shared, marks),
-            Some(indices) => {
-                let edges = indices.iter().filter_map(|i| path.edges.get(*i as usize));
-                resolver.gather(edges, top, shared, marks);
-            }
-        }
-    }
-
-    /// Finds the shared pixels of a row whose coverage is not what the integral says.
-    fn resolve(&mut self, row: i32, words: (usize, usize), rule: FillRule) {
-        let Self { cells, resolver, patches, .. } = self;
-        let (cells, _) = cells.row(row);
-        let (mut at, mut sum) = (words.0 * 64, 0_i32);
-        let integral = |column: usize| {
-            sum = cells[at..=column].iter().fold(sum, |s, c| s.wrapping_add(*c));
-            at = column + 1;
-            sum
-        };
-        resolver.row_coverage(row, rule, integral, |x, value| patches.push((x, value)));
-    }
-
-    /// Fills one face of a partition: calls `add(row of the band, first pixel, one past the last, area)`
-    /// with the area of each pixel, 0 … 65,536.
+    /// Fills one face of a partition: calls `add(row of the band, pixel, area)` with the area of each
+    /// pixel, 0 … 65,536.
     pub fn areas(&mut self, path: &PathEdges, top: i32, mut add: impl FnMut(i32, usize, i32)) {
-        let (rows, words) = self.add(path, top);
         let width = self.width;
+        let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
+        path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
         for row in rows.0..rows.1 {
-            let (cells, marks) = self.cells.row(row);
+            let (cells, marks) = cells.row(row);
             let mut sum = 0_i32;
-            let end = self.width.max(words.0 * 64);
-            for (x, cell) in cells[words.0 * 64..].iter_mut().enumerate().take(end + 64) {
+            for (x, cell) in (first + words.0 * 64..).zip(&mut cells[words.0 * 64..]) {
                 sum = sum.wrapping_add(std::mem::take(cell));
                 let area = sum.saturating_abs().min(ONE);
-                if area != 0 && words.0 * 64 + x < width {
-                    add(row, words.0 * 64 + x, area);
+                if area != 0 && x < width {
+                    add(row, x, area);
                 }
+            }
+            // Right of the last cell the sum stays as it is.
+            let area = sum.saturating_abs().min(ONE);
+            for x in first + cells.len()..if area == 0 { 0 } else { width } {
+                add(row, x, area);
             }
             marks[words.0..words.1].fill(Marks::default());
         }

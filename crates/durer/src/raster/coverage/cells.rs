@@ -20,6 +20,17 @@ pub(crate) struct Marks {
     pub shared: u64,
 }
 
+/// What an edge does within one row: from `x0` at its upper to `x1` at its lower end, 16.16.
+struct Part {
+    x0: i32,
+    x1: i32,
+    /// 16.16 rows.
+    height: i32,
+    /// Whether the pixel of the upper, of the lower end is also its neighbour's in the path.
+    upper: bool,
+    lower: bool,
+}
+
 /// The cells of a band; area in 1/65,536 of a pixel.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Cells {
@@ -28,8 +39,8 @@ pub(crate) struct Cells {
     words: usize,
     /// Columns an edge may start in.
     columns: i32,
-    /// Pixels touched since the last clearing, each time counted.
-    pub touches: u64,
+    /// Not 0 once a pixel has become shared.
+    pub any_shared: u64,
 }
 
 impl Cells {
@@ -42,7 +53,7 @@ impl Cells {
             marks: vec![Marks::default(); words * rows],
             words,
             columns: width as i32,
-            touches: 0,
+            any_shared: 0,
         }
     }
 
@@ -59,171 +70,184 @@ impl Cells {
         &self.marks[start..start + self.words]
     }
 
-    /// Adds the part of an edge within the band whose first row is `top`.
+    /// Adds the part of an edge within the band whose first row is `top`; with `SHARED`, keeps account of
+    /// the pixels that several chains touch.
     #[inline(always)]
-    pub fn add(&mut self, edge: &Edge, top: i32) {
-        let chained = edge.chained();
-        if chained[0].is_none() && chained[1].is_none() {
-            self.add_unchained(edge, top);
-            return;
-        }
-        // What the edge shares with its neighbour in the path at their common vertex does not count.
-        let saved = chained.map(|c| c.and_then(|(row, x)| self.peek(row - top, x)));
-        self.add_unchained(edge, top);
-        for (word, bits, before) in saved.into_iter().flatten() {
-            if let Some(marks) = self.marks.get_mut(word) {
-                marks.shared = (marks.shared & !bits) | before;
-            }
-        }
-    }
-
-    /// The shared bit of a vertex's pixel: index of the word, mask, present value.
-    #[inline(always)]
-    fn peek(&self, row: i32, x: i32) -> Option<(usize, u64, u64)> {
-        if !(0..BAND_ROWS).contains(&row) {
-            return None;
-        }
-        let column = x >> BITS;
-        let word = row as usize * self.words + (column >> 6) as usize;
-        let bits = 1 << (column & 63);
-        self.marks.get(word).map(|m| (word, bits, m.shared & bits))
-    }
-
-    #[inline(always)]
-    fn add_unchained(&mut self, edge: &Edge, top: i32) {
+    pub fn add<const SHARED: bool>(&mut self, edge: &Edge, top: i32) {
         let (first, last) = (edge.y0 >> BITS, edge.y1 >> BITS);
+        // What the edge shares with its neighbour in the path at their common vertex does not count.
+        let (upper, lower) = if SHARED { edge.chained() } else { (false, false) };
         if first == last {
             // Within one row, horizontal edges too: those only leave their mark.
             let height = edge.y1 - edge.y0;
-            if (0..BAND_ROWS).contains(&(first - top)) && edge.y0 & (ONE - 1) != 0 || height != 0 {
-                self.part(first - top, edge.x0, edge.x1, height, edge.sign());
+            if edge.y0 & (ONE - 1) != 0 || height != 0 {
+                let part = Part { x0: edge.x0, x1: edge.x1, height, upper, lower };
+                self.part::<SHARED>(first - top, &part, edge.sign());
             }
             return;
         }
         // The first row in part, the whole rows, the last row in part.
+        let steps = edge.steps();
+        let sign = edge.sign();
         let head = ONE - (edge.y0 & (ONE - 1));
         let whole = if head == ONE { first } else { first + 1 };
-        if head != ONE {
-            self.part(first - top, edge.x0, edge.crossing, head, edge.sign());
+        if head != ONE && first >= top {
+            let part = Part { x0: edge.x0, x1: steps.crossing, height: head, upper, lower: false };
+            self.part::<SHARED>(first - top, &part, sign);
         }
         let from = whole.max(top);
         let to = last.min(top + BAND_ROWS);
-        let x = (i64::from(edge.crossing) << BITS)
-            + edge.slope.wrapping_mul(i64::from(from.max(whole) - whole));
         if from < to {
-            self.whole_rows(edge, x, from - top, to - top);
+            self.whole_rows::<SHARED>(
+                steps.slope,
+                steps.at(from - whole),
+                (from - top, to - top),
+                sign,
+            );
         }
         let tail = edge.y1 & (ONE - 1);
-        if tail != 0 && last >= top && last < top + BAND_ROWS {
-            let rows = i64::from(last - whole);
-            let x = (i64::from(edge.crossing) << BITS) + edge.slope.wrapping_mul(rows);
-            self.part(last - top, (x >> BITS) as i32, edge.x1, tail, edge.sign());
+        if tail != 0 && last < top + BAND_ROWS {
+            let x = (steps.at(last - whole) >> BITS) as i32;
+            let part = Part { x0: x, x1: edge.x1, height: tail, upper: false, lower };
+            self.part::<SHARED>(last - top, &part, sign);
         }
     }
 
     /// Rows that the edge crosses from top to bottom; x is where it enters the first, 32.32.
     #[inline(always)]
-    fn whole_rows(&mut self, edge: &Edge, x: i64, from: i32, to: i32) {
-        let slope = edge.slope.unsigned_abs() as i64;
-        if slope > 1 << 32 {
+    fn whole_rows<const SHARED: bool>(
+        &mut self,
+        slope: i64,
+        x: i64,
+        (from, to): (i32, i32),
+        sign: i32,
+    ) {
+        let across = slope.unsigned_abs() as i64;
+        if across > 1 << 32 {
             let mut x = x;
             for row in from..to {
-                let next = x + edge.slope;
-                self.part(row, (x >> BITS) as i32, (next >> BITS) as i32, ONE, edge.sign());
-                x = next;
+                let (x0, x1) = ((x >> BITS) as i32, ((x + slope) >> BITS) as i32);
+                let part = Part { x0, x1, height: ONE, upper: false, lower: false };
+                self.part::<SHARED>(row, &part, sign);
+                x += slope;
             }
             return;
         }
         // Steep: at most two pixels per row, so three cells, without a branch or a division.
-        let inverse = (281_474_976_710_656.0 / slope.max(1 << 16) as f64) as u64;
-        let flip = (edge.sign() - 1) >> 1;
-        let mut left = x + edge.slope.min(0);
+        let inverse = (281_474_976_710_656.0 / across.max(1 << 16) as f64) as u64;
+        let flip = (sign - 1) >> 1;
+        let mut left = x + slope.min(0);
         let limit = i64::from(self.columns) << 32;
-        let words = self.words;
-        for row in from..to {
+        let mut base = from as usize * self.words;
+        for _ in from..to {
             let l = left.clamp(0, limit);
             let a = (l >> BITS) as u32 & 0xffff;
             let column = (l >> 32) as usize;
-            let b = a + (slope >> BITS) as u32;
+            let b = a + (across >> BITS) as u32;
             let deltas = steep_deltas(a, b, |over| ((u64::from(over) * inverse) >> BITS) as u32);
-            let word = row as usize * words;
-            if let Some(cells) = self.cells.get_mut(word * 64 + column..word * 64 + column + 3) {
+            if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
                 for (cell, delta) in cells.iter_mut().zip(deltas) {
                     *cell = cell.wrapping_add((delta ^ flip) - flip);
                 }
             }
-            self.mark_two(row, column, b > ONE as u32);
-            left += edge.slope;
+            self.mark_two::<SHARED>(base, column, b > ONE as u32, 0);
+            base += self.words;
+            left += slope;
         }
-        self.touches += (to - from) as u64;
     }
 
-    /// Marks a pixel and perhaps the one right of it.
+    /// Marks a pixel and perhaps the one right of it; `base` is the row's first word. What is set in `own`
+    /// is not taken for shared.
     #[inline(always)]
-    fn mark_two(&mut self, row: i32, column: usize, two: bool) {
-        let word = row as usize * self.words + (column >> 6);
+    fn mark_two<const SHARED: bool>(&mut self, base: usize, column: usize, two: bool, own: u64) {
         let bit = column & 63;
-        let bits = (1 | (u64::from(two) << 1)) << bit;
-        if let Some(marks) = self.marks.get_mut(word) {
-            marks.shared |= marks.touched & bits;
-            marks.touched |= bits;
+        let bits = 1 | (u64::from(two) << 1);
+        if let Some(marks) = self.marks.get_mut(base + (column >> 6)) {
+            if SHARED {
+                let again = marks.touched & ((bits & !own) << bit);
+                marks.shared |= again;
+                self.any_shared |= again;
+            }
+            marks.touched |= bits << bit;
         }
         if two && bit == 63 {
-            self.mark(row, column + 1, column + 2);
+            self.mark::<SHARED>(base, (column + 1, column + 2), (own & 2 != 0, false));
         }
     }
 
-    /// Marks the pixels of a row from `start` to before `end`.
+    /// Marks the pixels of a row from the first to before the second column, of which the first and the
+    /// last may not be taken for shared.
     #[inline(never)]
-    fn mark(&mut self, row: i32, start: usize, end: usize) {
-        let base = row as usize * self.words;
+    fn mark<const SHARED: bool>(
+        &mut self,
+        base: usize,
+        (start, end): (usize, usize),
+        own: (bool, bool),
+    ) {
         let mut at = start;
         while at < end {
             let stop = end.min((at | 63) + 1);
             let bits = (u64::MAX >> (64 - (stop - at))) << (at & 63);
             if let Some(marks) = self.marks.get_mut(base + (at >> 6)) {
-                marks.shared |= marks.touched & bits;
+                if SHARED {
+                    let first = u64::from(own.0 && at == start) << (at & 63);
+                    let last = u64::from(own.1 && stop == end) << ((stop - 1) & 63);
+                    let again = marks.touched & bits & !first & !last;
+                    marks.shared |= again;
+                    self.any_shared |= again;
+                }
                 marks.touched |= bits;
             }
             at = stop;
         }
-        self.touches += (end - start) as u64;
     }
 
-    /// An edge within one row, from `x0` at its upper to `x1` at its lower end, 16.16.
+    /// An edge within one row.
     #[inline(always)]
-    fn part(&mut self, row: i32, x0: i32, x1: i32, height: i32, sign: i32) {
+    fn part<const SHARED: bool>(&mut self, row: i32, part: &Part, sign: i32) {
         if !(0..BAND_ROWS).contains(&row) {
             return;
         }
+        let base = row as usize * self.words;
         let limit = self.columns << BITS;
+        let &Part { x0, x1, height, upper, lower } = part;
         let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
+        let (own_left, own_right) = if x0 <= x1 { (upper, lower) } else { (lower, upper) };
         let column = (left >> BITS) as usize;
         let (a, b) = ((left & (ONE - 1)) as u32, (right - (left & !(ONE - 1))) as u32);
         if b > 2 * ONE as u32 {
-            self.wide_part(row, left, right, height, sign);
+            let end = (right >> BITS) as usize + usize::from(right & (ONE - 1) != 0);
+            self.mark::<SHARED>(base, (column, end), (own_left, own_right));
+            self.wide_part(base, left, right, height, sign);
             return;
         }
-        self.mark_two(row, column, b > ONE as u32);
-        self.touches += 1;
-        let [d0, _, d2] = steep_deltas(a, b, |over| (over << 15) / (b - a).max(1) * 2);
-        let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
-        let deltas = [scale(d0), height - scale(d0) - scale(d2), scale(d2)];
-        let start = row as usize * self.words * 64 + column;
-        if let Some(cells) = self.cells.get_mut(start..start + 3) {
+        let two = b > ONE as u32;
+        let own = u64::from(own_left) | (u64::from(own_right) << u32::from(two));
+        self.mark_two::<SHARED>(base, column, two, own);
+        // One pixel: no division.
+        let (d0, d2) = if two {
+            let [d0, _, d2] = steep_deltas(a, b, |over| (over << 15) / (b - a).max(1) * 2);
+            let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
+            (scale(d0), scale(d2))
+        } else {
+            let [d0, _, _] = steep_deltas(a, b, |_| 0);
+            (((i64::from(d0) * i64::from(height)) >> BITS) as i32, 0)
+        };
+        let deltas = [d0, height - d0 - d2, d2];
+        if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
             for (cell, delta) in cells.iter_mut().zip(deltas) {
                 *cell = cell.wrapping_add(delta * sign);
             }
         }
     }
 
-    /// An edge within one row that crosses three pixels or more.
+    /// An edge within one row that crosses three pixels or more; its marks are set.
     #[inline(never)]
-    fn wide_part(&mut self, row: i32, left: i32, right: i32, height: i32, sign: i32) {
+    fn wide_part(&mut self, base: usize, left: i32, right: i32, height: i32, sign: i32) {
         let (first, last) = ((left >> BITS) as usize, (right >> BITS) as usize);
-        self.mark(row, first, last + usize::from(right & (ONE - 1) != 0));
-        let start = row as usize * self.words * 64;
-        let Some(cells) = self.cells.get_mut(start + first..start + last + 2) else { return };
+        let Some(cells) = self.cells.get_mut(base * 64 + first..base * 64 + last + 2) else {
+            return;
+        };
         // Covered height per pixel of width, with 32 bits below one.
         let per_pixel = (f64::from(height) / f64::from(right - left) * 4_294_967_296.0) as u64;
         let before = (ONE - (left & (ONE - 1))) as u64;

@@ -17,10 +17,10 @@ const FARTHEST: f64 = 1e15;
 
 /// The edge goes upwards in the path (horizontal: to the left).
 const REVERSED: u32 = 1;
-/// At its start it cannot meet another edge of its path but the one it continues.
-const CHAINED_START: u32 = 2;
-/// At its end likewise: it closes its contour.
-const CHAINED_END: u32 = 4;
+/// At its upper end it cannot meet another edge of its path but the one it continues.
+const CHAINED_UPPER: u32 = 2;
+/// At its lower end likewise.
+const CHAINED_LOWER: u32 = 4;
 
 /// An edge from top to bottom; coordinates are 16.16 pixels, x within the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,27 +30,42 @@ pub(crate) struct Edge {
     pub x1: i32,
     /// Not above `y0`; equal for horizontal edges, which carry no area.
     pub y1: i32,
+    flags: u32,
+}
+
+/// How an edge goes from row to row.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Steps {
     /// x where the edge first crosses a border of rows, at or below `y0`.
     pub crossing: i32,
-    flags: u32,
     /// Change of x from one row to the next, 32.32 pixels.
     pub slope: i64,
 }
 
+impl Steps {
+    /// x at the border so many rows below the first one, 32.32.
+    #[inline(always)]
+    pub fn at(&self, rows: i32) -> i64 {
+        (i64::from(self.crossing) << BITS) + self.slope.wrapping_mul(i64::from(rows))
+    }
+}
+
 impl Edge {
+    #[inline(always)]
     fn new(from: (i32, i32), to: (i32, i32)) -> Self {
         let reversed = (to.1, to.0) < (from.1, from.0);
         let ((x0, y0), (x1, y1)) = if reversed { (to, from) } else { (from, to) };
-        let per_row = f64::from(x1 - x0) / f64::from((y1 - y0).max(1));
-        let below = (ONE - (y0 & (ONE - 1))) & (ONE - 1);
-        let crossing = x0.saturating_add((per_row * f64::from(below)) as i32);
-        Self {
-            x0,
-            y0,
-            x1,
-            y1,
-            crossing: crossing.clamp(x0.min(x1), x0.max(x1)),
-            flags: u32::from(reversed) * REVERSED,
+        Self { x0, y0, x1, y1, flags: u32::from(reversed) * REVERSED }
+    }
+
+    /// The one division of an edge, made where it is needed.
+    #[inline(always)]
+    pub fn steps(&self) -> Steps {
+        let per_row = f64::from(self.x1 - self.x0) / f64::from((self.y1 - self.y0).max(1));
+        let below = (ONE - (self.y0 & (ONE - 1))) & (ONE - 1);
+        let crossing = self.x0.saturating_add((per_row * f64::from(below)) as i32);
+        Steps {
+            crossing: crossing.clamp(self.x0.min(self.x1), self.x0.max(self.x1)),
             slope: (per_row * 4_294_967_296.0) as i64,
         }
     }
@@ -60,8 +75,10 @@ impl Edge {
         1 - 2 * (self.flags & REVERSED) as i32
     }
 
-    pub fn is_horizontal(&self) -> bool {
-        self.y0 == self.y1
+    /// The edge as seen from an x right of the target's border, 16.16.
+    #[inline(always)]
+    pub fn moved(&self, x: i32) -> Self {
+        Self { x0: self.x0 - x, x1: self.x1 - x, ..*self }
     }
 
     /// First row touched and one past the last; a horizontal edge on a border of rows touches none.
@@ -69,21 +86,20 @@ impl Edge {
         (self.y0 >> BITS, (self.y1 + ONE - 1) >> BITS)
     }
 
-    /// The row and x of the end points that are chained: where the edge may meet its neighbour.
-    /// On a border of pixels the two may touch different ones, so such points do not count.
-    pub fn chained(&self) -> [Option<(i32, i32)>; 2] {
-        let top = (self.y0 >> BITS, self.x0);
-        let bottom =
-            if self.is_horizontal() { (top.0, self.x1) } else { ((self.y1 - 1) >> BITS, self.x1) };
-        let (start, end) = if self.flags & REVERSED == 0 { (top, bottom) } else { (bottom, top) };
-        let inside = |v: i32| v & (ONE - 1) != 0;
-        let (at_start, at_end) =
-            if self.flags & REVERSED == 0 { (self.y0, self.y1) } else { (self.y1, self.y0) };
-        let has = |flag, y: i32, x: i32| self.flags & flag != 0 && inside(y) && inside(x);
-        [
-            has(CHAINED_START, at_start, start.1).then_some(start),
-            has(CHAINED_END, at_end, end.1).then_some(end),
-        ]
+    /// Whether the upper and the lower end are chained.
+    #[inline(always)]
+    pub fn chained(&self) -> (bool, bool) {
+        (self.flags & CHAINED_UPPER != 0, self.flags & CHAINED_LOWER != 0)
+    }
+
+    /// Chains the end at which the edge starts, or ends, in its path. On a border of pixels the edge and
+    /// its neighbour may touch different ones, so such points do not count.
+    fn chain(&mut self, start: bool) {
+        let upper = start == (self.flags & REVERSED == 0);
+        let (x, y) = if upper { (self.x0, self.y0) } else { (self.x1, self.y1) };
+        if x & (ONE - 1) != 0 && y & (ONE - 1) != 0 {
+            self.flags |= if upper { CHAINED_UPPER } else { CHAINED_LOWER };
+        }
     }
 
     /// Which of eight half-planes of directions the edge's own direction lies in.
@@ -217,7 +233,7 @@ impl<'a> EdgeBuilder<'a> {
                 // Two edges with a common end cannot cross; more of them not while they run on in
                 // one direction.
                 if run != 0 || !share_pixel(start, from) {
-                    edge.flags |= CHAINED_START;
+                    edge.chain(true);
                 }
                 if run != 0 { run } else { self.last_directions & directions }
             }
@@ -237,7 +253,7 @@ impl<'a> EdgeBuilder<'a> {
         };
         let alone = !share_pixel(first.1, first.0) && !share_pixel(last.0, first.0);
         if last.1 == first.0 && alone && first != last {
-            edge.flags |= CHAINED_END;
+            edge.chain(false);
         }
     }
 }

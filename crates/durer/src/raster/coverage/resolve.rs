@@ -7,21 +7,38 @@
 //! carried along: it is the integer that makes the two agree.
 
 use super::FillRule;
-use super::cells::{BAND_ROWS, Marks};
+use super::cells::{BAND_ROWS, Cells, Marks};
 use super::edge::{BITS, Edge, ONE};
 
 /// Pixels crossed by more edges than this keep the integral's answer: what they show is noise, and
 /// the cost grows with the third power.
-const MAX_PIECES: usize = 24;
+const MAX_PIECES: u32 = 24;
+/// What a band shows is noise as well where more pixels than this are shared, two in a row on average,
+const FEW_SHARED: u32 = 2 * BAND_ROWS as u32;
+/// more than one in so many of the touched ones,
+const OFTEN: u32 = 5;
+/// and so few of them for each edge that they do not come from long edges side by side.
+const PER_EDGE: u32 = 4;
+/// With more edges than this in a band it does not matter how long they are.
+const MANY_EDGES: u32 = 1024;
+/// End of a list.
+const NONE: u32 = u32::MAX;
 
 /// What one edge does within one row, relative to a pixel that it touches.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
-    /// Row of the band · 65,536 + column.
-    pixel: u32,
     sign: i32,
     /// Upper and lower end, 16.16 pixels from the pixel's upper left corner; x may lie outside it.
     ends: [(i32, i32); 2],
+    /// The pixel's next piece.
+    next: u32,
+}
+
+/// A shared pixel: its last piece, and how many it has.
+#[derive(Debug, Clone, Copy)]
+struct Shared {
+    piece: u32,
+    count: u32,
 }
 
 /// A straight piece inside the pixel, from top to bottom, in pixels.
@@ -29,20 +46,30 @@ struct Piece {
 struct Segment {
     x0: f64,
     y0: f64,
-    x1: f64,
     y1: f64,
+    /// Change of x per y.
+    slope: f64,
     sign: i32,
 }
 
 impl Segment {
+    fn new(x0: f64, y0: f64, x1: f64, y1: f64, sign: i32) -> Self {
+        Self { x0, y0, y1, slope: (x1 - x0) / (y1 - y0), sign }
+    }
+
     fn x_at(&self, y: f64) -> f64 {
-        self.x0 + (self.x1 - self.x0) * ((y - self.y0) / (self.y1 - self.y0))
+        self.x0 + self.slope * (y - self.y0)
     }
 }
 
 /// The shared pixels of one band and what crosses them; the memory is used again.
 #[derive(Debug, Default)]
 pub(crate) struct Resolver {
+    /// The number of the first shared pixel of each word of marks, row by row.
+    ranks: Vec<u32>,
+    /// First word of the rows, and words per row.
+    words: (usize, usize),
+    pixels: Vec<Shared>,
     pieces: Vec<Piece>,
     segments: Vec<Segment>,
     cuts: Vec<f64>,
@@ -50,41 +77,79 @@ pub(crate) struct Resolver {
 }
 
 impl Resolver {
-    /// Collects what the edges do in the shared pixels. `marks` gives the marks of a row of the band.
-    pub fn gather<'a>(
+    /// Numbers the shared pixels of a band with so many edges; returns a bit for each row that has some, 0 where what the
+    /// band shows is noise.
+    pub fn begin(
         &mut self,
-        edges: impl Iterator<Item = &'a Edge>,
+        cells: &Cells,
+        rows: (i32, i32),
+        words: (usize, usize),
+        edges: u32,
+    ) -> u64 {
+        self.words = (words.0, words.1 - words.0);
+        self.ranks.clear();
+        self.ranks.resize(rows.0.max(0) as usize * self.words.1, 0);
+        let (mut shared, mut touched, mut found) = (0, 0, 0);
+        for row in rows.0..rows.1 {
+            for mark in cells.marks_of(row).get(words.0..words.1).unwrap_or_default() {
+                self.ranks.push(shared);
+                shared += mark.shared.count_ones();
+                touched += mark.touched.count_ones();
+                found |= u64::from(mark.shared != 0) << row;
+            }
+        }
+        if shared > FEW_SHARED
+            && shared > touched / OFTEN
+            && (edges > MANY_EDGES || shared < edges * PER_EDGE)
+        {
+            return 0;
+        }
+        self.pieces.clear();
+        self.pixels.clear();
+        self.pixels.resize(shared as usize, Shared { piece: NONE, count: 0 });
+        found
+    }
+
+    /// Takes note of what an edge does in the shared pixels of the given rows.
+    pub fn add<'a>(
+        &mut self,
+        edge: &Edge,
         top: i32,
         rows: u64,
         marks: impl Fn(i32) -> &'a [Marks],
     ) {
-        self.pieces.clear();
-        for edge in edges {
-            let (first, last) = edge.rows();
-            let (first, last) = ((first - top).max(0), (last - top).min(BAND_ROWS));
-            if first >= last {
-                continue;
-            }
-            let mut left = rows & (u64::MAX << first) & (u64::MAX >> (64 - last));
-            while left != 0 {
-                let row = left.trailing_zeros() as i32;
-                left &= left - 1;
-                self.row(edge, top, row, marks(row));
-            }
+        let (first, last) = edge.rows();
+        let (first, last) = ((first - top).max(0), (last - top).min(BAND_ROWS));
+        if first >= last {
+            return;
         }
-        self.pieces.sort_unstable_by_key(|p| p.pixel);
+        let steps = edge.steps();
+        let first_border = (edge.y0 + ONE - 1) >> BITS;
+        let x_at = |border: i32| {
+            let x = (steps.at((border >> BITS) - first_border) >> BITS) as i32;
+            x.clamp(edge.x0.min(edge.x1), edge.x0.max(edge.x1))
+        };
+        let mut left = rows & (u64::MAX << first) & (u64::MAX >> (64 - last));
+        while left != 0 {
+            let row = left.trailing_zeros() as i32;
+            left &= left - 1;
+            let border = (top + row) << BITS;
+            let (upper, lower) = (edge.y0.max(border), edge.y1.min(border + ONE));
+            let x_upper = if upper == edge.y0 { edge.x0 } else { x_at(border) };
+            let x_lower = if lower == edge.y1 { edge.x1 } else { x_at(border + ONE) };
+            let ends = [(x_upper, upper - border), (x_lower, lower - border)];
+            self.row(row, marks(row), ends, edge.sign());
+        }
     }
 
-    /// The pieces of one edge in one row of the band.
-    fn row(&mut self, edge: &Edge, top: i32, row: i32, marks: &[Marks]) {
-        let border = (top + row) << BITS;
-        let (upper, lower) = (edge.y0.max(border), edge.y1.min(border + ONE));
-        let x_upper = if upper == edge.y0 { edge.x0 } else { x_at_border(edge, border) };
-        let x_lower = if lower == edge.y1 { edge.x1 } else { x_at_border(edge, border + ONE) };
+    /// The pieces of an edge in one row of the band, between its ends.
+    fn row(&mut self, row: i32, marks: &[Marks], ends: [(i32, i32); 2], sign: i32) {
+        let (x_upper, x_lower) = (ends[0].0, ends[1].0);
         let (first, last) = (x_upper.min(x_lower) >> BITS, x_upper.max(x_lower) >> BITS);
         let (first, last) = (first.max(0) as usize, last.max(0) as usize);
         for word in first >> 6..=last >> 6 {
-            let mut bits = marks.get(word).map_or(0, |m| m.shared);
+            let shared = marks.get(word).map_or(0, |m| m.shared);
+            let mut bits = shared;
             if word == first >> 6 {
                 bits &= u64::MAX << (first & 63);
             }
@@ -92,62 +157,77 @@ impl Resolver {
                 bits &= u64::MAX >> (63 - (last & 63));
             }
             while bits != 0 {
-                let column = word * 64 + bits.trailing_zeros() as usize;
+                let bit = bits.trailing_zeros();
                 bits &= bits - 1;
-                let x = (column as i32) << BITS;
-                self.pieces.push(Piece {
-                    pixel: (row as u32) << 16 | column as u32,
-                    sign: edge.sign(),
-                    ends: [(x_upper - x, upper - border), (x_lower - x, lower - border)],
-                });
+                let number = self.number((row, word), shared, bit);
+                let Some(pixel) = self.pixels.get_mut(number) else { continue };
+                let next = std::mem::replace(&mut pixel.piece, self.pieces.len() as u32);
+                pixel.count += 1;
+                let x = ((word * 64) as i32 + bit as i32) << BITS;
+                let ends = [(x_upper - x, ends[0].1), (x_lower - x, ends[1].1)];
+                self.pieces.push(Piece { sign, ends, next });
             }
         }
     }
 
-    /// The shared pixels of a row in order of their column: calls `set(column, coverage 0 … 255)` for
-    /// those whose coverage is not what the integral says. `sum` gives the integral of a pixel.
-    pub fn row_coverage(
+    /// The number of the shared pixel at a bit of a word of the row.
+    #[inline(always)]
+    fn number(&self, (row, word): (i32, usize), shared: u64, bit: u32) -> usize {
+        let word = (row.max(0) as usize) * self.words.1 + word.wrapping_sub(self.words.0);
+        let before = (shared & !(u64::MAX << bit)).count_ones();
+        self.ranks.get(word).map_or(usize::MAX, |rank| (rank + before) as usize)
+    }
+
+    /// Corrects the coverage 0 … 255 of the shared ones of eight pixels, the first of them at a bit of a
+    /// word of the row, whose integrals are `sums`.
+    #[inline(never)]
+    pub fn eight(
         &mut self,
-        row: i32,
+        at: (i32, usize),
+        shared: u64,
+        first: u32,
         rule: FillRule,
-        mut sum: impl FnMut(usize) -> i32,
-        mut set: impl FnMut(usize, u8),
+        sums: &[i32; 8],
+        coverage: &mut [u32; 8],
     ) {
-        let start = self.pieces.partition_point(|p| p.pixel < (row as u32) << 16);
-        let end = self.pieces.partition_point(|p| p.pixel < (row as u32 + 1) << 16);
-        let mut at = start;
-        while at < end {
-            let pixel = self.pieces[at].pixel;
-            let count = self.pieces[at..end].iter().take_while(|p| p.pixel == pixel).count();
-            let column = (pixel & 0xffff) as usize;
-            let total = sum(column);
-            if count <= MAX_PIECES
-                && let Some(area) = self.area(at, count, total, rule)
-            {
-                set(column, (area.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+        let mut bits = (shared >> first) & 255;
+        while bits != 0 {
+            let lane = bits.trailing_zeros();
+            bits &= bits - 1;
+            let number = self.number(at, shared, first + lane);
+            let Some(pixel) = self.pixels.get(number).copied() else { continue };
+            if let Some(area) = self.area(pixel, sums[lane as usize], rule) {
+                coverage[lane as usize] = (area.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
             }
-            at += count;
         }
     }
 
     /// The covered area of one pixel; `None` where the integral already tells.
-    fn area(&mut self, at: usize, count: usize, sum: i32, rule: FillRule) -> Option<f64> {
-        self.segments.clear();
-        for piece in &self.pieces[at..at + count] {
-            push_segments(piece, &mut self.segments);
+    fn area(&mut self, pixel: Shared, sum: i32, rule: FillRule) -> Option<f64> {
+        // Each piece changes the winding number by one, so it has one sign all over the pixel where its
+        // mean is so far from zero.
+        let mean = sum.unsigned_abs() >> BITS;
+        if pixel.count > MAX_PIECES || (rule == FillRule::NonZero && mean >= pixel.count) {
+            return None;
         }
-        let local: f64 = self
-            .segments
-            .iter()
-            .map(|s| f64::from(s.sign) * (1.0 - (s.x0 + s.x1) / 2.0) * (s.y1 - s.y0))
-            .sum();
-        let base = (f64::from(sum) / f64::from(ONE) - local + 0.5).floor() as i32;
-        // Bounds of the winding number: they often decide at once.
+        self.segments.clear();
+        let mut at = pixel.piece;
+        while let Some(piece) = self.pieces.get(at as usize) {
+            push_segments(piece, &mut self.segments);
+            at = piece.next;
+        }
         let up = self.segments.iter().filter(|s| s.sign > 0).count() as i32;
         let down = self.segments.len() as i32 - up;
         if up + down < 2 {
             return None;
         }
+        let right = |s: &Segment| {
+            let height = s.y1 - s.y0;
+            f64::from(s.sign) * (1.0 - s.x0 - s.slope * height / 2.0) * height
+        };
+        let local: f64 = self.segments.iter().map(right).sum();
+        let base = (f64::from(sum) / f64::from(ONE) - local + 0.5).floor() as i32;
+        // Bounds of the winding number: they often decide at once.
         if rule == FillRule::NonZero && (base - down > 0 || base + up < 0) {
             return Some(1.0);
         }
@@ -168,9 +248,9 @@ impl Resolver {
             }
             let middle = (upper + lower) / 2.0;
             self.active.clear();
-            let crossing = self.segments.iter().filter(|s| s.y0 <= middle && s.y1 > middle);
-            self.active.extend(crossing.map(|s| (s.x_at(middle), s.sign)));
-            self.active.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for s in self.segments.iter().filter(|s| s.y0 <= middle && s.y1 > middle) {
+                insert(&mut self.active, (s.x_at(middle), s.sign), |a, b| a.0 < b.0);
+            }
             let (mut x, mut winding, mut covered) = (0.0, base, 0.0);
             for (next, sign) in &self.active {
                 if inside(winding) {
@@ -188,12 +268,16 @@ impl Resolver {
     }
 }
 
-/// x where an edge crosses a border of rows between its ends, as the cells have it.
-fn x_at_border(edge: &Edge, border: i32) -> i32 {
-    let first = (edge.y0 + ONE - 1) >> BITS;
-    let rows = i64::from((border >> BITS) - first);
-    let x = (i64::from(edge.crossing) << BITS) + edge.slope.wrapping_mul(rows);
-    ((x >> BITS) as i32).clamp(edge.x0.min(edge.x1), edge.x0.max(edge.x1))
+/// Puts an item where it belongs in a short list in order.
+#[inline(always)]
+fn insert<T: Copy>(list: &mut Vec<T>, item: T, before: impl Fn(&T, &T) -> bool) {
+    let mut at = list.len();
+    list.push(item);
+    while at > 0 && before(&item, &list[at - 1]) {
+        list[at] = list[at - 1];
+        at -= 1;
+    }
+    list[at] = item;
 }
 
 /// The part of a piece inside the pixel, and what it means for the pixel's left border.
@@ -208,7 +292,7 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     // Crossing the left border changes the winding number along it from there on.
     let mut border = |y0: f64, y1: f64| {
         if y1 > y0 {
-            out.push(Segment { x0: 0.0, y0, x1: 0.0, y1, sign });
+            out.push(Segment::new(0.0, y0, 0.0, y1, sign));
         }
     };
     match (upper.0 < 0, lower.0 < 0) {
@@ -230,7 +314,7 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
         (false, false) => {}
     }
     if y1 > y0 {
-        out.push(Segment { x0, y0, x1, y1, sign });
+        out.push(Segment::new(x0, y0, x1, y1, sign));
     }
 }
 
@@ -238,8 +322,14 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
 fn cuts(segments: &[Segment], cuts: &mut Vec<f64>) {
     cuts.clear();
     cuts.extend([0.0, 1.0]);
+    let mut cut = |y: f64| insert(cuts, y, |a, b| a < b);
     for (i, a) in segments.iter().enumerate() {
-        cuts.extend([a.y0, a.y1]);
+        if a.y0 > 0.0 {
+            cut(a.y0);
+        }
+        if a.y1 < 1.0 {
+            cut(a.y1);
+        }
         for b in &segments[..i] {
             let (upper, lower) = (a.y0.max(b.y0), a.y1.min(b.y1));
             if upper >= lower {
@@ -247,9 +337,8 @@ fn cuts(segments: &[Segment], cuts: &mut Vec<f64>) {
             }
             let (d0, d1) = (a.x_at(upper) - b.x_at(upper), a.x_at(lower) - b.x_at(lower));
             if d0 * d1 < 0.0 {
-                cuts.push(upper + (lower - upper) * (d0 / (d0 - d1)));
+                cut(upper + (lower - upper) * (d0 / (d0 - d1)));
             }
         }
     }
-    cuts.sort_by(f64::total_cmp);
 }

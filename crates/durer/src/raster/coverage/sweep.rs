@@ -1,5 +1,7 @@
 //! From cells to coverage: a running sum along each row, which clears the cells behind itself.
 
+use std::ops::Range;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{i32x8, u32x8};
 use fearless_simd_macros::simd;
@@ -7,16 +9,31 @@ use fearless_simd_macros::simd;
 use super::FillRule;
 use super::cells::Marks;
 use super::edge::ONE;
+use super::resolve::Resolver;
 
-/// Pixels of one row with the same or with individual coverage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Run {
-    /// First pixel.
-    pub start: usize,
-    /// One past the last pixel.
-    pub end: usize,
-    /// The coverage 1 … 255 of all of them; `None` where each has its own.
-    pub constant: Option<u8>,
+/// What is done with the coverage of a row, from left to right.
+pub(crate) trait Sink<S: Simd> {
+    /// Eight pixels from `x` on, a multiple of 8, each with its coverage 0 … 255. At the end of the row
+    /// some of them may lie beyond it.
+    fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>);
+    /// Pixels that all have the same coverage 1 … 255; the first is a multiple of 8, and so is the
+    /// length but at the end of the row.
+    fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
+}
+
+/// Where in the band a row is, and how it is summed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    /// Row of the band.
+    pub row: i32,
+    /// The pixel of the first cell, a multiple of 8.
+    pub first: usize,
+    /// The words of marks that are concerned, the last not included.
+    pub words: (usize, usize),
+    /// Pixels of the row.
+    pub width: usize,
+    /// What is inside.
+    pub rule: FillRule,
 }
 
 /// Coverage 0 … 255 of a pixel from its integral of winding numbers.
@@ -32,46 +49,37 @@ pub(crate) fn alpha(sum: i32, rule: FillRule) -> u8 {
     ((area * 255 + ONE / 2) >> 16) as u8
 }
 
-/// Sums one row over the words `from..to` of its marks; coverage goes to `out`, one lane per pixel,
-/// where it is not constant, and `runs` tells where it is what. Cells and marks are zero afterwards.
+/// Sums one row and hands its coverage to the sink; shared pixels are looked up in `resolver`, if there is
+/// one. Cells and marks are zero afterwards.
 #[simd]
-#[allow(clippy::too_many_arguments)]
-pub(crate) fn sweep<S: Simd>(
+pub(crate) fn sweep<S: Simd, K: Sink<S>>(
     simd: S,
     cells: &mut [i32],
     marks: &mut [Marks],
-    (from, to): (usize, usize),
-    width: usize,
-    rule: FillRule,
-    out: &mut [u32],
-    runs: &mut Vec<Run>,
+    at: Row,
+    mut resolver: Option<&mut Resolver>,
+    sink: &mut K,
 ) {
-    runs.clear();
+    let Row { row, first, words: (from, to), width, rule } = at;
     let (mut carry, mut spill) = (0_i32, 0_u64);
-    let mut done = from * 64;
-    let mut masked = None;
+    let mut done = first + from * 64;
     let zero = i32x8::splat(simd, 0);
     for word in from..to.min(marks.len()) {
-        let touched = marks[word].touched;
-        marks[word] = Marks::default();
+        let Marks { touched, shared } = std::mem::take(&mut marks[word]);
         // An edge also changes the cell after the last pixel it touches.
         let dirty = touched | (touched << 1) | spill;
         spill = touched >> 63;
         let mut bytes = nonzero_bytes(dirty);
         while bytes != 0 {
-            let group = word * 64 + (bytes.trailing_zeros() as usize & !7);
+            let bit = bytes.trailing_zeros() & !7;
+            let group = word * 64 + bit as usize;
             bytes &= bytes - 1;
-            if group != done || masked.is_none() {
-                close(runs, masked.take(), done.min(width));
-                constant(runs, done, group.min(width), alpha(carry, rule));
-                masked = Some(group);
+            let x = first + group;
+            if done < x {
+                constant(simd, sink, row, done..x.min(width), alpha(carry, rule));
             }
-            done = group + 8;
-            let (Some(cells), Some(out)) =
-                (cells.get_mut(group..group + 8), out.get_mut(group..group + 8))
-            else {
-                continue;
-            };
+            done = x + 8;
+            let Some(cells) = cells.get_mut(group..group + 8) else { continue };
             // Sum of eight by three shifted additions.
             let v = i32x8::from_slice(simd, cells);
             zero.store_slice(cells);
@@ -79,11 +87,25 @@ pub(crate) fn sweep<S: Simd>(
             let v = v + zero.slide::<6>(v);
             let v = v + zero.slide::<4>(v) + i32x8::splat(simd, carry);
             carry = v[7];
-            lanes(simd, v, rule).store_slice(out);
+            if x >= width {
+                continue;
+            }
+            let mut coverage = lanes(simd, v, rule);
+            if let Some(resolver) = &mut resolver
+                && (shared >> bit) & 255 != 0
+            {
+                let (mut sums, mut own) = ([0; 8], [0; 8]);
+                v.store_slice(&mut sums);
+                coverage.store_slice(&mut own);
+                resolver.eight((row, word), shared, bit, rule, &sums, &mut own);
+                coverage = u32x8::from_slice(simd, &own);
+            }
+            sink.eight(simd, row, x, coverage);
         }
     }
-    close(runs, masked, done.min(width));
-    constant(runs, done, width, alpha(carry, rule));
+    if done < width {
+        constant(simd, sink, row, done..width, alpha(carry, rule));
+    }
 }
 
 /// [`alpha`] of eight pixels at once.
@@ -106,16 +128,9 @@ fn nonzero_bytes(word: u64) -> u64 {
     (((word & LOW) + LOW) | word) & !LOW
 }
 
-fn close(runs: &mut Vec<Run>, start: Option<usize>, end: usize) {
-    if let Some(start) = start
-        && start < end
-    {
-        runs.push(Run { start, end, constant: None });
-    }
-}
-
-fn constant(runs: &mut Vec<Run>, start: usize, end: usize, alpha: u8) {
-    if start < end && alpha != 0 {
-        runs.push(Run { start, end, constant: Some(alpha) });
+#[inline(always)]
+fn constant<S: Simd>(simd: S, sink: &mut impl Sink<S>, row: i32, x: Range<usize>, alpha: u8) {
+    if alpha != 0 && !x.is_empty() {
+        sink.span(simd, row, x, alpha);
     }
 }

@@ -45,16 +45,23 @@ pub fn draw(
         return;
     }
     let (start, whole) = (course.numerator(course.first), course.denominator());
-    let mut distance = (start / whole) as i64;
-    let (mut error, whole, rise) = ((start % whole) as i64, whole as i64, 2 * course.rise);
-    for step in course.first..=course.last {
-        let pixel = course.pixel(step, distance);
+    // Most lines start at their end, where nothing need be divided.
+    let (distance, error) = if start < whole { (0, start) } else { (start / whole, start % whole) };
+    let (mut error, whole, rise) = (error as i64, whole as i64, 2 * course.rise);
+    let mut pixel = course.pixel(course.first, distance as i64);
+    let across = course.sign as i32;
+    let (along, across) = if course.steep {
+        (IVec2::Y, IVec2::new(across, 0))
+    } else {
+        (IVec2::X, IVec2::new(0, across))
+    };
+    for _ in course.first..=course.last {
         t.step(|| Step { pixel });
         plot(pixel);
         error += rise;
-        if error >= whole {
-            error -= whole;
-            distance += 1;
-        }
+        // Without a branch, for which way it goes cannot be foretold.
+        let turn = i64::from(error >= whole);
+        error -= whole * turn;
+        pixel = pixel.wrapping_add(along).wrapping_add(across * turn as i32);
     }
 }

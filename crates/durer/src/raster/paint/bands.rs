@@ -1,7 +1,9 @@
 //! The commands of a canvas, band by band.
 
+use std::ops::Range;
+
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, dispatch, u32x8};
 
 use super::color::Space;
 use super::command::{Prepared, sort_into_bands};
@@ -10,7 +12,7 @@ use super::{Canvas, Color, MaskKind};
 use crate::raster::coverage::Overlap;
 use crate::raster::coverage::band::{BandFiller, PathEdges};
 use crate::raster::coverage::cells::BAND_ROWS;
-use crate::raster::coverage::sweep::Run;
+use crate::raster::coverage::sweep::Sink;
 use crate::target::Pixels;
 
 /// Paints all commands over the target.
@@ -60,8 +62,6 @@ struct Painter<P> {
     /// For each layer how many clip paths were open when it was begun: they do not clip what is painted
     /// onto it, but the layer as a whole, or edges would be thinned twice.
     floors: Vec<usize>,
-    coverage: Vec<u32>,
-    colors: Vec<P>,
     /// Whether what was popped can be used again.
     spare: Vec<Vec<P>>,
 }
@@ -77,8 +77,6 @@ impl<P: Space> Painter<P> {
             layers: Vec::new(),
             clips: Vec::new(),
             floors: Vec::new(),
-            coverage: vec![0; width],
-            colors: vec![P::CLEAR; width],
             spare: Vec::new(),
         }
     }
@@ -149,50 +147,22 @@ impl<P: Space> Painter<P> {
         path: &PathEdges,
         rule: super::FillRule,
         source: &Source<P>,
-        (top, anti_alias, base): (i32, bool, &mut [P]),
+        (top, smooth, base): (i32, bool, &mut [P]),
     ) {
-        let Self { filler, layers, clips, floors, coverage, colors, .. } = self;
-        let width = self.width;
-        let layer = layers.last_mut().map_or(base, |l| l.as_mut_slice());
-        let clip = clip_in_force(clips, floors);
-        let color = source.color();
-        let paint = |simd: S, row: i32, runs: &[Run], own: &[u32]| {
-            let start = row as usize * width;
-            let Some(pixels) = layer.get_mut(start..start + width) else { return };
-            let clip = clip.map(|c| &c[start..start + width]);
-            for run in runs {
-                let below = &mut pixels[run.start..run.end];
-                let span = run.start..run.end;
-                if let (Some(color), None, true) = (color, clip, anti_alias) {
-                    match run.constant {
-                        Some(255) if color.is_opaque() => below.fill(color),
-                        Some(alpha) => below.iter_mut().for_each(|p| *p = color.over(alpha, *p)),
-                        None => P::color_over(simd, color, &own[span], below),
-                    }
-                    continue;
-                }
-                let mask = &mut coverage[span.clone()];
-                match run.constant {
-                    Some(alpha) => mask.fill(u32::from(alpha)),
-                    None => mask.copy_from_slice(&own[span.clone()]),
-                }
-                if !anti_alias {
-                    mask.iter_mut().for_each(|m| *m = if *m >= 128 { 255 } else { 0 });
-                }
-                if let Some(clip) = clip {
-                    multiply(mask, &clip[span.clone()]);
-                }
-                match color {
-                    Some(color) => P::color_over(simd, color, mask, below),
-                    None => {
-                        let colors = &mut colors[span];
-                        source.row(run.start, (top + row) as usize, colors);
-                        P::colors_over(simd, colors, mask, below);
-                    }
-                }
+        let Self { filler, layers, clips, floors, .. } = self;
+        let (width, exact) = (self.width, self.exact);
+        let pixels = layers.last_mut().map_or(base, |l| l.as_mut_slice());
+        let clip = clip_in_force(clips, floors).map(Vec::as_slice);
+        match (source.color(), clip, smooth) {
+            (Some(color), None, true) => {
+                let mut sink = Plain { pixels, width, color };
+                BandFiller::fill(simd, filler, path, top, rule, exact, &mut sink);
             }
-        };
-        BandFiller::fill(simd, filler, path, top, rule, self.exact, paint);
+            _ => {
+                let mut sink = Painted { pixels, width, source, clip, smooth, top };
+                BandFiller::fill(simd, filler, path, top, rule, exact, &mut sink);
+            }
+        }
     }
 
     fn push_clip<S: Simd>(
@@ -200,23 +170,13 @@ impl<P: Space> Painter<P> {
         simd: S,
         path: &PathEdges,
         rule: super::FillRule,
-        (top, anti_alias): (i32, bool),
+        (top, smooth): (i32, bool),
     ) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
         let (width, below) = (self.width, clip_in_force(&self.clips, &self.floors));
         if !path.misses(top) {
-            let write = |_: S, row: i32, runs: &[Run], own: &[u32]| {
-                let start = row as usize * width;
-                for run in runs {
-                    for x in run.start..run.end {
-                        let alpha = run.constant.unwrap_or(own[x] as u8);
-                        let alpha = if anti_alias { alpha } else { (alpha >> 7) * 255 };
-                        let parent = below.map_or(255, |b| b[start + x]);
-                        clip[start + x] = multiplied(u32::from(alpha), parent) as u8;
-                    }
-                }
-            };
-            BandFiller::fill(simd, &mut self.filler, path, top, rule, self.exact, write);
+            let mut sink = Clip { clip: &mut clip, width, below: below.map(Vec::as_slice), smooth };
+            BandFiller::fill(simd, &mut self.filler, path, top, rule, self.exact, &mut sink);
         }
         self.clips.push(clip);
     }
@@ -267,10 +227,146 @@ fn clip_in_force<'a>(clips: &'a [Vec<u8>], floors: &[usize]) -> Option<&'a Vec<u
     clips.last().filter(|_| clips.len() > floors.last().copied().unwrap_or(0))
 }
 
-/// Coverage times the clip path's.
-fn multiply(coverage: &mut [u32], clip: &[u8]) {
-    for (c, m) in coverage.iter_mut().zip(clip) {
-        *c = multiplied(*c, *m);
+/// One colour over the pixels of a band, without a clip.
+struct Plain<'a, P> {
+    pixels: &'a mut [P],
+    width: usize,
+    color: P,
+}
+
+impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
+    #[inline(always)]
+    fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>) {
+        let start = row as usize * self.width;
+        let (first, end) = (start + x, start + self.width);
+        if let Some(below) = whole_eight(self.pixels, first, end) {
+            P::color_over(simd, self.color, coverage, below);
+        } else {
+            let mut below = part_of_eight(self.pixels, first, end);
+            P::color_over(simd, self.color, coverage, &mut below);
+            put_back(self.pixels, first, end, &below);
+        }
+    }
+
+    #[inline(always)]
+    fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8) {
+        let start = row as usize * self.width;
+        if coverage == 255 && self.color.is_opaque() {
+            if let Some(pixels) = self.pixels.get_mut(start + x.start..start + x.end) {
+                pixels.fill(self.color);
+            }
+            return;
+        }
+        for x in x.step_by(8) {
+            self.eight(simd, row, x, u32x8::splat(simd, u32::from(coverage)));
+        }
+    }
+}
+
+/// Any paint over the pixels of a band, perhaps within a clip, perhaps with hard edges.
+struct Painted<'a, P> {
+    pixels: &'a mut [P],
+    width: usize,
+    source: &'a Source<P>,
+    clip: Option<&'a [u8]>,
+    smooth: bool,
+    top: i32,
+}
+
+impl<S: Simd, P: Space> Sink<S> for Painted<'_, P> {
+    #[inline(always)]
+    fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>) {
+        let start = row as usize * self.width;
+        let (first, end) = (start + x, start + self.width);
+        let mut coverage = coverage;
+        if !self.smooth {
+            coverage = (coverage >> 7) * 255;
+        }
+        if let Some(clip) = self.clip {
+            let mut within = [0; 8];
+            let clip = clip.get(first..end).unwrap_or_default();
+            within.iter_mut().zip(clip).for_each(|(w, c)| *w = u32::from(*c));
+            let product = coverage * u32x8::from_slice(simd, &within) + u32x8::splat(simd, 128);
+            coverage = (product + (product >> 8)) >> 8;
+        }
+        let mut colors = [P::CLEAR; 8];
+        self.source.row(x, (self.top + row) as usize, &mut colors);
+        if let Some(below) = whole_eight(self.pixels, first, end) {
+            P::colors_over(simd, &colors, coverage, below);
+        } else {
+            let mut below = part_of_eight(self.pixels, first, end);
+            P::colors_over(simd, &colors, coverage, &mut below);
+            put_back(self.pixels, first, end, &below);
+        }
+    }
+
+    #[inline(always)]
+    fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8) {
+        for x in x.step_by(8) {
+            self.eight(simd, row, x, u32x8::splat(simd, u32::from(coverage)));
+        }
+    }
+}
+
+// No closures here: what they hold would not be compiled for the SIMD level.
+
+/// The eight pixels from `first` on, where all of them come before `end`.
+#[inline(always)]
+fn whole_eight<P>(pixels: &mut [P], first: usize, end: usize) -> Option<&mut [P; 8]> {
+    if first + 8 > end {
+        return None;
+    }
+    pixels.get_mut(first..)?.first_chunk_mut()
+}
+
+/// The pixels from `first` to before `end`, and clear ones.
+#[inline(always)]
+fn part_of_eight<P: Space>(pixels: &[P], first: usize, end: usize) -> [P; 8] {
+    let mut eight = [P::CLEAR; 8];
+    let some = pixels.get(first..end).unwrap_or_default();
+    eight.iter_mut().zip(some).for_each(|(e, p)| *e = *p);
+    eight
+}
+
+/// Writes what [`part_of_eight`] has lent.
+#[inline(always)]
+fn put_back<P: Space>(pixels: &mut [P], first: usize, end: usize, eight: &[P; 8]) {
+    let some = pixels.get_mut(first..end).unwrap_or_default();
+    some.iter_mut().zip(eight).for_each(|(p, e)| *p = *e);
+}
+
+/// The coverage of a clip path, multiplied with that below it.
+struct Clip<'a> {
+    clip: &'a mut [u8],
+    width: usize,
+    below: Option<&'a [u8]>,
+    smooth: bool,
+}
+
+impl Clip<'_> {
+    fn put(&mut self, row: i32, x: usize, coverage: u8) {
+        let at = row as usize * self.width + x;
+        let coverage = if self.smooth { coverage } else { (coverage >> 7) * 255 };
+        let below = self.below.map_or(255, |b| b[at]);
+        self.clip[at] = multiplied(u32::from(coverage), below) as u8;
+    }
+}
+
+impl<S: Simd> Sink<S> for Clip<'_> {
+    #[inline(always)]
+    fn eight(&mut self, _: S, row: i32, x: usize, coverage: u32x8<S>) {
+        let mut own = [0; 8];
+        coverage.store_slice(&mut own);
+        for (x, coverage) in (x..self.width).zip(own) {
+            self.put(row, x, coverage as u8);
+        }
+    }
+
+    #[inline(always)]
+    fn span(&mut self, _: S, row: i32, x: Range<usize>, coverage: u8) {
+        for x in x {
+            self.put(row, x, coverage);
+        }
     }
 }
 

@@ -4,7 +4,6 @@ use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x32, u16x16, u32x8};
-use fearless_simd_macros::simd;
 
 use crate::math::powf;
 
@@ -44,10 +43,10 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn scaled(self, coverage: u8) -> Self;
     /// `self` over `below`, after `self` has been scaled by the coverage.
     fn over(self, coverage: u8, below: Self) -> Self;
-    /// One colour over pixels, each with its coverage 0 … 255.
-    fn color_over<S: Simd>(simd: S, color: Self, coverage: &[u32], below: &mut [Self]);
-    /// Colours over pixels, each with its coverage 0 … 255.
-    fn colors_over<S: Simd>(simd: S, colors: &[Self], coverage: &[u32], below: &mut [Self]);
+    /// One colour over eight pixels, each with its coverage 0 … 255.
+    fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]);
+    /// Colours over eight pixels, each with its coverage 0 … 255.
+    fn colors_over<S: Simd>(simd: S, colors: &[Self; 8], coverage: u32x8<S>, below: &mut [Self; 8]);
 }
 
 /// Straight 8-bit sRGB with an opacity.
@@ -143,58 +142,54 @@ impl Space for Srgb {
         })
     }
 
-    #[simd]
-    fn color_over<S: Simd>(simd: S, color: Self, coverage: &[u32], below: &mut [Self]) {
-        let whole = below.len().min(coverage.len()) / 8 * 8;
-        let word = u32::from_le_bytes(color);
-        let source: u8x32<S> = u32x8::splat(simd, word).bitcast();
-        let alpha = u8x32::splat(simd, color[3]);
-        let (coverage, rest) = coverage.split_at(whole);
-        let (below, below_rest) = below.split_at_mut(whole);
-        for (mask, pixels) in coverage.chunks_exact(8).zip(below.chunks_exact_mut(8)) {
-            over_eight(simd, source, alpha, mask, pixels.as_flattened_mut());
-        }
-        for (mask, pixel) in rest.iter().zip(below_rest) {
-            *pixel = color.over(*mask as u8, *pixel);
+    #[inline(always)]
+    fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]) {
+        let source: u8x32<S> = u32x8::splat(simd, u32::from_le_bytes(color)).bitcast();
+        // One coverage in all four bytes of its pixel.
+        let spread: u8x32<S> = (coverage * 0x0101_0101).bitcast();
+        if color.is_opaque() {
+            let pixels = below.as_flattened_mut();
+            let through = u8x32::splat(simd, 255) - spread;
+            let (s0, s1) = source.widening_mul(spread);
+            let (b0, b1) = u8x32::from_slice(simd, pixels).widening_mul(through);
+            let (d0, d1) = (div255_lanes(simd, s0 + b0), div255_lanes(simd, s1 + b1));
+            d0.saturating_narrow(d1).store_slice(pixels);
+        } else {
+            over_eight(simd, source, u8x32::splat(simd, color[3]), spread, below);
         }
     }
 
-    #[simd]
-    fn colors_over<S: Simd>(simd: S, colors: &[Self], coverage: &[u32], below: &mut [Self]) {
-        let whole = below.len().min(coverage.len()).min(colors.len()) / 8 * 8;
-        for i in (0..whole).step_by(8) {
-            let colors = &colors[i..i + 8];
-            let mut alpha = [0_u8; 32];
-            for (quad, color) in alpha.as_chunks_mut::<4>().0.iter_mut().zip(colors) {
-                *quad = [color[3]; 4];
-            }
-            let source = u8x32::from_slice(simd, colors.as_flattened());
-            let alpha = u8x32::from_slice(simd, &alpha);
-            let pixels = below[i..i + 8].as_flattened_mut();
-            over_eight(simd, source, alpha, &coverage[i..i + 8], pixels);
+    #[inline(always)]
+    fn colors_over<S: Simd>(
+        simd: S,
+        colors: &[Self; 8],
+        coverage: u32x8<S>,
+        below: &mut [Self; 8],
+    ) {
+        let mut alpha = [0_u8; 32];
+        for (quad, color) in alpha.as_chunks_mut::<4>().0.iter_mut().zip(colors) {
+            *quad = [color[3]; 4];
         }
-        for ((color, mask), pixel) in
-            colors[whole..].iter().zip(&coverage[whole..]).zip(&mut below[whole..])
-        {
-            *pixel = color.over(*mask as u8, *pixel);
-        }
+        let source = u8x32::from_slice(simd, colors.as_flattened());
+        let spread: u8x32<S> = (coverage * 0x0101_0101).bitcast();
+        over_eight(simd, source, u8x32::from_slice(simd, &alpha), spread, below);
     }
 }
 
-/// Eight pixels of source-over: (source · coverage + below · (255 − alpha · coverage / 255)) / 255.
+/// Eight pixels of source-over: (source · coverage + below · (255 − alpha · coverage / 255)) / 255; all
+/// operands hold one value per byte of a pixel.
 #[inline(always)]
 fn over_eight<S: Simd>(
     simd: S,
     source: u8x32<S>,
     alpha: u8x32<S>,
-    coverage: &[u32],
-    pixels: &mut [u8],
+    coverage: u8x32<S>,
+    pixels: &mut [Srgb; 8],
 ) {
-    // One coverage in all four bytes of its pixel.
-    let spread: u8x32<S> = (u32x8::from_slice(simd, coverage) * 0x0101_0101).bitcast();
+    let pixels = pixels.as_flattened_mut();
     let below = u8x32::from_slice(simd, pixels);
-    let (a0, a1) = alpha.widening_mul(spread);
-    let (s0, s1) = source.widening_mul(spread);
+    let (a0, a1) = alpha.widening_mul(coverage);
+    let (s0, s1) = source.widening_mul(coverage);
     let (b0, b1) = below.widen();
     let full = u16x16::splat(simd, 255);
     let d0 = div255_lanes(simd, s0 + b0 * (full - div255_lanes(simd, a0)));
@@ -296,15 +291,17 @@ impl Space for Linear {
         }))
     }
 
-    fn color_over<S: Simd>(_: S, color: Self, coverage: &[u32], below: &mut [Self]) {
-        for (mask, pixel) in coverage.iter().zip(below) {
-            *pixel = color.over(*mask as u8, *pixel);
-        }
+    #[inline(always)]
+    fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]) {
+        Self::colors_over(simd, &[color; 8], coverage, below);
     }
 
-    fn colors_over<S: Simd>(_: S, colors: &[Self], coverage: &[u32], below: &mut [Self]) {
-        for ((color, mask), pixel) in colors.iter().zip(coverage).zip(below) {
-            *pixel = color.over(*mask as u8, *pixel);
+    #[inline(always)]
+    fn colors_over<S: Simd>(_: S, colors: &[Self; 8], coverage: u32x8<S>, below: &mut [Self; 8]) {
+        let mut masks = [0; 8];
+        coverage.store_slice(&mut masks);
+        for ((color, mask), pixel) in colors.iter().zip(masks).zip(below) {
+            *pixel = color.over(mask as u8, *pixel);
         }
     }
 }
