@@ -1,7 +1,7 @@
 //! Light on surfaces.
 //!
 //! [`PreparedMaterials`] and [`PreparedLights`] are made once per picture, [`shade`] is called per
-//! visible sample, [`shade_x8`] for eight samples of one plain material, [`shade_vertex`] and
+//! visible sample, [`shade_points`] for eight samples of one plain material, [`Samples`] for eight of one with textures, [`shade_vertex`] and
 //! [`shade_face`] for the interpolated and the flat model.
 //!
 //! Space: world axes, but with the origin moved to the eye ([`PreparedLights::origin`]), so that
