@@ -12,10 +12,10 @@ use durer::scene::{
 const TRIANGLES: usize = 64;
 
 /// Numbers from bytes; zeros where they end.
-struct Bytes<'a>(&'a [u8]);
+pub struct Bytes<'a>(pub &'a [u8]);
 
 impl Bytes<'_> {
-    fn next(&mut self) -> u8 {
+    pub fn next(&mut self) -> u8 {
         let Some((&first, rest)) = self.0.split_first() else { return 0 };
         self.0 = rest;
         first
@@ -47,7 +47,8 @@ impl Bytes<'_> {
     }
 }
 
-fn scene(bytes: &mut Bytes<'_>) -> Scene {
+/// Opaque, blended and masked triangles, up to 64.
+pub fn scene(bytes: &mut Bytes<'_>) -> Scene {
     let count = 1 + bytes.next() as usize % TRIANGLES;
     let mut triangles: Vec<[Vec3; 3]> = Vec::new();
     for _ in 0..count {
@@ -86,7 +87,7 @@ fn scene(bytes: &mut Bytes<'_>) -> Scene {
 }
 
 /// Outside the scene, or amid it.
-fn camera(bytes: &mut Bytes<'_>) -> Camera {
+pub fn camera(bytes: &mut Bytes<'_>) -> Camera {
     let eye = bytes.point().as_dvec3() * 4.0 + DVec3::new(1e-3, 2e-3, 3e-3);
     let projection = match bytes.next() {
         n if n % 3 == 0 => Projection::Orthographic { height: 1.0 + f64::from(n) / 64.0 },

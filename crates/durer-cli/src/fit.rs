@@ -2,7 +2,7 @@
 
 use durer::math::DVec3;
 use durer::scene::{Camera, Mesh, Projection, Scene, UpAxis};
-use durer::view::projection::{FitOptions, NamedView, ViewDirection, fit_points};
+use durer::view::projection::{FitOptions, NamedView, ViewDirection, fit_points, fit_scene};
 use std::f64::consts::TAU;
 
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
@@ -27,7 +27,7 @@ pub fn still(
     direction: &ViewDirection,
     options: &FitOptions,
 ) -> durer::Result<Camera> {
-    fit_points(points(scene), direction, options)
+    fit_scene(scene, direction, options)
 }
 
 /// The camera that sees the model as large as can be while it turns around the up axis: at the same
@@ -80,7 +80,7 @@ fn circles(scene: &Scene, center: DVec3, axis: DVec3) -> Vec<(f64, f64)> {
 
 /// All finite vertices that something is drawn with, in world space.
 fn points(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
-    let used: Vec<Option<Vec<bool>>> = scene.meshes.iter().map(used_vertices).collect();
+    let used: Vec<Option<Vec<bool>>> = scene.meshes.iter().map(Mesh::used_vertices).collect();
     scene.instances.iter().flat_map(move |instance| {
         let positions = scene.meshes.get(instance.mesh).map_or(&[][..], |m| &m.positions);
         let used = used.get(instance.mesh).cloned().flatten();
@@ -97,17 +97,6 @@ fn points(scene: &Scene) -> impl Iterator<Item = DVec3> + '_ {
 
 fn for_each_point(scene: &Scene, f: impl FnMut(DVec3)) {
     points(scene).for_each(f);
-}
-
-/// Which vertices have an index; `None` = all.
-fn used_vertices(mesh: &Mesh) -> Option<Vec<bool>> {
-    let mut used = vec![false; mesh.positions.len()];
-    for &i in mesh.indices.as_ref()? {
-        if let Some(used) = used.get_mut(i as usize) {
-            *used = true;
-        }
-    }
-    Some(used)
 }
 
 /// The middle of the box around what is drawn; `None` where that is nothing.

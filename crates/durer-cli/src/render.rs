@@ -130,28 +130,6 @@ fn algorithm(args: &RenderArgs, scene: &Scene) -> Algorithm {
     })
 }
 
-/// Tells of blended surfaces that will not be seen through.
-fn tell_opaque(args: &RenderArgs, name: &str, scene: &Scene, messages: &Messages) {
-    let blends = SurfaceMethod::for_scene(scene) == SurfaceMethod::ABuffer;
-    let unable = |m: &SurfaceMethod| {
-        let by_rays = *m == SurfaceMethod::Ray && asks_for_rays(args).is_some();
-        !m.composes() && !by_rays
-    };
-    let methods: Vec<&str> = match algorithm(args, scene) {
-        Algorithm::Surfaces(method) => {
-            [method].iter().filter(|m| unable(m)).map(|m| m.name()).collect()
-        }
-        Algorithm::All => {
-            SurfaceMethod::ALL.iter().filter(|m| unable(m)).map(|m| m.name()).collect()
-        }
-        Algorithm::Wireframe => Vec::new(),
-    };
-    if blends && !methods.is_empty() {
-        let message = format!("{}: blended surfaces are shown as if opaque", methods.join(", "));
-        messages.warning(name, message);
-    }
-}
-
 /// What is written: what --format says, or the name of the output.
 fn kind(args: &RenderArgs) -> Kind {
     args.format.unwrap_or_else(|| Kind::of(&args.output))
@@ -244,7 +222,6 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
             model.scene.triangle_count()
         )
     });
-    tell_opaque(args, &name, &model.scene, messages);
     let mut pictures = Vec::new();
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));

@@ -55,6 +55,7 @@ pub struct PictureReport {
     /// Seconds for encoding and writing.
     pub encode_seconds: f64,
     /// How surfaces were found: an algorithm's name, `wireframe`, or `all`.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub algorithm: String,
     /// The eye of each viewport.
     pub cameras: Vec<CameraReport>,

@@ -181,10 +181,12 @@ fn records<'a>(model: &mut Model, data: &'a [u8], count: u32) -> Result<&'a [[u8
 }
 
 fn vertices(record: &[u8; RECORD]) -> [Vec3; 3] {
-    let float = |at: usize| {
-        f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]])
-    };
-    [12, 24, 36].map(|at| Vec3::new(float(at), float(at + 4), float(at + 8)))
+    let mut numbers = [0.0; 9];
+    for (to, bytes) in numbers.iter_mut().zip(record[12..48].as_chunks().0) {
+        *to = f32::from_le_bytes(*bytes);
+    }
+    let [ax, ay, az, bx, by, bz, cx, cy, cz] = numbers;
+    [Vec3::new(ax, ay, az), Vec3::new(bx, by, bz), Vec3::new(cx, cy, cz)]
 }
 
 /// The facets of a binary file so far.

@@ -124,7 +124,8 @@
 //! **What of each face can be seen, exactly?** [`visibility::region`]: regions of one colour with exact shadows,
 //! by [Weiler–Atherton](visibility::region::weiler_atherton); [hatching](visibility::region::hatch) for pens.
 //!
-//! [Wireframe](visibility::wireframe) draws all edges, hidden ones too.
+//! [Back-face removal](visibility::back_face) leaves out what looks away before anything else is done;
+//! [wireframe](visibility::wireframe) draws all edges, hidden ones too.
 //!
 //! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
 //! letters from the [single-stroke font](curve::stroke_font).
@@ -137,7 +138,8 @@
 //! [textures](shade::texture); [shadow maps](shade::shadow).
 //!
 //! **What happens before a pixel changes?** [`fragment`]: scissor, alpha test, stencil, depth,
-//! blending, dithering, logic operation, write masks. [`commands`] drives them: the classic pipeline's
+//! blending, dithering, logic operation, write masks; colour indices with a
+//! [palette](fragment::Palette). [`commands`] drives them: the classic pipeline's
 //! state, display lists, evaluators.
 //!
 //! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last

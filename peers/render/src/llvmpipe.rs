@@ -21,17 +21,36 @@ pub fn turn(
     threads: u32,
     picture: Option<&Path>,
 ) -> Result<Cost> {
-    let mut command = Command::new(harness);
-    command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe");
-    command.env("LP_NUM_THREADS", threads.to_string());
-    command.arg("mesh").arg(mesh);
-    command.args(["--frames", &scene::FRAMES.to_string(), "--warm", &scene::WARM.to_string()]);
+    let (frames, warm) = (scene::FRAMES.to_string(), scene::WARM.to_string());
+    let samples_text = samples.to_string();
+    let mut arguments = vec!["--frames", &frames, "--warm", &warm];
     if samples > 1 {
-        command.args(["--msaa", &samples.to_string()]);
+        arguments.extend(["--msaa", &samples_text]);
     }
+    let mut command = command(harness, threads);
+    command.arg("mesh").arg(mesh).args(arguments);
     if let Some(path) = picture {
         command.arg("--png").arg(path);
     }
+    medians(command, harness)
+}
+
+/// One turn of what the arguments say, with so many raster threads.
+pub fn run(harness: &Path, arguments: &[&str], threads: u32) -> Result<Cost> {
+    let mut command = command(harness, threads);
+    command.args(arguments);
+    medians(command, harness)
+}
+
+fn command(harness: &Path, threads: u32) -> Command {
+    let mut command = Command::new(harness);
+    command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe");
+    command.env("LP_NUM_THREADS", threads.to_string());
+    command
+}
+
+/// The medians that the harness prints.
+fn medians(mut command: Command, harness: &Path) -> Result<Cost> {
     let output = command.output().map_err(|e| format!("{}: {e}", harness.display()))?;
     let text = String::from_utf8_lossy(&output.stdout);
     let told = String::from_utf8_lossy(&output.stderr);

@@ -6,8 +6,10 @@ mod durer_peer;
 mod euc_peer;
 mod f3d;
 mod frame;
+mod layers;
 mod llvmpipe;
 mod mesh;
+mod methods;
 mod options;
 mod picture;
 mod process;
@@ -22,11 +24,16 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 const USAGE: &str = "\
 usage: durer-peers-render process [FILE…] [--rounds N] [--meshes DIR] [--png DIR]
        durer-peers-render frame [MESH…] [--rounds N] [--samples 1|4] [--png DIR]
+       durer-peers-render methods [FILE.stl…] [--rounds N]
+       durer-peers-render layers [--rounds N]
        durer-peers-render make DIR
 
 process   whole process, model file in, 1024 × 1024 PNG out: durer and f3d
 frame     1920 × 1080 frames in process: durer, euc, and llvmpipe where LLVMPIPE_BENCH names its harness;
           MESH is sphere13k, sphere69k or sphere1m
+methods   durer's ways to find visible surfaces, 1024 × 1024, beside each other
+layers    100 full-screen quads, textured, in three orders: durer and llvmpipe, each with its threads in
+          the calling process
 make      writes the meshes as STL, GLB and BMESH";
 
 fn main() -> ExitCode {
@@ -46,6 +53,8 @@ fn run() -> Result<()> {
     match command.as_str() {
         "process" => process::run(&options),
         "frame" => frame::run(&options),
+        "methods" => methods::run(&options),
+        "layers" => layers::run(&options),
         "make" => mesh::make(options.names.first().ok_or(USAGE)?.as_ref()),
         _ => Err(USAGE.into()),
     }

@@ -27,6 +27,15 @@ pub struct DrawingArgs {
     /// all but the last two.
     #[arg(long, value_name = "CLASSES", value_parser = |s: &str| line_classes(s).map_err(|e| e.to_string()))]
     pub lines: Option<ClassSet>,
+    /// Cut back lines that end in the open, where that takes at most this much of the drawing's larger
+    /// side, in percent [default: 1; 0 for .geojson]
+    ///
+    /// Silhouettes of round parts and creases are cut back to the next junction or left out (four times as
+    /// far where that takes at most three edges of the mesh), small gaps in them are closed, and where they
+    /// would run into another line on paper, that line alone is drawn. 0 gives the mesh as it is, and so
+    /// does --lines where it leaves out classes.
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = stubs)]
+    pub stubs: Option<f64>,
     /// Widths of strokes in millimetres: WIDTH[,CLASS=WIDTH…]
     ///
     /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first is for all that are not named. Classes are those
@@ -75,6 +84,7 @@ pub const NAMES: &[&str] = &[
     "hidden",
     "crease",
     "lines",
+    "stubs",
     "pen",
     "hatch",
     "merge",
@@ -106,6 +116,12 @@ fn crease(text: &str) -> Result<f64, String> {
     let inside = |n: &f64| (0.0..=180.0).contains(n);
     values::number(text)
         .and_then(|n| Some(n).filter(inside).ok_or("it must lie between 0 and 180 degrees".into()))
+}
+
+fn stubs(text: &str) -> Result<f64, String> {
+    let inside = |n: &f64| (0.0..50.0).contains(n);
+    values::number(text)
+        .and_then(|n| Some(n).filter(inside).ok_or("it must be at least 0 and below 50".into()))
 }
 
 /// `--hidden`.

@@ -8,7 +8,7 @@ use crate::camera::{self, Ortho, Shot};
 use crate::failure::Failure;
 use crate::fit;
 use crate::output::{self, Kind, Target};
-use crate::report::PictureReport;
+use crate::report::{CameraReport, PictureReport};
 use crate::values::Size;
 use args::{Hatch, Hidden, Merge, NAMES, Unit};
 use durer::math::{DVec3, Vec4};
@@ -25,6 +25,9 @@ use std::time::Instant;
 
 /// Distance of hatching lines in the darkest tone, millimetres.
 const HATCH_SPACING: f64 = 0.7;
+
+/// The length of stubs on paper, percent of the drawing's larger side.
+const STUBS: f64 = 1.0;
 
 /// Free space on paper, millimetres: on pages, and around drawings without one.
 const PAGE_MARGIN: f64 = 10.0;
@@ -154,6 +157,8 @@ pub fn render(
         None => vec![single_camera(args, subject.scene, frame)?],
     };
     let mut drawings = Vec::new();
+    let seen_from = cameras.iter().map(CameraReport::from).collect();
+    let mut report = PictureReport { cameras: seen_from, ..PictureReport::default() };
     for camera in cameras {
         let cap_material = subject.cap_material;
         let options = DrawOptions { cap_material, ..draw_options(args, kind, style, camera) };
@@ -174,7 +179,7 @@ pub fn render(
         drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
         laid = lay_out(args, kind, subject, frame, &drawings)?;
     }
-    let mut report = PictureReport { geometry_seconds, ..PictureReport::default() };
+    report.geometry_seconds = geometry_seconds;
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = drawings.iter().collect();
     report.drawing = Some(DrawingReport::new(style.name(), &all, &laid));
@@ -239,6 +244,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             // Programs get all there is; on paper hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
             pen_order: drawing.pen_order,
+            stubs: drawing.stubs.unwrap_or(if geojson { 0.0 } else { STUBS }) / 100.0,
             ..default
         },
         lighting,

@@ -4,7 +4,7 @@ use crate::args::RunningArgs;
 use crate::color;
 use crate::values::{self, Size};
 use clap::{Args, ValueEnum, ValueHint};
-use durer::math::Vec4;
+use durer::math::{DVec3, Vec4};
 use durer::paper::Page;
 use durer::plot::ColorMap;
 use durer::view::projection::NamedView;
@@ -99,7 +99,13 @@ pub struct PlotViewArgs {
     /// Degrees above the horizon, -90 to 90
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::elevation, default_value = "30")]
     pub elevation: f64,
-    /// Perspective, with this vertical angle of view in degrees [default: parallel projection]
+    /// Where the eye stands, in perspective: x, height and z of the surface, all of which has to lie ahead
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, conflicts_with_all = ["view", "azimuth", "elevation", "ortho"])]
+    pub eye: Option<DVec3>,
+    /// What the eye looks at [default: the middle of the surface]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "eye")]
+    pub target: Option<DVec3>,
+    /// Perspective, with this vertical angle of view in degrees [default: parallel projection; 35 with --eye]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::angle_of_view, conflicts_with = "ortho")]
     pub fov: Option<f64>,
     /// Parallel projection; this is the default

@@ -12,7 +12,7 @@ use crate::output::{self, Target};
 use crate::report as reports;
 use crate::values::{self, Size};
 use args::{Hidden, Lines, PlotLookArgs};
-use durer::math::DVec2;
+use durer::math::{DVec2, DVec3};
 use durer::paper::{self, Page};
 use durer::plot::{self, Axes, Plot};
 use durer::scene::{HeightField, UpAxis};
@@ -98,8 +98,10 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     messages.progress.stage(|| "drawing".to_owned());
     let start = Instant::now();
     let options = options(args, &surface)?;
-    let plot = plot::surface(&surface.field, &options)
-        .map_err(|e| Failure::Data(format!("{}: {e}", surface.name)))?;
+    let plot = plot::surface(&surface.field, &options).map_err(|e| match options.eye {
+        Some(_) => Failure::Usage(format!("--{e}")),
+        None => Failure::Data(format!("{}: {e}", surface.name)),
+    })?;
     let draw_seconds = start.elapsed().as_secs_f64();
     messages.progress.stage(|| "writing".to_owned());
     let start = Instant::now();
@@ -173,6 +175,10 @@ impl Surface {
 
     fn of_file(path: &Path, args: &PlotArgs, messages: &Messages) -> Result<Self, Failure> {
         let name = input::display_name(path);
+        if name != "-" && !path.exists() && Formula::parse(&name).is_ok() {
+            let message = format!("there is no file `{name}`; a formula is given with --formula");
+            return Err(Failure::Usage(message));
+        }
         let default = Limits::default();
         let decoded_bytes = args.surface.max_bytes.unwrap_or(default.decoded_bytes);
         let limits = Limits { decoded_bytes, ..default };
@@ -211,15 +217,20 @@ impl Surface {
     }
 }
 
+/// The vertical angle of view of `--eye`, degrees.
+const EYE_FOV: f64 = 35.0;
+
 fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure> {
     let view = &args.view;
     let (azimuth, elevation) = view.view.map_or((view.azimuth, view.elevation), |v| v.angles());
     let direction = ViewDirection::from_angles(azimuth, elevation, UpAxis::Y)
         .map_err(|e| Failure::Usage(format!("--{e}")))?;
-    let lens = match view.fov {
+    let lens = match view.fov.or(view.eye.map(|_| EYE_FOV)) {
         Some(fov) => Lens::Perspective { fov_y: fov.to_radians() },
         None => Lens::Orthographic,
     };
+    let middle = || surface.field.bounds().map_or(DVec3::ZERO, |b| b.center());
+    let eye = view.eye.map(|eye| [eye, view.target.unwrap_or_else(middle)]);
     let look = &args.look;
     let every = match look.every {
         Some(n) => usize::try_from(n).unwrap_or(usize::MAX),
@@ -243,6 +254,7 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
     Ok(plot::Options {
         direction,
         lens,
+        eye,
         lines,
         exaggeration,
         color_map: look.color_map,

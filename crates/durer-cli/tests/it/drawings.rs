@@ -99,9 +99,60 @@ fn options_that_do_not_fit_say_what_does() {
         ("-o a.svg --sheet third-angle --view top", "has its own four views"),
         ("-o a.geojson --sheet third-angle", "GeoJSON has no paper"),
         ("-o a.svg --lines edges", "silhouette"),
+        ("-o a.svg --stubs 60", "below 50"),
+        ("-o a.png --stubs 1", "give --style"),
     ];
     for (options, part) in cases {
         folder.run(&format!("render cube.obj {options}")).fails(2, part);
     }
     assert_eq!(folder.names(), ["broken.obj", "cube.obj"]);
+}
+
+#[test]
+fn sections_have_lines_of_their_own() {
+    let folder = Folder::with_models();
+    // The lower half, from above.
+    let ended = folder
+        .must("render cube.obj -o cut.svg --section 0,-1,0,0 --view top --lines section --json");
+    let lines = &ended.json()["models"][0]["pictures"][0]["drawing"]["lines"];
+    assert_eq!(lines.as_array().unwrap().len(), 1);
+    assert_eq!(
+        (&lines[0]["class"], &lines[0]["visible"]["polylines"]),
+        (&"section".into(), &1.into())
+    );
+    let length = lines[0]["visible"]["length"].as_f64().unwrap();
+    assert!((length - 8.0).abs() < 1e-6, "{length}");
+}
+
+#[test]
+fn reports_of_drawings_tell_the_cameras() {
+    let folder = Folder::with_models();
+    let picture = |options: &str| {
+        let ended = folder.must(&format!("render cube.obj -o cube.svg {options} --json"));
+        ended.json()["models"][0]["pictures"][0].clone()
+    };
+    let one = picture("--view front");
+    assert!(one.get("algorithm").is_none());
+    assert_eq!(one["cameras"].as_array().unwrap().len(), 1);
+    assert!(one["cameras"][0]["ortho"].as_f64().unwrap() > 2.0);
+    assert_eq!(picture("--sheet third-angle")["cameras"].as_array().unwrap().len(), 4);
+}
+
+#[test]
+fn stubs_are_cut_back_on_paper_and_kept_for_programs() {
+    let folder = folder();
+    let polylines = |options: &str| -> u64 {
+        let ended =
+            folder.must(&format!("render teapot.obj {options} --azimuth 30 --elevation 25 --json"));
+        let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];
+        drawing["lines"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| c["visible"]["polylines"].as_u64().unwrap())
+            .sum()
+    };
+    let (paper, mesh) = (polylines("-o t.svg"), polylines("-o t.svg --stubs 0"));
+    assert!(paper * 10 < mesh * 8, "{paper} of {mesh}");
+    assert_eq!(polylines("-o t.geojson"), mesh);
 }

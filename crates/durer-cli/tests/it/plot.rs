@@ -67,6 +67,8 @@ fn options_of_plots_are_checked() {
         ("plot --formula x --page 5x5 -o a.svg", "20 mm"),
         ("plot --formula x --labels a,b -o a.svg", "three names"),
         ("plot --formula x --fov 40 --ortho -o a.svg", "cannot be used with"),
+        ("plot --formula x --eye 0,0,0 -o a.svg", "the whole surface lies ahead"),
+        ("plot --formula x --eye 9,9,9 --azimuth 3 -o a.svg", "cannot be used with"),
     ] {
         let ended = folder.run(arguments);
         let code = if arguments.contains("5x5") { 1 } else { 2 };

@@ -360,7 +360,7 @@ impl<'a> Parser<'a> {
             Topology::Lines => (&mut self.open[1], &mut self.out.line_runs),
             Topology::Points => (&mut self.open[2], &mut self.out.point_runs),
         };
-        if slot.is_some_and(|open| open == part) {
+        if slot.is_some_and(|open| open.is(&part)) {
             return;
         }
         let same_material = slot.replace(part).is_some_and(|open| open.material == part.material);
@@ -436,7 +436,7 @@ impl<'a> Parser<'a> {
 }
 
 /// What names the primitives that follow.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 struct Part<'a> {
     material: Option<usize>,
     object: &'a [u8],
@@ -444,6 +444,17 @@ struct Part<'a> {
 }
 
 impl Part<'_> {
+    /// Asked for every face: equal names are mostly the same place of the text. Most files have none,
+    /// and `memcmp` of nothing at a pointer to nothing takes hundreds of cycles on some machines.
+    fn is(&self, other: &Self) -> bool {
+        let same = |a: &[u8], b: &[u8]| {
+            a.len() == b.len() && (a.is_empty() || a.as_ptr() == b.as_ptr() || a == b)
+        };
+        self.material == other.material
+            && same(self.object, other.object)
+            && same(self.group, other.group)
+    }
+
     /// `object/group`, or the one that there is.
     fn name(&self) -> String {
         let (object, group) =

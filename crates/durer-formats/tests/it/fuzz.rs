@@ -1,4 +1,4 @@
-//! The bodies of the fuzz targets for map data, drawings and models, on their seeds, on seeds with changes, and on
+//! The bodies of the fuzz targets for map data, drawings, models, height maps and formulas, on their seeds, on seeds with changes, and on
 //! random bytes.
 
 use proptest::prelude::*;
@@ -10,11 +10,13 @@ mod drawing;
 mod geo;
 #[path = "../../../../fuzz/bodies/model.rs"]
 mod model;
+#[path = "../../../../fuzz/bodies/plot.rs"]
+mod plot;
 
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 13] = [
+const TARGETS: [(&str, Body); 15] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -28,6 +30,8 @@ const TARGETS: [(&str, Body); 13] = [
     ("stl", model::stl),
     ("ply", model::ply),
     ("threemf", model::threemf),
+    ("height_map", plot::height_map),
+    ("formula", plot::formula),
 ];
 
 /// The files of a target's folder of seeds; there must be some.

@@ -1,7 +1,7 @@
 //! From vertices to fragments.
 
 use super::{CullFace, Pipeline, Primitive, Vertex};
-use crate::clip::volume::{ClipVertex, Options, clip_polygon, clip_segment};
+use crate::clip::volume::{Blend, ClipVertex, Options, clip_polygon, clip_segment};
 use crate::fragment::{Fragment, FragmentState, Scissor, apply};
 use crate::math::{DVec2, DVec3, DVec4, IVec2, Vec4};
 use crate::raster::interpolate::{PerspectivePlane, ScreenPlane};
@@ -13,16 +13,19 @@ use crate::trace::NoTrace;
 use crate::view::window::PixelRect;
 use crate::{Error, Result};
 
-/// Position in clip space, colour beside it.
-type Corner = ClipVertex<DVec4>;
+/// Linear colour and colour index.
+type Paint = (DVec4, f64);
 
-/// A corner on the screen: pixels, y down; window depth; 1/w; linear colour.
+/// Position in clip space, colours beside it.
+type Corner = ClipVertex<Paint>;
+
+/// A corner on the screen: pixels, y down; window depth; 1/w; colours.
 #[derive(Clone, Copy)]
 struct OnScreen {
     at: DVec2,
     depth: f64,
     inv_w: f64,
-    color: DVec4,
+    paint: Paint,
 }
 
 pub fn check_viewport(viewport: Option<[u32; 4]>, target: &Framebuffer) -> Result<()> {
@@ -47,6 +50,7 @@ pub fn clear(
     color: Option<Vec4>,
     depth: Option<f32>,
     stencil: Option<u8>,
+    index: Option<u8>,
     target: &mut Framebuffer,
 ) {
     let all = Scissor { x0: 0, y0: 0, x1: target.width(), y1: target.height() };
@@ -67,6 +71,10 @@ pub fn clear(
             let old = plane.get(x, y).unwrap_or(0);
             plane.set(x, y, state.write_mask.stencil(true, value, old));
         }
+        if let (Some(value), Some(plane)) = (index, &mut target.index) {
+            let old = plane.get(x, y).unwrap_or(0);
+            plane.set(x, y, state.write_mask.index(value, old));
+        }
     }
 }
 
@@ -75,7 +83,7 @@ pub fn draw(p: &Pipeline, primitive: Primitive, vertices: &[Vertex], target: &mu
     let clip_from_object = p.projection * p.model_view;
     let corner = |v: &Vertex| ClipVertex {
         position: clip_from_object * v.position.extend(1.0),
-        attributes: v.color.unwrap_or(p.color).as_dvec4(),
+        attributes: (v.color.unwrap_or(p.color).as_dvec4(), f64::from(v.index.unwrap_or(p.index))),
     };
     let corners: Vec<Corner> = vertices.iter().map(corner).collect();
     match primitive {
@@ -101,7 +109,7 @@ fn on_screen(p: &Pipeline, v: &Corner, target: &Framebuffer) -> OnScreen {
         at,
         depth: p.depth_range.window(ndc.z),
         inv_w: v.position.w.recip(),
-        color: v.attributes,
+        paint: v.attributes,
     }
 }
 
@@ -109,7 +117,7 @@ fn put(
     p: &Pipeline,
     [x, y]: [i32; 2],
     depth: f64,
-    color: DVec4,
+    (color, index): Paint,
     front: bool,
     target: &mut Framebuffer,
 ) {
@@ -118,6 +126,7 @@ fn put(
         y: y as u32,
         depth: p.depth_range.clamp(depth as f32),
         color: color.clamp(DVec4::ZERO, DVec4::ONE).as_vec4(),
+        index: index as f32,
         front_facing: front,
         item: NO_ITEM,
         normal: [0.0; 3],
@@ -145,7 +154,7 @@ fn point(p: &Pipeline, corner: Corner, target: &mut Framebuffer) {
     };
     let v = on_screen(p, &v, target);
     let at = pixel(p, v.at, target);
-    put(p, at.to_array(), v.depth, v.color, true, target);
+    put(p, at.to_array(), v.depth, v.paint, true, target);
 }
 
 fn segment(p: &Pipeline, ends: [Corner; 2], target: &mut Framebuffer) {
@@ -161,8 +170,8 @@ fn segment(p: &Pipeline, ends: [Corner; 2], target: &mut Framebuffer) {
         let depth = a.depth + (b.depth - a.depth) * t;
         // Linear in space: what is near counts more.
         let (near, far) = (a.inv_w * (1.0 - t), b.inv_w * t);
-        let color = (a.color * near + b.color * far) / (near + far);
-        put(p, at.to_array(), depth, color, true, target);
+        let paint = Blend::blend(&a.paint, near, &b.paint, far, near + far);
+        put(p, at.to_array(), depth, paint, true, target);
     }
 }
 
@@ -188,11 +197,14 @@ fn triangle(p: &Pipeline, corners: [OnScreen; 3], target: &mut Framebuffer) {
     let [x0, y0, x1, y1] = window(p, target);
     let Ok(clip) = PixelRect::new(x0, y0, x1, y1) else { return };
     let inv_w = corners.map(|c| c.inv_w);
-    let channel = |k: usize| PerspectivePlane::through(points, inv_w, corners.map(|c| c.color[k]));
+    let plane = |values| PerspectivePlane::through(points, inv_w, values);
+    let channel = |k: usize| plane(corners.map(|c| c.paint.0[k]));
     let depths = corners.map(|c| c.depth);
-    let (Some(depth), [Some(r), Some(g), Some(b), Some(a)]) =
-        (ScreenPlane::through(points, depths), [0, 1, 2, 3].map(channel))
-    else {
+    let (Some(depth), [Some(r), Some(g), Some(b), Some(a)], Some(index)) = (
+        ScreenPlane::through(points, depths),
+        [0, 1, 2, 3].map(channel),
+        plane(corners.map(|c| c.paint.1)),
+    ) else {
         return;
     };
     let deepest = depths.into_iter().fold(0.0, f64::max) as f32;
@@ -205,7 +217,7 @@ fn triangle(p: &Pipeline, corners: [OnScreen; 3], target: &mut Framebuffer) {
             let at = DVec2::new(f64::from(x) + 0.5, f64::from(span.y) + 0.5);
             let z = depth.at(at).clamp(range.0, range.1.max(range.0)) + offset;
             let color = DVec4::new(r.at(at), g.at(at), b.at(at), a.at(at));
-            put(p, [x, span.y], z, color, front, target);
+            put(p, [x, span.y], z, (color, index.at(at)), front, target);
         }
     });
 }

@@ -92,8 +92,8 @@ pub fn execute(
 
 fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<()> {
     match command {
-        Command::Clear { color, depth, stencil } => {
-            draw::clear(&p.fragments, *color, *depth, *stencil, target);
+        Command::Clear { color, depth, stencil, index } => {
+            draw::clear(&p.fragments, *color, *depth, *stencil, *index, target);
         }
         Command::LoadModelView(matrix) => p.model_view = finite(*matrix)?,
         Command::MultiplyModelView(matrix) => p.model_view = finite(p.model_view * *matrix)?,
@@ -113,6 +113,7 @@ fn one(command: &Command, p: &mut Pipeline, target: &mut Framebuffer) -> Result<
             p.viewport = *viewport;
         }
         Command::Color(color) => p.color = *color,
+        Command::Index(index) => p.index = *index,
         Command::Cull(cull) => p.cull = *cull,
         Command::DepthRange(range) => p.depth_range = *range,
         Command::PolygonOffset(offset) => p.polygon_offset = *offset,

@@ -13,7 +13,7 @@
 //!
 //! let mut lists = DisplayLists::default();
 //! let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)];
-//! let corner = |(x, y)| Vertex { position: DVec3::new(x, y, 0.0), color: None };
+//! let corner = |(x, y)| Vertex::from(DVec3::new(x, y, 0.0));
 //! let triangle = lists.record(vec![Command::Draw(Primitive::Triangles, corners.map(corner).into())]);
 //! let mut target = Framebuffer::new(8, 8);
 //! let red = Command::Color(Vec4::new(1.0, 0.0, 0.0, 1.0));
@@ -57,11 +57,13 @@ pub struct Vertex {
     pub position: DVec3,
     /// Linear RGBA with straight alpha; `None` = the pipeline's colour.
     pub color: Option<Vec4>,
+    /// Colour index, interpolated like a colour; `None` = the pipeline's index.
+    pub index: Option<f32>,
 }
 
 impl From<DVec3> for Vertex {
     fn from(position: DVec3) -> Self {
-        Self { position, color: None }
+        Self { position, color: None, index: None }
     }
 }
 
@@ -76,6 +78,8 @@ pub enum Command {
         depth: Option<f32>,
         /// Stencil value.
         stencil: Option<u8>,
+        /// Colour index.
+        index: Option<u8>,
     },
     /// Sets the model-view matrix.
     LoadModelView(DMat4),
@@ -92,6 +96,8 @@ pub enum Command {
     Viewport(Option<[u32; 4]>),
     /// Sets the colour of vertices that have none.
     Color(Vec4),
+    /// Sets the colour index of vertices that have none; drawn in colour-index framebuffers.
+    Index(f32),
     /// Sets which faces are left out.
     Cull(CullFace),
     /// Sets where near and far lie in window depth.

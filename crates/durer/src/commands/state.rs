@@ -29,6 +29,8 @@ pub struct Pipeline {
     pub viewport: Option<[u32; 4]>,
     /// Linear RGBA of vertices without colour; at first white.
     pub color: Vec4,
+    /// Colour index of vertices without one; at first 1.
+    pub index: f32,
     /// Which faces are left out; at first none.
     pub cull: CullFace,
     /// Where near and far lie in window depth; at first 0 and 1.
@@ -52,6 +54,7 @@ impl Default for Pipeline {
             projection: DMat4::IDENTITY,
             viewport: None,
             color: Vec4::ONE,
+            index: 1.0,
             cull: CullFace::None,
             depth_range: DepthRange::default(),
             polygon_offset: PolygonOffset::default(),

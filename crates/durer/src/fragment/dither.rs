@@ -4,6 +4,7 @@
 //! International Conference on Communications, 1973. Levels are chosen so that the mean over 8 × 8
 //! pixels is right in linear light. Cost: O(1) per channel. Limits: the pattern repeats every 8 pixels.
 
+use crate::fragment::color_index::whole_index;
 use crate::math::Vec4;
 use crate::shade::color::{LINEAR_FROM_SRGB, encode_srgb8, encode_unorm8};
 
@@ -29,10 +30,15 @@ const fn bayer() -> [[u8; 8]; 8] {
     m
 }
 
+/// What a pixel asks of a value between two levels, 1/128 … 127/128.
+fn threshold(x: u32, y: u32) -> f32 {
+    (f32::from(BAYER8[y as usize % 8][x as usize % 8]) + 0.5) / 64.0
+}
+
 /// Dithering to some number of levels per channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Dither {
-    /// Equal steps of the sRGB code per channel, 2…256; held to that.
+    /// Equal steps of the sRGB code per channel, 2…256; held to that. Colour indices have their own.
     pub levels: u16,
 }
 
@@ -46,9 +52,17 @@ impl Default for Dither {
 impl Dither {
     /// The 8-bit sRGB colour of a pixel at column x, row y; alpha is rounded, not dithered.
     pub fn apply(&self, color: Vec4, x: u32, y: u32) -> [u8; 4] {
-        let threshold = (f32::from(BAYER8[y as usize % 8][x as usize % 8]) + 0.5) / 64.0;
+        let threshold = threshold(x, y);
         let channel = |v: f32| self.channel(v, threshold);
         [channel(color.x), channel(color.y), channel(color.z), encode_unorm8(color.w)]
+    }
+
+    /// A colour index with a fraction: the whole number above or below it, which is higher where the
+    /// fraction is above the threshold (OpenGL 2.1, 4.1.9). Of the result the lowest eight bits count.
+    pub fn index(&self, index: f32, x: u32, y: u32) -> u8 {
+        let low = index.floor();
+        let fraction = index - low;
+        whole_index(low + if fraction > threshold(x, y) { 1.0 } else { 0.0 })
     }
 
     /// The higher of the two levels around a value where its place between them is above the threshold.

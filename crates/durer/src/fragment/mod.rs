@@ -1,11 +1,16 @@
 //! What happens to a fragment between the rasterizer and the framebuffer, in this order:
 //! scissor and mask → alpha test → stencil → depth → blending → dithering → logic operation → write masks.
 //!
-//! Definitions: *The OpenGL Graphics System* 4.6 (2017), chapter 17, and 2.1 for the alpha test. Only
-//! [`apply`] knows the order.
+//! A framebuffer with a plane of colour indices takes a fragment's index in the place of its colour:
+//! scissor and mask → stencil → depth → dithering → logic operation → write mask; there is no alpha to
+//! test and nothing to blend. A [`Palette`] makes colours of indices.
+//!
+//! Definitions: *The OpenGL Graphics System* 4.6 (2017), chapter 17, and 2.1 (2006), chapter 4, for the
+//! alpha test and colour indices. Only [`apply`] knows the order.
 
 mod alpha_test;
 mod blend;
+mod color_index;
 mod compare;
 mod depth;
 mod dither;
@@ -17,6 +22,7 @@ mod write_mask;
 
 pub use alpha_test::AlphaTest;
 pub use blend::{Blend, Equation, Factor, Function, over_premultiplied, over_straight};
+pub use color_index::Palette;
 pub use compare::Compare;
 pub use depth::{DepthRange, PolygonOffset};
 pub use dither::{BAYER8, Dither};
@@ -39,8 +45,10 @@ pub struct Fragment {
     pub y: u32,
     /// Window depth at the sample, 0 (near) … 1 (far).
     pub depth: f32,
-    /// Linear RGBA, straight alpha.
+    /// Linear RGBA, straight alpha; has no say in a colour-index framebuffer.
     pub color: Vec4,
+    /// Colour index, fractions allowed; has a say in a colour-index framebuffer only.
+    pub index: f32,
     /// Whether the face is seen from its front; true for points and lines.
     pub front_facing: bool,
     /// What is drawn, for the item plane.
@@ -111,7 +119,8 @@ pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer
     if state.scissor.is_some_and(|s| !s.contains(x, y)) {
         return Outcome::Scissor;
     }
-    if state.alpha_test.is_some_and(|t| !t.passes(fragment.color.w)) {
+    let has_alpha = target.index.is_none();
+    if has_alpha && state.alpha_test.is_some_and(|t| !t.passes(fragment.color.w)) {
         return Outcome::AlphaTest;
     }
     let near = passes_depth(state, &fragment, target);
@@ -122,17 +131,36 @@ pub fn apply(state: &FragmentState, fragment: Fragment, target: &mut Framebuffer
         return Outcome::Depth;
     }
     write_depth(state, &fragment, target);
+    match &mut target.index {
+        Some(plane) => write_index(state, &fragment, plane),
+        None => target.color.set(x, y, written_color(state, &fragment, stored)),
+    }
+    Outcome::Drawn
+}
+
+/// What the colour plane holds after a fragment that passed all tests.
+fn written_color(state: &FragmentState, fragment: &Fragment, stored: [u8; 4]) -> [u8; 4] {
     let color = blended(state, fragment.color, stored);
     let code = match state.dither {
-        Some(dither) => dither.apply(color, x, y),
+        Some(dither) => dither.apply(color, fragment.x, fragment.y),
         None => encode_rgba8(color),
     };
     let code = match state.logic_op {
         Some(op) => std::array::from_fn(|i| op.apply(code[i], stored[i])),
         None => code,
     };
-    target.color.set(x, y, state.write_mask.color(code, stored));
-    Outcome::Drawn
+    state.write_mask.color(code, stored)
+}
+
+fn write_index(state: &FragmentState, fragment: &Fragment, plane: &mut Pixels<u8>) {
+    let (x, y) = (fragment.x, fragment.y);
+    let stored = plane.get(x, y).unwrap_or(0);
+    let index = match state.dither {
+        Some(dither) => dither.index(fragment.index, x, y),
+        None => color_index::rounded(fragment.index),
+    };
+    let index = state.logic_op.map_or(index, |op| op.apply(index, stored));
+    plane.set(x, y, state.write_mask.index(index, stored));
 }
 
 /// [`apply`] within a mask, which is asked right after the scissor rectangle.
@@ -210,6 +238,7 @@ mod tests {
             y: 1,
             depth,
             color: Vec4::new(1.0, 0.0, 0.0, 0.5),
+            index: 5.5,
             front_facing: true,
             item: 7,
             normal: [0.0, 0.0, 1.0],
@@ -314,5 +343,65 @@ mod tests {
         assert_eq!(t.color.get(1, 1), Some([255, 0, 0, 128]));
         apply(&state, fragment(0.5), &mut t);
         assert_eq!(t.color, before);
+    }
+
+    fn index_at(target: &Framebuffer) -> Option<u8> {
+        target.index.as_ref().and_then(|plane| plane.get(1, 1))
+    }
+
+    #[test]
+    fn an_index_takes_the_colours_place() {
+        let never = AlphaTest { compare: Compare::Never, reference: 0.0 };
+        let mut state = FragmentState {
+            alpha_test: Some(never),
+            blend: Some(Blend::Over),
+            ..FragmentState::default()
+        };
+        let mut t = target().with_indices();
+        assert_eq!(apply(&state, fragment(0.5), &mut t), Outcome::Drawn);
+        assert_eq!(index_at(&t), Some(6), "rounded; no alpha to be tested, nothing blended");
+        assert_eq!(t.color, Framebuffer::new(3, 3).color, "colours come from the palette alone");
+        assert_eq!(t.depth.as_ref().and_then(|p| p.get(1, 1)), Some(0.5));
+        let behind = Fragment { index: 9.0, ..fragment(0.6) };
+        assert_eq!(apply(&state, behind, &mut t), Outcome::Depth);
+        assert_eq!(index_at(&t), Some(6));
+        state.stencil = Some(Stencil::both(StencilFace {
+            compare: Compare::Equal,
+            reference: 1,
+            ..Default::default()
+        }));
+        assert_eq!(apply(&state, fragment(0.1), &mut t), Outcome::Stencil);
+        state.scissor = Some(Scissor { x0: 0, y0: 0, x1: 1, y1: 1 });
+        assert_eq!(apply(&state, fragment(0.1), &mut t), Outcome::Scissor);
+    }
+
+    #[test]
+    fn indices_are_combined_then_written_through_their_mask() {
+        let at = |index, state: &FragmentState, t: &mut Framebuffer| {
+            apply(state, Fragment { index, ..fragment(0.5) }, t);
+            index_at(t).map(u32::from)
+        };
+        let mut state = FragmentState { depth: None, ..FragmentState::default() };
+        let mut t = target().with_indices();
+        assert_eq!(at(f32::from(0b0101_0101_u8), &state, &mut t), Some(0b0101_0101));
+        state.logic_op = Some(LogicOp::Xor);
+        assert_eq!(at(f32::from(0b1111_0000_u8), &state, &mut t), Some(0b1010_0101));
+        state.write_mask.index = 0b0000_1111;
+        assert_eq!(at(f32::from(0xff_u8), &state, &mut t), Some(0b1010_1010));
+        state.logic_op = None;
+        assert_eq!(at(0.0, &state, &mut t), Some(0b1010_0000));
+    }
+
+    #[test]
+    fn dithered_indices_have_the_right_mean() {
+        let state = FragmentState { dither: Some(Dither::default()), ..FragmentState::default() };
+        for (index, expected) in [(5.25, 16), (5.75, 48), (5.0, 0), (5.5, 32)] {
+            let mut t = Framebuffer::new(8, 8).with_indices();
+            for (x, y) in (0..8).flat_map(|y| (0..8).map(move |x| (x, y))) {
+                apply(&state, Fragment { x, y, index, ..fragment(0.5) }, &mut t);
+            }
+            let count = |i: u8| t.index.iter().flat_map(|p| p.data()).filter(|d| **d == i).count();
+            assert_eq!((count(5), count(6)), (64 - expected, expected), "{index}");
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! Write masks: which channels, depths and stencil bits may change (OpenGL 4.6, 17.4.2).
+//! Write masks: which channels, depths, stencil and index bits may change (OpenGL 4.6,
+//! 17.4.2; 2.1, 4.2.2).
 
 /// What may be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -9,12 +10,14 @@ pub struct WriteMask {
     pub depth: bool,
     /// Stencil bits, for front and back faces.
     pub stencil: [u8; 2],
+    /// Bits of colour indices.
+    pub index: u8,
 }
 
 impl Default for WriteMask {
     /// Everything.
     fn default() -> Self {
-        Self { color: [true; 4], depth: true, stencil: [0xff; 2] }
+        Self { color: [true; 4], depth: true, stencil: [0xff; 2], index: 0xff }
     }
 }
 
@@ -30,6 +33,12 @@ impl WriteMask {
     pub fn stencil(&self, front_facing: bool, new: u8, old: u8) -> u8 {
         let mask = self.stencil[usize::from(!front_facing)];
         (new & mask) | (old & !mask)
+    }
+
+    /// The new bits of a colour index where they may be written, the old ones elsewhere.
+    #[inline(always)]
+    pub fn index(&self, new: u8, old: u8) -> u8 {
+        (new & self.index) | (old & !self.index)
     }
 }
 
@@ -49,8 +58,9 @@ mod tests {
                 assert_eq!(value, if bits >> i & 1 == 1 { new[i] } else { old[i] });
             }
         }
-        let mask = WriteMask { stencil: [0x0f, 0xf0], ..WriteMask::default() };
+        let mask = WriteMask { stencil: [0x0f, 0xf0], index: 0x3c, ..WriteMask::default() };
         assert_eq!(mask.stencil(true, 0xab, 0xcd), 0xcb);
         assert_eq!(mask.stencil(false, 0xab, 0xcd), 0xad);
+        assert_eq!(mask.index(0b1010_1010, 0b0101_0101), 0b0110_1001);
     }
 }

@@ -134,7 +134,9 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
         _ => regions(scene, &view, options)?,
     };
     if options.style != DrawStyle::Regions {
-        let lines = hidden_line::draw(scene, &view, &options.lines, &mut NoTrace)?;
+        let cap_material = options.lines.cap_material.or(options.cap_material);
+        let how = hidden_line::Options { cap_material, ..options.lines };
+        let lines = hidden_line::draw(scene, &view, &how, &mut NoTrace)?;
         drawing.window = lines.window;
         drawing.lines.extend(lines.lines);
     }

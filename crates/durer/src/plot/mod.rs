@@ -11,7 +11,7 @@ pub mod ticks;
 pub use color_map::ColorMap;
 
 use crate::math::{DVec2, DVec3, Rect};
-use crate::scene::{Aabb, Camera, HeightField};
+use crate::scene::{Aabb, Camera, HeightField, Projection};
 use crate::target::drawing::{Drawing, Label, Line, LineClass};
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::trace::NoTrace;
@@ -27,6 +27,9 @@ pub struct Options {
     pub direction: ViewDirection,
     /// Perspective or parallel.
     pub lens: Lens,
+    /// Where the eye stands and what it looks at, (x, height, z), instead of `direction`: in perspective
+    /// only, and all of the surface's box has to lie before it. The plot fits the paper all the same.
+    pub eye: Option<[DVec3; 2]>,
     /// Which rows and columns become lines, and whether hidden parts do.
     pub lines: floating_horizon::Options,
     /// What heights are multiplied with before they are seen; labels tell the true ones.
@@ -115,7 +118,10 @@ pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     })?;
     let room = (options.page - DVec2::splat(2.0 * MARGIN)).max(DVec2::ONE);
     let fit = FitOptions { lens: options.lens, aspect: room.x / room.y, margin: 0.0 };
-    let camera = fit_box(Some(&bounds), &options.direction, &fit)?;
+    let camera = match options.eye {
+        Some(places) => standing(&bounds, places, options)?,
+        None => fit_box(Some(&bounds), &options.direction, &fit)?,
+    };
     let plane = PicturePlane::of_camera(&camera, fit.aspect)?;
     let layout = Layout::new(&bounds, &plane, options);
     let mut drawing = Drawing { window: None, ..Drawing::default() };
@@ -143,6 +149,28 @@ pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     Ok(Plot { drawing, sheet, camera })
 }
 
+/// The camera of an eye that stands somewhere, in coordinates with exaggerated heights.
+fn standing(bounds: &Aabb, places: [DVec3; 2], options: &Options) -> Result<Camera> {
+    let Lens::Perspective { fov_y } = options.lens else {
+        return Err(Error::parameter("eye", "in parallel projection", "perspective"));
+    };
+    let [eye, target] = places.map(|p| p * DVec3::new(1.0, options.exaggeration, 1.0));
+    let sight = (target - eye).normalize_or_zero();
+    let depths = bounds.corners().map(|c| (c - eye).dot(sight));
+    let near = depths.into_iter().fold(f64::INFINITY, f64::min);
+    let far = depths.into_iter().fold(0.0, f64::max);
+    // As much as the axes need to be seen at all.
+    if !(near > 1e-3 * far && far.is_finite()) {
+        let expected = "a place from where the whole surface lies ahead";
+        return Err(Error::parameter("eye", places[0], expected));
+    }
+    let up = if sight.y.abs() < 0.9999 { DVec3::Y } else { DVec3::NEG_Z };
+    let projection = Projection::Perspective { fov_y };
+    let camera = Camera { eye, target, up, projection, near: near * 0.5, far: far * 2.0 };
+    camera.check()?;
+    Ok(camera)
+}
+
 impl Default for Options {
     /// All lines, black, in parallel projection from azimuth 30° and elevation 30°, on 180 × 135 mm, with
     /// axes; true heights.
@@ -151,6 +179,7 @@ impl Default for Options {
         Self {
             direction,
             lens: Lens::Orthographic,
+            eye: None,
             lines: floating_horizon::Options::default(),
             exaggeration: 1.0,
             color_map: None,

@@ -100,6 +100,19 @@ impl Mesh {
         self.parts.iter().map(|p| (p.range.clone(), p.material)).chain(whole)
     }
 
+    /// Which vertices have an index; `None` where there are no indices, and all are used. Indices
+    /// beyond the vertices are left out. Cost: O(indices).
+    pub fn used_vertices(&self) -> Option<Vec<bool>> {
+        let indices = self.indices.as_ref()?;
+        let mut used = vec![false; self.positions.len()];
+        for &i in indices {
+            if let Some(used) = used.get_mut(i as usize) {
+                *used = true;
+            }
+        }
+        Some(used)
+    }
+
     /// Checks what algorithms rely on: attribute lengths, index range, parts in order.
     ///
     /// # Errors

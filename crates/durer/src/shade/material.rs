@@ -9,6 +9,7 @@ use super::metallic_roughness::Substance;
 use super::mip::MipChain;
 use super::normal::{face_viewer, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
+use super::sample::Sample;
 use super::texture::{PreparedTexture, Usage};
 use crate::math::{Vec2, Vec3, Vec4};
 use crate::scene::{AlphaMode, Material, Scene, ShadingModel, TextureRef};
@@ -221,7 +222,7 @@ impl<'a> PreparedMaterial<'a> {
         self.model.into()
     }
 
-    /// Whether the material is opaque and without textures, so that [`super::shade_x8`] may be used
+    /// Whether the material is opaque and without textures, so that [`super::shade_points`] may be used
     /// on meshes without vertex colours.
     pub fn is_plain(&self) -> bool {
         !self.textured && self.alpha_mode == AlphaMode::Opaque
@@ -330,6 +331,40 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
+    /// Whether samples of the material may be lit by [`super::Samples`]: nothing shines through, and
+    /// what the formula takes for all of them at once is one number.
+    pub fn is_lit_together(&self, shading: Shading) -> bool {
+        let one_exponent = match shading {
+            Shading::MetallicRoughness | Shading::Unlit => true,
+            Shading::Phong => self.model != ShadingModel::MetallicRoughness,
+            Shading::Flat | Shading::Gouraud => false,
+        };
+        one_exponent && self.alpha_mode != AlphaMode::Blend
+    }
+
+    /// A point with what the textures say of it, to be lit with others.
+    pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample {
+        self.sample_with(surface, self.base(surface), shading)
+    }
+
+    #[inline]
+    fn sample_with(&self, surface: &Surface<'_>, base: Vec4, shading: Shading) -> Sample {
+        let mut frame = face_viewer(
+            surface.view.into(),
+            surface.geometric_normal.into(),
+            Vec3Lane::from(surface.normal),
+        );
+        if self.has_normal_map() {
+            // The map bends the side that the mesh's normal is on; seen from behind, it is turned
+            // with it.
+            let bent = self.normal(surface);
+            let kept = Vec3::from(frame.normal).dot(surface.normal) >= 0.0;
+            frame.normal = if kept { bent } else { -bent }.into();
+        }
+        let inputs = self.inputs(surface, base.truncate(), shading);
+        Sample { frame, position: surface.position.into(), inputs }
+    }
+
     /// The interpolated normal, bent by the normal map.
     #[inline]
     fn normal(&self, surface: &Surface<'_>) -> Vec3 {
@@ -378,19 +413,7 @@ pub fn shade(
     if alpha == 0.0 {
         return Vec4::ZERO;
     }
-    let mut frame = face_viewer(
-        surface.view.into(),
-        surface.geometric_normal.into(),
-        Vec3Lane::from(surface.normal),
-    );
-    if material.has_normal_map() {
-        // The map bends the side that the mesh's normal is on; seen from behind, it is turned with it.
-        let bent = material.normal(surface);
-        let kept = Vec3::from(frame.normal).dot(surface.normal) >= 0.0;
-        frame.normal = if kept { bent } else { -bent }.into();
-    }
-    let inputs = material.inputs(surface, base.truncate(), shading);
-    let position = surface.position.into();
+    let Sample { frame, position, inputs } = material.sample_with(surface, base, shading);
     let shown = formula::display(&frame, position, &inputs, surface.lit.as_ref(), lights, shading);
     Vec3::from(shown).extend(alpha)
 }

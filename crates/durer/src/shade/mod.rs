@@ -20,6 +20,7 @@ mod mip;
 mod normal;
 pub mod phong;
 mod plain;
+mod sample;
 pub mod shadow;
 pub mod texture;
 mod tone;
@@ -29,7 +30,8 @@ pub use flat::shade_face;
 pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub use material::{PreparedMaterial, PreparedMaterials, Surface, TexCoord, shade};
-pub use plain::{Batch, Points, shade_points, shade_x8};
+pub use plain::{Points, shade_points};
+pub use sample::{Sample, Samples};
 pub use texture::PreparedTexture;
 
 crate::info::family! {

@@ -5,52 +5,8 @@ use super::light::PreparedLights;
 use super::material::PreparedMaterial;
 use super::normal::face_viewer;
 use super::{Shading, formula};
-use fearless_simd::{f32x8, prelude::*};
 
-/// Eight surface points, component by component; lanes without a sample may hold anything.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Batch {
-    /// Relative to the lights' origin. Only read where there are point or spot lights.
-    pub position: [[f32; 8]; 3],
-    /// Towards the eye, any length.
-    pub view: [[f32; 8]; 3],
-    /// Interpolated normals, any length.
-    pub normal: [[f32; 8]; 3],
-    /// Unit normals of the faces' planes.
-    pub geometric_normal: [[f32; 8]; 3],
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> Vec3Lane<f32x8<S>> {
-    let lane = |i: usize| f32x8::simd_from(simd, v[i]);
-    Vec3Lane::new(lane(0), lane(1), lane(2))
-}
-
-/// Linear red, green and blue of eight samples, each bit for bit what [`super::shade`] gives.
-///
-/// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
-/// looked at, alpha is 1. To be called inside a function with the token's target features
-/// (`fearless_simd::dispatch!` or `#[simd]`); it is always inlined. Cost: O(lights), a tenth of
-/// [`super::shade`] per sample where eight lanes are native.
-#[inline(always)]
-pub fn shade_x8<S: Simd>(
-    simd: S,
-    batch: &Batch,
-    material: &PreparedMaterial<'_>,
-    lights: &PreparedLights,
-    shading: Shading,
-) -> [[f32; 8]; 3] {
-    let points = Points {
-        position: load(simd, &batch.position),
-        view: load(simd, &batch.view),
-        normal: load(simd, &batch.normal),
-        geometric_normal: load(simd, &batch.geometric_normal),
-    };
-    let color = shade_points(&points, material, lights, shading);
-    [color.x.into(), color.y.into(), color.z.into()]
-}
-
-/// Surface points in SIMD registers; see [`Batch`].
+/// Surface points, component by component; lanes without a sample may hold anything.
 #[derive(Debug, Clone, Copy)]
 pub struct Points<L> {
     /// Relative to the lights' origin. Only read where there are point or spot lights.
@@ -63,7 +19,12 @@ pub struct Points<L> {
     pub geometric_normal: Vec3Lane<L>,
 }
 
-/// [`shade_x8`] without the way through memory.
+/// Linear red, green and blue of several samples, each bit for bit what [`super::shade`] gives.
+///
+/// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
+/// looked at, alpha is 1. To be called inside a function with the token's target features
+/// (`fearless_simd::dispatch!` or `#[simd]`); it is always inlined. Cost: O(lights), a tenth of
+/// [`super::shade`] per sample where eight lanes are native.
 #[inline(always)]
 pub fn shade_points<L: Lane>(
     points: &Points<L>,
@@ -83,7 +44,35 @@ mod tests {
     use crate::scene::{Camera, Light, LightKind, Material, Projection, ShadingModel};
     use crate::shade::lane::levels;
     use crate::shade::{PreparedMaterials, Surface, shade};
-    use fearless_simd::dispatch;
+    use fearless_simd::{dispatch, f32x8, prelude::*};
+    use fearless_simd_macros::simd;
+
+    /// Eight points of test data.
+    type Eight = [[[f32; 8]; 3]; 4];
+
+    #[inline(always)]
+    fn load<S: Simd>(simd: S, [x, y, z]: &[[f32; 8]; 3]) -> Vec3Lane<f32x8<S>> {
+        let (x, y) = (f32x8::from_slice(simd, x), f32x8::from_slice(simd, y));
+        Vec3Lane::new(x, y, f32x8::from_slice(simd, z))
+    }
+
+    #[simd]
+    fn shade_eight<S: Simd>(
+        simd: S,
+        [position, view, normal, geometric_normal]: &Eight,
+        material: &PreparedMaterial<'_>,
+        lights: &PreparedLights,
+        shading: Shading,
+    ) -> [[f32; 8]; 3] {
+        let points = Points {
+            position: load(simd, position),
+            view: load(simd, view),
+            normal: load(simd, normal),
+            geometric_normal: load(simd, geometric_normal),
+        };
+        let color = shade_points(&points, material, lights, shading);
+        [color.x.into(), color.y.into(), color.z.into()]
+    }
 
     fn camera() -> Camera {
         Camera {
@@ -136,9 +125,9 @@ mod tests {
         }
     }
 
-    fn batch(seed: &mut u32) -> Batch {
+    fn eight_points(seed: &mut u32) -> Eight {
         let mut v = || std::array::from_fn(|_| std::array::from_fn(|_| numbers(seed)));
-        Batch { position: v(), view: v(), normal: v(), geometric_normal: v() }
+        [v(), v(), v(), v()]
     }
 
     fn lane(v: &[[f32; 8]; 3], i: usize) -> Vec3 {
@@ -157,16 +146,16 @@ mod tests {
                 let material = prepared.get(Some(material));
                 assert!(material.is_plain());
                 for _ in 0..60 {
-                    let b = batch(&mut seed);
+                    let points = eight_points(&mut seed);
                     for level in levels() {
                         let colors = dispatch!(level, simd =>
-                            shade_x8(simd, &b, material, &lights, shading));
+                            shade_eight(simd, &points, material, &lights, shading));
                         for i in 0..8 {
                             let surface = Surface {
-                                position: lane(&b.position, i),
-                                view: lane(&b.view, i),
-                                normal: lane(&b.normal, i),
-                                geometric_normal: lane(&b.geometric_normal, i),
+                                position: lane(&points[0], i),
+                                view: lane(&points[1], i),
+                                normal: lane(&points[2], i),
+                                geometric_normal: lane(&points[3], i),
                                 ..Surface::default()
                             };
                             let one = shade(&surface, material, &lights, shading);

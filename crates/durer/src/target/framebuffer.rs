@@ -1,4 +1,4 @@
-//! Planes of pixels: colour, depth, item, normal, stencil.
+//! Planes of pixels: colour, depth, item, normal, stencil, colour index.
 
 use crate::{Error, Result};
 
@@ -121,6 +121,9 @@ pub struct Framebuffer {
     pub normal: Option<Pixels<[f32; 3]>>,
     /// Stencil values.
     pub stencil: Option<Pixels<u8>>,
+    /// Colour indices. With this plane fragments are drawn as indices, and the colour plane shows them
+    /// once a palette ([`crate::fragment::Palette`]) has resolved them.
+    pub index: Option<Pixels<u8>>,
 }
 
 impl Framebuffer {
@@ -133,6 +136,7 @@ impl Framebuffer {
             item: None,
             normal: None,
             stencil: None,
+            index: None,
         }
     }
 
@@ -167,6 +171,12 @@ impl Framebuffer {
     /// The same framebuffer with a stencil plane cleared to zero.
     pub fn with_stencil(mut self) -> Self {
         self.stencil = Some(Pixels::new(self.width(), self.height(), 0));
+        self
+    }
+
+    /// The same framebuffer with a plane of colour indices cleared to zero: a colour-index framebuffer.
+    pub fn with_indices(mut self) -> Self {
+        self.index = Some(Pixels::new(self.width(), self.height(), 0));
         self
     }
 }

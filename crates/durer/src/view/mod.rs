@@ -4,6 +4,7 @@ pub mod cull;
 pub mod interior_point;
 pub mod label;
 pub mod layout;
+mod outermost;
 pub mod pick;
 pub mod picture_plane;
 pub mod projection;

@@ -10,7 +10,8 @@
 //! | z | −y, looking along +y | +x | +z, +y is up in the picture |
 
 use crate::math::DVec3;
-use crate::scene::{Aabb, BoundingSphere, Camera, Projection, UpAxis};
+use crate::scene::{Aabb, BoundingSphere, Camera, Projection, Scene, UpAxis};
+use crate::view::outermost::Outermost;
 use crate::{Error, Result};
 use std::str::FromStr;
 
@@ -226,69 +227,33 @@ pub fn fit_points(
     direction: &ViewDirection,
     options: &FitOptions,
 ) -> Result<Camera> {
-    let mut outermost = Outermost::new(direction, &Frame::new(options)?);
-    let mut bounds: Option<Aabb> = None;
-    let mut add = |batch: &[DVec3]| {
-        if let Some(around) = Aabb::around(batch.iter().copied()) {
-            outermost.add(batch, &around);
-            bounds = Some(bounds.map_or(around, |b| b.union(&around)));
-        }
-    };
-    let (mut batch, mut count) = ([DVec3::ZERO; BATCH], 0);
-    // The iterator drives, which is faster where it is made of several.
-    points.into_iter().filter(|p| p.is_finite()).for_each(|point| {
-        batch[count] = point;
-        count += 1;
-        if count == BATCH {
-            add(&batch);
-            count = 0;
-        }
-    });
-    add(&batch[..count]);
+    let mut outermost = Frame::new(options)?.outermost(direction);
+    outermost.add_points(points);
+    fit_outermost(&outermost, direction, options)
+}
+
+/// [`fit_points`] of all vertices that a scene draws something with, which is faster than handing
+/// them over one by one.
+///
+/// # Errors
+/// As [`fit_box`].
+pub fn fit_scene(scene: &Scene, direction: &ViewDirection, options: &FitOptions) -> Result<Camera> {
+    let mut outermost = Frame::new(options)?.outermost(direction);
+    outermost.add_scene(scene);
+    fit_outermost(&outermost, direction, options)
+}
+
+fn fit_outermost(
+    outermost: &Outermost<10>,
+    direction: &ViewDirection,
+    options: &FitOptions,
+) -> Result<Camera> {
+    let bounds = outermost.bounds();
     let extent = visible_extent(bounds.as_ref());
     if bounds == Some(extent) {
         fit(&outermost.points(), &extent, direction, options)
     } else {
         fit(&extent.corners(), &extent, direction, options)
-    }
-}
-
-/// Points that are looked at together: neighbours in the file mostly are neighbours in space.
-const BATCH: usize = 64;
-
-/// The outermost points of a set: along the axes of the view, and towards the sides of a frame.
-struct Outermost {
-    /// Directions in world space, and the furthest point along each.
-    furthest: [(DVec3, f64, DVec3); 10],
-}
-
-impl Outermost {
-    fn new(direction: &ViewDirection, frame: &Frame) -> Self {
-        let (x, y, z) = (direction.right(), direction.up(), direction.to_eye());
-        let (in_x, in_y) = (z * frame.slope.x, z * frame.slope.y);
-        let directions = [x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y];
-        Self { furthest: directions.map(|d| (d, f64::NEG_INFINITY, DVec3::ZERO)) }
-    }
-
-    /// Adds points and the box around them; most boxes lie within what there is already.
-    fn add(&mut self, points: &[DVec3], around: &Aabb) {
-        for (direction, distance, point) in &mut self.furthest {
-            // The same products and sums as a point's, each at least as large, also when rounded.
-            let corner = DVec3::select(direction.cmpge(DVec3::ZERO), around.max, around.min);
-            if direction.dot(corner) <= *distance {
-                continue;
-            }
-            for p in points {
-                let d = direction.dot(*p);
-                if d > *distance {
-                    (*distance, *point) = (d, *p);
-                }
-            }
-        }
-    }
-
-    fn points(&self) -> [DVec3; 10] {
-        self.furthest.map(|(_, _, point)| point)
     }
 }
 
@@ -408,6 +373,13 @@ impl Frame {
         };
         let free = 1.0 - 2.0 * margin;
         Ok(Self { lens, slope: DVec3::new(half_height * aspect, half_height, 0.0) * free })
+    }
+
+    /// Of no points so far: along the axes of the view, and towards the sides of the frame.
+    fn outermost(&self, direction: &ViewDirection) -> Outermost<10> {
+        let (x, y, z) = (direction.right(), direction.up(), direction.to_eye());
+        let (in_x, in_y) = (z * self.slope.x, z * self.slope.y);
+        Outermost::new([x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y])
     }
 
     /// Where the eye must be for the frame to hold the points; x right, y up, z toward the eye.

@@ -1,5 +1,6 @@
 //! Which surfaces and lines can be seen.
 
+pub mod back_face;
 pub mod line;
 pub mod object;
 pub mod region;

@@ -5,8 +5,10 @@ use crate::surface_scenes::{Prepared, of_triangles};
 use durer::math::{Vec3, Vec4};
 use durer::pipeline::{Mask, RenderOptions, Samples, SurfaceMethod, render};
 use durer::scene::{AlphaMode, Camera, Material, Part, Projection, Scene, ShadingModel};
-use durer::shade::color::{decode_rgba8, encode_rgba8, premultiply};
+use durer::shade::color::{encode_rgba8, premultiply};
 use durer::target::Framebuffer;
+use durer::trace::NoTrace;
+use durer::visibility::surface::warnock;
 
 /// Random triangles, every second one blended, unlit.
 fn half_glass(seed: u64) -> Scene {
@@ -43,16 +45,14 @@ fn picture(scene: &Scene, algorithm: SurfaceMethod, samples: Samples) -> Framebu
 }
 
 #[test]
-fn scan_lines_and_painters_order_compose_what_the_z_buffer_sorts() {
+fn all_methods_compose_what_the_z_buffer_sorts() {
     for (name, scene) in (0..12)
         .map(|seed| (format!("seed {seed}"), half_glass(seed)))
         .chain([("materials".to_owned(), scenes::materials())])
     {
         let expected = picture(&scene, SurfaceMethod::ZBuffer, Samples::One);
-        for &method in SurfaceMethod::ALL.iter().filter(|m| m.composes()) {
-            if method == SurfaceMethod::ABuffer {
-                continue;
-            }
+        // The A-buffer smooths edges, and has a test of its own.
+        for &method in SurfaceMethod::ALL.iter().filter(|m| **m != SurfaceMethod::ABuffer) {
             let found = picture(&scene, method, Samples::One);
             let pairs = found.color.data().iter().zip(expected.color.data());
             assert_eq!(pairs.filter(|(a, b)| a != b).count(), 0, "{method} {name}");
@@ -138,21 +138,51 @@ fn the_method_for_a_scene_is_the_a_buffer_where_something_blends() {
     assert_eq!(SurfaceMethod::for_scene(&scenes::soup(3, 1)), SurfaceMethod::ZBuffer);
 }
 
-/// Blended surfaces that count as opaque show nothing of what is behind; the others do.
+/// With several samples subdivision and rays compose at each of them; more samples come nearer to a
+/// great many.
 #[test]
-fn methods_say_truly_whether_they_compose() {
-    let scene = half_glass(3);
-    let opaque = picture(&scene, SurfaceMethod::Warnock, Samples::One);
-    for &method in SurfaceMethod::ALL {
-        let found = picture(&scene, method, Samples::One);
-        let far = |a: &[u8; 4], b: &[u8; 4]| {
-            (decode_rgba8(*a) - decode_rgba8(*b)).abs().max_element() > 0.02
+fn samples_are_composed_one_by_one() {
+    for seed in 0..3 {
+        let scene = half_glass(seed);
+        let p = Prepared::new(&scene, 45, 35);
+        let fine = |sub_levels| {
+            let mut framebuffer = p.framebuffer();
+            let options = warnock::Options { sub_levels, ..Default::default() };
+            warnock::render(&p.fine_input(), &p.lights, &options, &mut framebuffer, &mut NoTrace);
+            framebuffer
         };
-        let pairs = found.color.data().iter().zip(opaque.color.data());
-        let differing = pairs.filter(|(a, b)| far(a, b)).count();
-        assert_eq!(differing > 200, method.composes(), "{method}: {differing}");
+        let best = fine(4);
+        let error = |found: &Framebuffer| -> u32 {
+            let pairs =
+                found.color.data().as_flattened().iter().zip(best.color.data().as_flattened());
+            pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
+        };
+        let errors = [0, 1, 2].map(|level| error(&fine(level)));
+        assert!(errors.is_sorted_by(|a, b| *a > b + b / 4), "seed {seed}: {errors:?}");
+        let small = RenderOptions {
+            algorithm: SurfaceMethod::Ray,
+            width: 45,
+            height: 35,
+            ..scenes::options(&scene, 45, 35)
+        };
+        let rays = [Samples::One, Samples::Four, Samples::Sixteen].map(|samples| {
+            error(&render(&scene, &RenderOptions { samples, ..small.clone() }).expect("picture").0)
+        });
+        assert!(rays.is_sorted_by(|a, b| *a > b + b / 4), "seed {seed}: {rays:?}");
+        assert_eq!(rays[0], errors[0], "one sample at the centre is the same by both");
     }
-    // The planes of items do not depend on it.
-    let z_buffer = Prepared::new(&scene, 90, 70).by_z_buffer();
-    assert!(z_buffer.item.is_some());
+}
+
+#[test]
+fn planes_show_the_nearest_surface_blended_or_not() {
+    let scene = half_glass(3);
+    let expected = Prepared::new(&scene, 90, 70).by_z_buffer();
+    for sub_levels in [0, 1] {
+        let p = Prepared::new(&scene, 90, 70);
+        let mut found = p.framebuffer();
+        let options = warnock::Options { sub_levels, ..Default::default() };
+        warnock::render(&p.input(), &p.lights, &options, &mut found, &mut NoTrace);
+        assert!(found.item == expected.item && found.depth == expected.depth, "{sub_levels}");
+        assert!(found.normal == expected.normal, "{sub_levels}");
+    }
 }

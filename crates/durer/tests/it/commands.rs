@@ -5,7 +5,9 @@ use durer::commands::{
     execute,
 };
 use durer::curve::b_spline::BSpline;
-use durer::fragment::{Compare, FragmentState, Scissor, Stencil, StencilFace, StencilOp};
+use durer::fragment::{
+    Compare, FragmentState, LogicOp, Palette, Scissor, Stencil, StencilFace, StencilOp, WriteMask,
+};
 use durer::math::{DMat4, DVec3, DVec4, Vec4};
 use durer::scene::{Camera, Projection};
 use durer::target::Framebuffer;
@@ -57,7 +59,7 @@ fn the_initial_state_is_opengls() {
 fn depth_is_nearer_towards_minus_one() {
     let tested = FragmentState::default();
     let commands = [
-        Command::Clear { color: None, depth: Some(1.0), stencil: None },
+        Command::Clear { color: None, depth: Some(1.0), stencil: None, index: None },
         Command::Fragments(tested),
         color(0., 1., 0.),
         square(0.5, -0.5),
@@ -267,4 +269,103 @@ proptest! {
         let (target, _) = run(&commands, &DisplayLists::default());
         prop_assert!(target.depth.iter().flat_map(|d| d.data()).all(|d| (0.0..=1.0).contains(d)));
     }
+}
+
+fn indexed(commands: &[Command]) -> Framebuffer {
+    let mut target = target().with_indices();
+    execute(commands, &DisplayLists::default(), &mut Pipeline::default(), &mut target)
+        .expect("drawn");
+    target
+}
+
+fn count_index(target: &Framebuffer, index: u8) -> usize {
+    target.index.iter().flat_map(|p| p.data()).filter(|i| **i == index).count()
+}
+
+/// The highest bit of the indices is a layer of its own: what is drawn in it is taken away again without
+/// the picture below being drawn anew.
+#[test]
+fn an_index_mask_keeps_an_overlay_apart() {
+    let masked = |index| {
+        let write_mask = WriteMask { index, ..WriteMask::default() };
+        Command::Fragments(FragmentState { write_mask, depth: None, ..Default::default() })
+    };
+    let clear = |index| Command::Clear { color: None, depth: None, stencil: None, index };
+    let picture = [clear(Some(2)), Command::Index(3.0), square(0.5, 0.0)];
+    let overlay = [masked(0x80), Command::Index(128.0), square(0.25, 0.0)];
+    let with = indexed(&[picture.to_vec(), overlay.to_vec()].concat());
+    assert_eq!([2, 3, 131].map(|i| count_index(&with, i)), [1200, 300, 100]);
+    let erased = indexed(&[picture.to_vec(), overlay.to_vec(), vec![clear(Some(0))]].concat());
+    assert_eq!(erased, indexed(&picture));
+}
+
+/// A frame that is drawn twice by exclusive or is gone.
+#[test]
+fn a_logic_operation_on_indices_undoes_itself() {
+    let xor = FragmentState { logic_op: Some(LogicOp::Xor), depth: None, ..Default::default() };
+    let rubber = [Command::Fragments(xor), Command::Index(0xff as f32), square(0.6, 0.0)];
+    let picture = [Command::Index(7.0), square(0.5, 0.0)];
+    let once = indexed(&[&picture[..], &rubber].concat());
+    assert_eq!([0xf8, 0xff, 7].map(|i| count_index(&once, i)), [400, 24 * 24 - 400, 0]);
+    assert_eq!(indexed(&[&picture[..], &rubber, &rubber[1..]].concat()), indexed(&picture));
+}
+
+/// Indices are interpolated in space, not on the screen: a floor that recedes shows each of the
+/// ramp's entries as deep as it is.
+#[test]
+fn indices_are_interpolated_in_perspective() {
+    let corner = |x: f64, z: f64, index| Vertex {
+        index: Some(index),
+        ..Vertex::from(DVec3::new(x, -0.5, z))
+    };
+    let (near, far) = (-1.0, -9.0);
+    let floor = vec![
+        corner(-9., near, 10.),
+        corner(9., near, 10.),
+        corner(9., far, 90.),
+        corner(-9., far, 90.),
+    ];
+    let eye = Camera {
+        eye: DVec3::ZERO,
+        target: DVec3::NEG_Z,
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y: std::f64::consts::FRAC_PI_2 },
+        near: 0.1,
+        far: 20.0,
+    };
+    let target = indexed(&[
+        Command::LoadProjection(eye.clip_from_view(1.0)),
+        Command::Draw(Primitive::Polygon, floor),
+    ]);
+    let plane = target.index.expect("indices");
+    let mut seen = 0;
+    for row in 20..SIDE {
+        // The ray through the pixel's centre meets the floor at this distance.
+        let depth = 0.5 / ((f64::from(row) + 0.5) / 20.0 - 1.0);
+        if (1.0..9.0).contains(&depth) {
+            let expected = (10.0 * depth).round();
+            let found = f64::from(plane.get(20, row).expect("pixel"));
+            assert!((found - expected).abs() <= 1.0, "{row}: {found} {expected}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 8, "{seen}");
+}
+
+#[test]
+fn indices_of_lines_and_points_are_theirs() {
+    let at = |x: f64, index| Vertex { index: Some(index), ..Vertex::from(DVec3::new(x, 0.0, 0.0)) };
+    let target = indexed(&[
+        Command::Draw(Primitive::Lines, vec![at(-1.0, 100.0), at(1.0, 139.0)]),
+        Command::Index(9.0),
+        Command::Draw(Primitive::Points, vec![DVec3::new(0.0, 0.9, 0.0).into()]),
+    ]);
+    let plane = target.index.as_ref().expect("indices");
+    assert_eq!([0, 20, 39].map(|x| plane.get(x, 20)), [Some(100), Some(120), Some(139)]);
+    assert_eq!(count_index(&target, 9), 1);
+    // Without a palette nothing is seen; a palette shows all of them.
+    assert_eq!(target.color, self::target().color);
+    let mut shown = target.clone();
+    Palette::default().resolve(&mut shown);
+    assert_eq!(shown.color.get(39, 20), Some([139, 139, 139, 255]));
 }

@@ -29,6 +29,14 @@ pub fn read_model(path: &Path) -> Model {
     read_posed(path, None)
 }
 
+/// Reads a model at rest; `None` for one that is refused.
+pub fn try_read_model(path: &Path) -> Option<Model> {
+    let bytes = std::fs::read(path).expect("model");
+    let resources = Folder(path.parent().expect("folder").to_owned());
+    let name = path.to_string_lossy();
+    durer_formats::read_model(&bytes, &name, &resources, &ReadOptions::default()).ok()
+}
+
 /// Reads a model that is known to be good, posed so many seconds into its first animation.
 pub fn read_posed(path: &Path, time: Option<f64>) -> Model {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

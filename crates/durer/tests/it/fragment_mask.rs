@@ -16,6 +16,7 @@ fn fragment(x: u32, y: u32) -> Fragment {
         y,
         depth: 0.5,
         color: Vec4::new(1.0, 0.0, 0.0, 1.0),
+        index: 0.0,
         front_facing: true,
         item: 3,
         normal: [0.0; 3],

@@ -34,7 +34,7 @@ pub struct Score {
 }
 
 impl Score {
-    fn add(&mut self, right: bool) {
+    pub fn add(&mut self, right: bool) {
         self.all += 1;
         self.right += usize::from(right);
     }
@@ -81,6 +81,16 @@ impl Oracle {
         oracle
     }
 
+    /// Each once.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+
+    /// The larger side of the picture.
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+
     fn cell(&self, p: DVec2) -> [usize; 2] {
         let c = (p - self.low) / self.size;
         [c.x, c.y].map(|v| (v.max(0.0) as usize).min(SIDE - 1))
@@ -101,7 +111,7 @@ impl Oracle {
     }
 
     /// Origin and direction of the sight through a point of the plane.
-    fn sight(&self, at: DVec2) -> (DVec3, DVec3) {
+    pub fn sight(&self, at: DVec2) -> (DVec3, DVec3) {
         let camera = self.view.camera();
         let [right, up, back] = camera.axes();
         let distance = (camera.target - camera.eye).length();
@@ -135,7 +145,7 @@ impl Oracle {
     }
 
     /// Whether a point of an edge is hidden on both sides of the edge.
-    fn hidden(&self, edge: &Edge, t: f64) -> bool {
+    pub fn hidden(&self, edge: &Edge, t: f64) -> bool {
         let (a, b) = (self.project(edge.ends[0]).0, self.project(edge.ends[1]).0);
         let (at, z) = self.project(edge.ends[0].lerp(edge.ends[1], t));
         let aside = (b - a).perp().normalize_or_zero() * (2e-6 * self.extent);
@@ -216,7 +226,7 @@ impl Oracle {
     }
 
     /// Parameter of the point of an edge that is nearest in the picture, and its distance there.
-    fn nearest(&self, edge: &Edge, p: DVec2) -> (f64, f64) {
+    pub fn nearest(&self, edge: &Edge, p: DVec2) -> (f64, f64) {
         let ((a, za), (b, zb)) = (self.project(edge.ends[0]), self.project(edge.ends[1]));
         let s = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-300)).clamp(0.0, 1.0);
         let d = a.lerp(b, s).distance(p);

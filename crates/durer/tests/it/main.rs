@@ -1,6 +1,7 @@
 //! The one test binary of the library.
 
 mod a_buffer;
+mod back_face;
 mod blended;
 mod clip_place;
 mod clip_volume;
@@ -8,6 +9,7 @@ mod coherence;
 mod commands;
 mod conformance_hidden_line;
 mod conformance_overlay;
+mod conformance_surface_methods;
 mod conformance_visible_surface;
 mod curve_stroke_font;
 mod data;
@@ -18,6 +20,7 @@ mod fuzz;
 mod golden;
 mod height_field;
 mod hidden_line;
+mod line_counts;
 mod line_oracle;
 mod line_scenes;
 mod overlay;

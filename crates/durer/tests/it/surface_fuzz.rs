@@ -1,9 +1,13 @@
-//! A thousand random scenes through all methods: the body of the fuzz target, without the fuzzer.
+//! A thousand random scenes through all methods, and drawn as lines and regions: the bodies of the
+//! fuzz targets, without the fuzzer.
 
+#[path = "../../../../fuzz/bodies/drawn.rs"]
+mod drawn;
 #[path = "../../../../fuzz/bodies/surfaces.rs"]
-mod body;
+mod surfaces;
 
 use crate::scenes::Numbers;
+use std::path::Path;
 
 fn bytes(seed: u64) -> Vec<u8> {
     let mut numbers = Numbers(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));
@@ -13,7 +17,7 @@ fn bytes(seed: u64) -> Vec<u8> {
 
 /// A quarter of the thousand, so that they run side by side.
 fn quarter(k: u64) {
-    (250 * k..250 * (k + 1)).for_each(|seed| body::body(&bytes(seed)));
+    (250 * k..250 * (k + 1)).for_each(|seed| surfaces::body(&bytes(seed)));
 }
 
 #[test]
@@ -41,18 +45,44 @@ fn all_methods_agree_at_odd_sizes() {
     for (seed, (width, height)) in
         (5000..).zip([(1, 1), (1, 2048), (2048, 1), (3, 700), (700, 3), (65, 64), (513, 130)])
     {
-        body::compare(&bytes(seed), width, height);
+        surfaces::compare(&bytes(seed), width, height);
     }
 }
 
 #[test]
 fn all_methods_agree_on_a_large_picture() {
-    body::compare(&bytes(77)[..200], 2048, 2048);
+    surfaces::compare(&bytes(77)[..200], 2048, 2048);
+}
+
+#[test]
+fn lines_of_random_scenes_are_sound() {
+    (0..200).for_each(|seed| drawn::lines(&bytes(seed)));
+}
+
+#[test]
+fn regions_of_random_scenes_are_sound() {
+    (0..200).for_each(|seed| drawn::regions(&bytes(seed)));
+}
+
+#[test]
+fn seeds_of_lines_and_regions() {
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
+    let bodies: [(&str, fn(&[u8])); 2] = [("lines", drawn::lines), ("regions", drawn::regions)];
+    for (target, body) in bodies {
+        let files =
+            std::fs::read_dir(seeds.join(target)).expect("seeds are part of the repository");
+        let read = |f: std::io::Result<std::fs::DirEntry>| std::fs::read(f.expect("a file").path());
+        let all: Vec<_> = files.map(|f| read(f).expect("a seed")).collect();
+        assert!(!all.is_empty(), "{target}");
+        all.iter().for_each(|seed| body(seed));
+    }
 }
 
 #[test]
 fn any_bytes_do() {
     for data in [&[][..], &[0], &[255; 3], &[7; 4000]] {
-        body::body(data);
+        surfaces::body(data);
+        drawn::lines(data);
+        drawn::regions(data);
     }
 }

@@ -20,8 +20,7 @@ fn warnock_agrees_with_the_z_buffer() {
         for division in [Division::Regular, Division::Vertices] {
             let found = picture(p, &Options { division, ..Options::default() });
             assert_same_planes(&format!("{name} {division:?}"), &found, &expected);
-            let blended = name == "materials";
-            assert!(blended || found.color == expected.color, "{name} {division:?}: colour");
+            assert!(found.color == expected.color, "{name} {division:?}: colour");
         }
     });
 }

@@ -1,7 +1,9 @@
 //! Named views and cameras fitted to bounds.
 
-use durer::math::DVec3;
-use durer::scene::{Aabb, BoundingSphere, Camera, Projection, UpAxis};
+use durer::math::{DMat4, DQuat, DVec3, Vec3};
+use durer::scene::{
+    Aabb, BoundingSphere, Camera, Instance, Mesh, Projection, Scene, Topology, UpAxis,
+};
 use durer::view::projection::*;
 use proptest::prelude::*;
 
@@ -122,6 +124,30 @@ proptest! {
         // The order of the points is of no matter.
         points.reverse();
         prop_assert_eq!(fit_points(points, &d, &o).unwrap(), camera);
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_scene_is_fitted_as_its_points_are(
+        points in prop::collection::vec([-5.0..5.0f32, -5.0..5.0, -5.0..5.0], 3..400),
+        unused in 0..3usize, far in prop_oneof![Just(0.0), Just(1e4)],
+        d in directions(), o in options(),
+    ) {
+        let mut positions: Vec<Vec3> = points.into_iter().map(Vec3::from).collect();
+        positions[1].y = f32::NAN;
+        let indices = (unused == 0).then(|| (0..positions.len() as u32 - 1).collect::<Vec<_>>());
+        let drawn = indices.as_ref().map_or(positions.len(), Vec::len);
+        let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 1.0);
+        let place = DMat4::from_scale_rotation_translation(
+            DVec3::new(1.0, -2.0, 0.5), turn, DVec3::new(far, 1.0, 3.0),
+        );
+        let world: Vec<DVec3> =
+            positions[..drawn].iter().map(|p| place.transform_point3(p.as_dvec3())).collect();
+        let mesh = Mesh { positions, indices, topology: Topology::Points, ..Mesh::default() };
+        let instance = Instance { mesh: 0, world_from_mesh: place, name: String::new() };
+        let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
+        prop_assert_eq!(fit_scene(&scene, &d, &o).unwrap(), fit_points(world, &d, &o).unwrap());
     }
 }
 

@@ -283,6 +283,53 @@ fn visible_regions_trapped_look_like_disjoint_ones() {
     assert!(compared > 20, "{compared} points compared");
 }
 
+/// Nothing that has a colour loses it: what a shape gives up at its corners would be a hole.
+#[test]
+fn visible_regions_trapped_cover_what_disjoint_ones_do() {
+    for seed in 0..6 {
+        let scene = soup(60, seed);
+        let prepared = Prepared::new(&scene, 50, 50);
+        let draw = |fill| {
+            let options = region::Options { fill, merge: Merge::Material, ..Default::default() };
+            region::draw(&scene, &prepared.view, &prepared.lights, &options).expect("drawn").regions
+        };
+        let (disjoint, trapped) = (draw(Fill::Disjoint), draw(Fill::Trapped { reach: 0.02 }));
+        let mut numbers = Numbers(seed + 7);
+        for _ in 0..1500 {
+            let p = DVec2::new(f64::from(numbers.next()), f64::from(numbers.next())) * 4.0 - 2.0;
+            let covered = |regions: &[Region]| regions.iter().any(|r| winding(&r.rings, p) != 0);
+            assert!(covered(&trapped) || !covered(&disjoint), "{seed}: {p}");
+        }
+    }
+}
+
+/// Between narrow strips the background must not shine through: some shape lies beneath them all.
+#[test]
+fn visible_regions_trapped_back_narrow_strips() {
+    let strip = |from: f32, to: f32, tilt: f32| {
+        let p = |x: f32, y: f32| Vec3::new(x, y, (x - from) * tilt);
+        [[p(from, -1.0), p(to, -1.0), p(to, 1.0)], [p(from, -1.0), p(to, 1.0), p(from, 1.0)]]
+    };
+    let mut triangles = Vec::from(strip(-0.5, 0.0, 0.0));
+    let x = |i: u8| 0.005 * f32::from(i);
+    (0..8).for_each(|i| triangles.extend(strip(x(i), x(i + 1), 0.3 * f32::from(i + 1))));
+    triangles.extend(strip(x(8), 0.5, 3.0));
+    let scene = of_triangles(&triangles);
+    let view = View::new(from_above(2.4), 100, 100).expect("view");
+    let lights = PreparedLights::of(&scene, view.camera());
+    let reach = 0.02;
+    let fill = Fill::Trapped { reach };
+    let options = region::Options { fill, merge: Merge::Shade, ..Default::default() };
+    let regions = region::draw(&scene, &view, &lights, &options).expect("drawing").regions;
+    for k in -10..=50 {
+        let p = DVec2::new(0.001 * f64::from(k), 0.123);
+        // A dot that is as wide as the reach.
+        let dot = [-0.5, -0.25, 0.0, 0.25, 0.5].map(|d| p + DVec2::X * (d * reach));
+        let backed = regions.iter().any(|r| dot.iter().all(|&q| winding(&r.rings, q) != 0));
+        assert!(backed, "{p}");
+    }
+}
+
 fn square(x: f32, y: f32, z: f32, size: f32) -> [[Vec3; 3]; 2] {
     let p = |u: f32, v: f32| Vec3::new(x + u * size, y + v * size, z);
     [[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0)], [p(0.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]]

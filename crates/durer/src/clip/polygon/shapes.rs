@@ -34,6 +34,15 @@ impl Shapes {
         Self { points: Vec::new(), ring_ends: Vec::new(), polygon_ends: Vec::new() }
     }
 
+    /// No polygon, with room for as many.
+    pub(crate) fn with_capacity(points: usize, rings: usize, polygons: usize) -> Self {
+        Self {
+            points: Vec::with_capacity(points),
+            ring_ends: Vec::with_capacity(rings),
+            polygon_ends: Vec::with_capacity(polygons),
+        }
+    }
+
     /// Each ring as a polygon of its own.
     pub fn from_rings<R: AsRef<Ring>>(rings: impl IntoIterator<Item = R>) -> Self {
         let mut shapes = Self::new();

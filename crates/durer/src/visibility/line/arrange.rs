@@ -3,8 +3,10 @@
 use super::chain::chains;
 use super::overlap::{Piece, drawn_once};
 use super::page::Page;
+use super::stubs::without_stubs;
 use super::{pen_order, simplify::simplify};
 use crate::target::drawing::Line;
+use crate::{Error, Result};
 
 /// Parts of lines shorter than this many steps come from rounding: 2⁻²² of the page.
 pub(super) const SLIVER: f64 = 64.0;
@@ -12,10 +14,41 @@ pub(super) const SLIVER: f64 = 64.0;
 /// Lines within this part of the tolerance lie on each other.
 const CLOSE: f64 = 0.4;
 
-/// The finished lines. `tolerance` is a part of the drawing's extent.
-pub(super) fn arrange(page: &Page, pieces: Vec<Piece>, tolerance: f64, pen: bool) -> Vec<Line> {
-    let steps = tolerance * page.extent;
-    let pieces = drawn_once(pieces, (steps * CLOSE).max(2.0), SLIVER);
+/// Lines closer than this part of a stub run into each other on paper.
+const BESIDE: f64 = 0.15;
+
+/// How lines are made of pieces; lengths are parts of the drawing's extent.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct How {
+    pub tolerance: f64,
+    /// 0 leaves stubs alone.
+    pub stubs: f64,
+    pub pen_order: bool,
+}
+
+impl How {
+    pub fn check(&self) -> Result<()> {
+        let part = |name, value: f64| {
+            let inside = (0.0..0.5).contains(&value);
+            if inside {
+                Ok(())
+            } else {
+                Err(Error::parameter(name, value, "at least 0 and below 0.5"))
+            }
+        };
+        part("tolerance", self.tolerance)?;
+        part("stubs", self.stubs)
+    }
+}
+
+/// The finished lines.
+pub(super) fn arrange(page: &Page, pieces: Vec<Piece>, how: How) -> Vec<Line> {
+    let steps = how.tolerance * page.extent;
+    let close = (steps * CLOSE).max(2.0);
+    let mut pieces = drawn_once(pieces, close, how.stubs * BESIDE * page.extent, SLIVER);
+    if how.stubs > 0.0 {
+        pieces = without_stubs(pieces, how.stubs * page.extent, close);
+    }
     let mut chains = chains(&pieces);
     for chain in &mut chains {
         // Snapping alone moves points by a step.
@@ -23,7 +56,7 @@ pub(super) fn arrange(page: &Page, pieces: Vec<Piece>, tolerance: f64, pen: bool
         chain.closed &= chain.points.len() > 2;
     }
     chains.retain(|c| c.points.len() > 1 && c.length() >= steps);
-    if pen {
+    if how.pen_order {
         chains = pen_order::order(chains);
     } else {
         // Hidden lines first: what is visible is drawn over them.

@@ -30,8 +30,33 @@ impl Chain {
 /// No end of a piece.
 const NONE: u32 = u32::MAX;
 
-/// Joins the pieces; ends are piece · 2 + which end.
+/// Pieces in a row: the end that each begins at; ends are piece · 2 + which end.
+pub(super) struct Walk {
+    pub ends: Vec<u32>,
+    pub closed: bool,
+}
+
+/// Where an end lies.
+pub(super) fn point(pieces: &[Piece], end: u32) -> GridPoint {
+    pieces[end as usize / 2].ends[end as usize & 1]
+}
+
+/// Joins the pieces.
 pub(super) fn chains(pieces: &[Piece]) -> Vec<Chain> {
+    let chain = |walk: Walk| {
+        let first = &pieces[walk.ends[0] as usize / 2];
+        let mut points: Vec<GridPoint> = walk.ends.iter().map(|&e| point(pieces, e)).collect();
+        if let (false, Some(last)) = (walk.closed, walk.ends.last()) {
+            points.push(point(pieces, last ^ 1));
+        }
+        let Walk { closed, .. } = walk;
+        Chain { class: first.class, invisibility: first.invisibility, points, closed }
+    };
+    walks(pieces).into_iter().map(chain).collect()
+}
+
+/// The same as walks over the pieces.
+pub(super) fn walks(pieces: &[Piece]) -> Vec<Walk> {
     let partner = partners(pieces);
     let mut used = vec![false; pieces.len()];
     let mut found = Vec::new();
@@ -39,31 +64,24 @@ pub(super) fn chains(pieces: &[Piece]) -> Vec<Chain> {
     let open = (0..pieces.len() as u32 * 2).filter(|&end| partner[end as usize] == NONE);
     for start in open.chain((0..pieces.len() as u32).map(|p| p * 2)) {
         if !used[start as usize / 2] {
-            found.push(follow(pieces, &partner, start, &mut used));
+            found.push(follow(&partner, start, &mut used));
         }
     }
     found
 }
 
-fn follow(pieces: &[Piece], partner: &[u32], start: u32, used: &mut [bool]) -> Chain {
-    let point = |end: u32| pieces[end as usize / 2].ends[end as usize & 1];
-    let first = &pieces[start as usize / 2];
-    let mut points = vec![point(start)];
+fn follow(partner: &[u32], start: u32, used: &mut [bool]) -> Walk {
+    let mut ends = Vec::new();
     let mut end = start;
-    let closed = loop {
+    loop {
         used[end as usize / 2] = true;
-        let far = end ^ 1;
-        let next = partner[far as usize];
-        if next == start {
-            break true;
+        ends.push(end);
+        match partner[end as usize ^ 1] {
+            next if next == start => return Walk { ends, closed: true },
+            NONE => return Walk { ends, closed: false },
+            next => end = next,
         }
-        points.push(point(far));
-        if next == NONE {
-            break false;
-        }
-        end = next;
-    };
-    Chain { class: first.class, invisibility: first.invisibility, points, closed }
+    }
 }
 
 /// For each end of a piece the end that it is joined to.

@@ -44,6 +44,7 @@ impl Default for ClassSet {
             .with(LineClass::NonManifold)
             .with(LineClass::Material)
             .with(LineClass::Intersection)
+            .with(LineClass::Section)
     }
 }
 
@@ -67,6 +68,8 @@ pub(super) struct EdgeLine {
     pub class: LineClass,
     /// Two of the triangles at it; [`NO_ITEM`] where there are fewer.
     pub items: [u32; 2],
+    /// Whether the surface is not sharp there.
+    pub smooth: bool,
 }
 
 /// How faces are turned, for all that asks.
@@ -162,6 +165,8 @@ pub(super) struct Rules<'a> {
     pub bodies: &'a Bodies,
     /// Materials by item, where there are several.
     pub materials: Option<Vec<u32>>,
+    /// As in `materials`; its faces are the caps of a section.
+    pub cap: Option<u32>,
     pub classes: ClassSet,
     /// Cosine of the crease angle.
     pub crease: f32,
@@ -173,9 +178,15 @@ pub(super) struct Rules<'a> {
 pub(super) fn materials(faces: &Faces) -> Option<Vec<u32>> {
     let runs = faces.runs();
     runs.iter().any(|r| r.material != runs[0].material).then(|| {
-        let number = |m: Option<usize>| m.map_or(0, |m| m as u32 + 1);
-        runs.iter().flat_map(|r| r.items.clone().map(move |_| number(r.material))).collect()
+        runs.iter()
+            .flat_map(|r| r.items.clone().map(move |_| material_number(r.material)))
+            .collect()
     })
+}
+
+/// A material among [`materials`].
+pub(super) fn material_number(material: Option<usize>) -> u32 {
+    material.map_or(0, |m| m as u32 + 1)
 }
 
 impl Rules<'_> {
@@ -185,7 +196,9 @@ impl Rules<'_> {
         for (ends, sides) in self.edges.from_vertices(vertices) {
             if let Some(class) = self.class(ends, sides) {
                 let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
-                lines.push(EdgeLine { ends, class, items: [item(0), item(1)] });
+                let items = [item(0), item(1)];
+                let smooth = class == LineClass::Silhouette && !self.is_sharp(ends, items);
+                lines.push(EdgeLine { ends, class, items, smooth });
             }
         }
         lines
@@ -195,6 +208,11 @@ impl Rules<'_> {
     fn class(&self, ends: [u32; 2], sides: &[Side]) -> Option<LineClass> {
         let wanted = |class| self.classes.contains(class).then_some(class);
         let wire = || wanted(LineClass::Wire);
+        if self.ends_a_cap(sides)
+            && let Some(section) = wanted(LineClass::Section)
+        {
+            return Some(section);
+        }
         match sides {
             [_] => wanted(LineClass::Border).or_else(wire),
             [a, b] => {
@@ -221,6 +239,19 @@ impl Rules<'_> {
             }
             _ => wanted(LineClass::NonManifold).or_else(wire),
         }
+    }
+
+    /// Whether some of the triangles are of a cap and some are not.
+    fn ends_a_cap(&self, sides: &[Side]) -> bool {
+        let (Some(cap), Some(materials)) = (self.cap, &self.materials) else { return false };
+        let mut caps = sides.iter().map(|s| materials[s.item() as usize] == cap);
+        let first = caps.next();
+        caps.any(|c| Some(c) != first)
+    }
+
+    fn is_sharp(&self, ends: [u32; 2], [a, b]: [u32; 2]) -> bool {
+        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
+        self.facing.angle_cosine(a, b) < self.crease
     }
 
     fn smooth_or_sharp(&self, ends: [u32; 2], a: u32, b: u32) -> Option<LineClass> {

@@ -12,6 +12,8 @@ mod page;
 mod pen_order;
 mod simplify;
 mod smooth_silhouette;
+mod stubs;
+mod table;
 pub mod wireframe;
 
 pub use edge_lines::{ClassSet, Intersections};

@@ -3,7 +3,11 @@
 //! All decisions in the plane are made with integers and are exact; what projects to one place up to
 //! rounding is at one place.
 
+use crate::Result;
 use crate::math::{DVec2, DVec3, Rect};
+use crate::scene::Scene;
+use crate::target::drawing::{Drawing, Line};
+use crate::view::View;
 use crate::view::picture_plane::{Borders, PicturePlane, PlanePoint};
 use crate::visibility::object::Faces;
 
@@ -189,6 +193,20 @@ impl Projected {
         let snapped = ends.map(|p| self.page.snap(self.plane.plane_from_view(p)));
         snapped.iter().all(|v| v.depth.is_finite()).then_some(snapped)
     }
+}
+
+/// The drawing of the lines that `lines` makes of the faces of a scene, if any of them can be seen.
+pub(super) fn draw(
+    scene: &Scene,
+    view: &View,
+    lines: impl FnOnce(&Faces, &Projected) -> Vec<Line>,
+) -> Result<Drawing> {
+    let faces = Faces::new(scene)?;
+    let plane = PicturePlane::new(view);
+    let window = plane.window();
+    let projected = Projected::new(&faces, plane);
+    let lines = projected.map(|p| lines(&faces, &p)).unwrap_or_default();
+    Ok(Drawing { window, lines, ..Drawing::default() })
 }
 
 /// What the projected points span.

@@ -4,19 +4,18 @@
 //! Joint Computer Conference, 1963. Object space; O(n log n) for n edges. The picture is ambiguous:
 //! nothing says which side is in front (Necker's cube), and several bodies may have the same one.
 
-use super::arrange::arrange;
+use super::arrange::{How, arrange};
 use super::edge_lines::NO_ITEM;
 use super::overlap::Piece;
-use super::page::{Page, Projected};
+use super::page::Page;
+use crate::Result;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
-use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::{Bodies, Faces, Side};
-use crate::{Error, Result};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -47,6 +46,13 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    fn how(&self) -> How {
+        let Self { tolerance, pen_order } = *self;
+        How { tolerance, stubs: 0.0, pen_order }
+    }
+}
+
 /// What the algorithm did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
@@ -63,44 +69,39 @@ pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
         Step::Edge(ends) => Some(piece(ends.map(|p| page.grid_from_plane(p)))),
         Step::Page(_) => None,
     });
-    arrange(page, edges.collect(), options.tolerance, options.pen_order)
+    arrange(page, edges.collect(), options.how())
 }
 
 fn piece(ends: [super::page::GridPoint; 2]) -> Piece {
-    Piece { ends, class: LineClass::Wire, invisibility: 0 }
+    Piece { ends, class: LineClass::Wire, invisibility: 0, smooth: false }
 }
 
 /// Draws all edges of a scene's faces. Edges inside a polygon that was read as several triangles are
 /// none; edges that lie on each other in the picture are drawn once.
 ///
 /// # Errors
-/// [`Error::Parameter`] for an option out of its range, and what [`Faces::new`] finds.
+/// [`crate::Error::Parameter`] for an option out of its range, and what [`Faces::new`] finds.
 pub fn draw(
     scene: &Scene,
     view: &View,
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
-    if !(0.0..0.5).contains(&options.tolerance) {
-        return Err(Error::parameter("tolerance", options.tolerance, "at least 0 and below 0.5"));
-    }
-    let faces = Faces::new(scene)?;
-    let plane = PicturePlane::new(view);
-    let empty = Drawing { window: plane.window(), ..Drawing::default() };
-    let Some(projected) = Projected::new(&faces, plane) else { return Ok(empty) };
-    t.step(|| Step::Page(projected.page));
-    let (_, edges) = Bodies::find(&faces);
-    let mut pieces = Vec::new();
-    for (ends, _) in edges.iter().filter(|(_, sides)| !inside_polygon(&faces, sides)) {
-        let Some(ends) = projected.edge(&faces, ends).filter(|e| e[0].at != e[1].at) else {
-            continue;
-        };
-        let ends = ends.map(|v| v.at);
-        t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
-        pieces.push(piece(ends));
-    }
-    let lines = arrange(&projected.page, pieces, options.tolerance, options.pen_order);
-    Ok(Drawing { lines, ..empty })
+    options.how().check()?;
+    super::page::draw(scene, view, |faces, projected| {
+        t.step(|| Step::Page(projected.page));
+        let (_, edges) = Bodies::find(faces);
+        let mut pieces = Vec::new();
+        for (ends, _) in edges.iter().filter(|(_, sides)| !inside_polygon(faces, sides)) {
+            let Some(ends) = projected.edge(faces, ends).filter(|e| e[0].at != e[1].at) else {
+                continue;
+            };
+            let ends = ends.map(|v| v.at);
+            t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
+            pieces.push(piece(ends));
+        }
+        arrange(&projected.page, pieces, options.how())
+    })
 }
 
 fn inside_polygon(faces: &Faces, sides: &[Side]) -> bool {

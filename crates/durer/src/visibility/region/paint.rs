@@ -1,7 +1,7 @@
 //! Which faces of the map are one region, and its colour.
 
 use super::shadow::{LIT, Lamps, World, chosen};
-use super::trap::Trap;
+use super::trap::{self, Trap};
 use super::weiler_atherton::VisibleMap;
 use super::weiler_atherton::merge::{self, NOTHING, Patches};
 use super::{Fill, Merge, Options};
@@ -103,28 +103,54 @@ impl Paint {
         for (i, &patch) in order.iter().enumerate() {
             rank[patch as usize] = i as u32;
         }
-        let trap = match options.fill {
-            Fill::Trapped { reach } if reach > 0.0 && reach.is_finite() => {
-                Some(Trap { map: &map.map, patches, rank: &rank, reach: reach / map.frame.unit })
-            }
-            _ => None,
+        let reach = match options.fill {
+            Fill::Trapped { reach } if reach > 0.0 && reach.is_finite() => reach / map.frame.unit,
+            _ => 0.0,
         };
-        let room = trap.as_ref().map(Trap::room).unwrap_or_default();
+        let trap = Trap { map: &map.map, patches, rank: &rank, reach };
+        let room = if reach > 0.0 { trap.room() } else { Vec::new() };
+        let unit = |mut rings: Vec<Vec<DVec2>>| {
+            rings.iter_mut().flatten().for_each(|p| *p *= map.frame.unit);
+            rings
+        };
         let region = |&index: &u32| {
             let patch = &patches.list[index as usize];
             let key = &self.keys[patch.label as usize];
-            let rings = match &trap {
-                None => map.rings(patch),
-                Some(trap) => {
-                    let mut rings = trap.rings(index as usize, &room);
-                    rings.iter_mut().flatten().for_each(|p| *p *= map.frame.unit);
-                    rings
-                }
+            let rings = match room[..] {
+                [] => map.rings(patch),
+                _ => unit(trap.rings(index as usize, &room)),
             };
             let item = (options.merge == Merge::Face).then_some(key.of as u32);
             Region { kind: key.kind, rings, color: key.color, item }
         };
-        order.iter().map(region).collect()
+        let mut regions = match room[..] {
+            [] => Vec::new(),
+            _ => self.beneath(&trap, &room, unit),
+        };
+        regions.extend(order.iter().map(region));
+        regions
+    }
+
+    /// What lies beneath the narrow patches: in their mean colour.
+    fn beneath(
+        &self,
+        trap: &Trap<'_>,
+        room: &[f64],
+        unit: impl Fn(Vec<Vec<DVec2>>) -> Vec<Vec<DVec2>>,
+    ) -> Vec<Region> {
+        let found = trap::joined_narrow(trap, room);
+        let below = Trap { patches: &found.patches, rank: &found.rank, ..*trap };
+        let room = below.room();
+        let region = |pairs: &[(u32, u32)]| {
+            let keys = pairs.iter().map(|&(_, above)| {
+                let patch = &trap.patches.list[above as usize];
+                (self.keys[patch.label as usize], trap.area_and_length(patch).0)
+            });
+            let keys: Vec<(Key, f64)> = keys.collect();
+            let rings = unit(below.rings(pairs[0].0 as usize, &room));
+            Region { kind: keys[0].0.kind, rings, color: mean_color(&keys), item: None }
+        };
+        found.pairs.chunk_by(|a, b| a.0 == b.0).map(region).collect()
     }
 
     /// Where light ends on a face.
@@ -145,6 +171,15 @@ impl Paint {
             })
             .collect()
     }
+}
+
+/// The mean of colours by area, of the bytes as they are: that is what viewers blend.
+fn mean_color(keys: &[(Key, f64)]) -> [u8; 4] {
+    let total: f64 = keys.iter().map(|(_, area)| area).sum();
+    std::array::from_fn(|k| {
+        let sum: f64 = keys.iter().map(|(key, area)| f64::from(key.color[k]) * area).sum();
+        if total > 0.0 { (sum / total).round() as u8 } else { keys[0].0.color[k] }
+    })
 }
 
 fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>) -> Key {

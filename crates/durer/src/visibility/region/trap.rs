@@ -3,9 +3,13 @@
 //! Viewers blend the border of each shape with what is there already, so between two shapes that share
 //! a border the background shines through. A shape that goes on under its neighbour closes the gap, as
 //! printers have always done. Only neighbours painted later are gone under, never the background.
+//!
+//! A shape narrower than the reach leaves no room to go under it, and several side by side would let
+//! the background through again. So shapes that hang together and are all that narrow get one shape
+//! beneath them, which is painted first and reaches under whatever lies around.
 
 use super::weiler_atherton::faces::float;
-use super::weiler_atherton::merge::{NOTHING, Patch, Patches};
+use super::weiler_atherton::merge::{self, NOTHING, Patch, Patches};
 use super::weiler_atherton::planar::Planar;
 use crate::math::DVec2;
 
@@ -22,23 +26,54 @@ pub struct Trap<'a> {
 /// The longest miter, as a multiple of the reach.
 const MITER: f64 = 4.0;
 
+/// What lies beneath narrow patches.
+pub struct Beneath {
+    /// The narrow patches, those that hang together joined; the others as they were.
+    pub patches: Patches,
+    /// 0 for what lies beneath, 1 for the others.
+    pub rank: Vec<u32>,
+    /// (which lies beneath, which narrow patch above), sorted.
+    pub pairs: Vec<(u32, u32)>,
+}
+
+/// Joins the patches that are narrower than twice the reach.
+pub fn joined_narrow(trap: &Trap<'_>, room: &[f64]) -> Beneath {
+    let narrow = |patch: u32| patch != NOTHING && room[patch as usize] < trap.reach;
+    let joined = trap.patches.list.len() as u32;
+    let label = |&patch: &u32| if narrow(patch) { joined } else { patch };
+    let labels: Vec<u32> = trap.patches.of_face.iter().map(label).collect();
+    let patches = merge::patches(trap.map, &labels);
+    let both = patches.of_face.iter().copied().zip(trap.patches.of_face.iter().copied());
+    let mut pairs: Vec<(u32, u32)> =
+        both.filter(|&(below, above)| narrow(above) && below != NOTHING).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    let rank = patches.list.iter().map(|p| u32::from(p.label != joined)).collect();
+    Beneath { patches, rank, pairs }
+}
+
 impl Trap<'_> {
     /// How far shapes may go under each patch: not through it, where it is narrow. Grid steps.
     pub fn room(&self) -> Vec<f64> {
         let of = |patch: &Patch| {
-            let (mut area, mut length) = (0.0, 0.0);
-            for ring in &patch.rings {
-                let at = |i: usize| {
-                    float(self.map.points[self.map.start(ring[i % ring.len()]) as usize])
-                };
-                for i in 0..ring.len() {
-                    area += (at(i) - at(0)).perp_dot(at(i + 1) - at(0)) * 0.5;
-                    length += at(i).distance(at(i + 1));
-                }
-            }
+            let (area, length) = self.area_and_length(patch);
             if length > 0.0 { self.reach.min(area / length).max(0.0) } else { 0.0 }
         };
         self.patches.list.iter().map(of).collect()
+    }
+
+    /// Of a patch, in grid steps, and of its border.
+    pub fn area_and_length(&self, patch: &Patch) -> (f64, f64) {
+        let (mut area, mut length) = (0.0, 0.0);
+        for ring in &patch.rings {
+            let at =
+                |i: usize| float(self.map.points[self.map.start(ring[i % ring.len()]) as usize]);
+            for i in 0..ring.len() {
+                area += (at(i) - at(0)).perp_dot(at(i + 1) - at(0)) * 0.5;
+                length += at(i).distance(at(i + 1));
+            }
+        }
+        (area, length)
     }
 
     /// The rings of a patch, grown; grid coordinates.
@@ -60,34 +95,32 @@ impl Trap<'_> {
     fn corner(&self, patch: u32, out: u32, room: &[f64], points: &mut Vec<DVec2>) {
         let vertex = self.map.start(out);
         let place = float(self.map.points[vertex as usize]);
-        let around = self.map.around(vertex);
-        let kept = |half: u32| self.beside(half) != self.beside(half ^ 1);
+        let kept = |half: &u32| self.beside(*half) != self.beside(half ^ 1);
+        let around: Vec<u32> = self.map.around(vertex).iter().copied().filter(kept).collect();
+        let count = around.len();
         let at = around.iter().position(|&half| half == out).unwrap_or(0);
-        // Clockwise from the edge that goes out, as far as the edge that came in.
-        let mut sectors: Vec<(u32, u32)> = Vec::new();
-        let mut last = out;
-        for k in 1..=around.len() {
-            let half = around[(at + around.len() - k) % around.len()];
-            if half == out || !kept(half) {
-                continue;
-            }
-            sectors.push((half, last));
-            last = half;
-            // The edge that came in has the patch on its own left, this one's right.
-            if self.beside(half ^ 1) == patch {
-                break;
-            }
-        }
-        let later = |half: u32| {
-            let other = self.beside(half);
-            (other != NOTHING && self.rank[other as usize] > self.rank[patch as usize])
-                .then(|| room[other as usize])
+        // Each sector lies to the left of its edge. That of `out` is the patch's own; the edge that came
+        // in bounds it on the other side.
+        let left = |k: usize| self.beside(around[k % count]);
+        let outside = |k: &usize| left(*k) != patch;
+        let aside = |k: usize| {
+            let (other, edge) = (left(k), |k: usize| around[k % count]);
+            let later = other != NOTHING && self.rank[other as usize] > self.rank[patch as usize];
+            let room = if later { room[other as usize] } else { 0.0 };
+            place + self.bisector(edge(k), edge(k + 1)) * room
         };
-        for &(from, to) in sectors.iter().rev() {
-            let point = later(from).map_or(place, |room| place + self.bisector(from, to) * room);
-            points.push(point);
+        let from_in = (at + 1..at + count).take_while(outside);
+        let before = points.len();
+        points.extend(from_in.map(aside));
+        if points.len() - before + 1 < count {
+            // The patch comes through here once more, and its parts meet in this very point.
+            points.push(place);
+            let mut to_out: Vec<usize> =
+                (1..count).map(|k| at + count - k).take_while(outside).collect();
+            to_out.reverse();
+            points.extend(to_out.into_iter().map(aside));
         }
-        if sectors.is_empty() {
+        if points.len() == before {
             points.push(place);
         }
     }

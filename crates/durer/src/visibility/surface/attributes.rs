@@ -11,7 +11,7 @@ use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, dispatch, f32x8, f64x4};
+use fearless_simd::{Simd, dispatch, f32x4, f32x8, f64x4};
 use fearless_simd_macros::simd;
 
 /// What all triangles of a run share.
@@ -21,7 +21,6 @@ struct RunTransform {
     screen_from_mesh: DMat4,
     eye_from_mesh: DMat4,
     normal_from_mesh: Mat3,
-    world_from_mesh: Mat3,
     /// −1 where the instance mirrors, so that fronts stay fronts.
     handedness: f32,
 }
@@ -33,19 +32,18 @@ pub struct VisibleTriangle {
     pub item: u32,
     /// Its vertices in the mesh.
     pub corners: [u32; 3],
-    /// World axes, relative to the eye.
-    pub positions: [Vec3; 3],
-    /// World axes, not of unit length; all three the face normal where the mesh has none.
-    pub normals: [Vec3; 3],
+    /// Of each vertex its position, x to z, and its normal, in one row to be blended in one go.
+    rows: [Row; 3],
     /// Unit normal of the face's front, world axes.
     pub face_normal: Vec3,
-    /// Directions from mesh to world, for tangents.
-    world_from_mesh: Mat3,
     /// The pixel from whose centre x and y are counted.
     origin: [i32; 2],
-    /// Edge function i at (x, y) is `edges[i][0] + edges[i][1]·x + edges[i][2]·y`.
-    edges: [[f32; 3]; 3],
+    /// Edge function i at (x, y) is `edges[0][i] + (edges[1][i]·x + edges[2][i]·y)`; the fourth is not used.
+    edges: [[f32; 4]; 3],
 }
+
+/// A point of a triangle: position relative to the eye and normal, world axes, and two zeros.
+pub type Row = [f32; 8];
 
 impl Default for VisibleTriangle {
     /// No triangle.
@@ -53,12 +51,10 @@ impl Default for VisibleTriangle {
         Self {
             item: NO_ITEM,
             corners: [0; 3],
-            positions: [Vec3::ZERO; 3],
-            normals: [Vec3::ZERO; 3],
+            rows: [[0.0; 8]; 3],
             face_normal: Vec3::ZERO,
-            world_from_mesh: Mat3::IDENTITY,
             origin: [0; 2],
-            edges: [[0.0; 3]; 3],
+            edges: [[0.0; 4]; 3],
         }
     }
 }
@@ -72,14 +68,33 @@ pub fn run_of(runs: &[Run], item: u32) -> usize {
 pub type Weights = [f32; 3];
 
 impl VisibleTriangle {
+    /// Of the vertices; world axes, relative to the eye.
+    #[inline(always)]
+    pub fn positions(&self) -> [Vec3; 3] {
+        self.rows.map(|[x, y, z, ..]| Vec3::new(x, y, z))
+    }
+
+    /// Of the vertices; world axes, not of unit length; all three the face normal where the mesh has
+    /// none.
+    #[inline(always)]
+    pub fn normals(&self) -> [Vec3; 3] {
+        self.rows.map(|[_, _, _, x, y, z, ..]| Vec3::new(x, y, z))
+    }
+
+    /// Edge functions at a point counted from the origin, in this order of operations.
+    #[inline(always)]
+    fn edges_at(&self, x: f32, y: f32) -> Weights {
+        let [constant, dx, dy] = &self.edges;
+        [0, 1, 2].map(|i| constant[i] + (dx[i] * x + dy[i] * y))
+    }
+
     /// Perspective-correct barycentric coordinates at a pixel's centre moved by `shift` pixels; kept
     /// within the triangle where the point lies outside, as it may at edges.
     #[inline(always)]
     pub fn weights(&self, x: i32, y: i32, shift: [f32; 2]) -> Weights {
         let fx = (x - self.origin[0]) as f32 + shift[0];
         let fy = (y - self.origin[1]) as f32 + shift[1];
-        let edge = |e: &[f32; 3]| (e[0] + (e[1] * fx + e[2] * fy)).max(0.0);
-        let (a, b, c) = (edge(&self.edges[0]), edge(&self.edges[1]), edge(&self.edges[2]));
+        let [a, b, c] = self.edges_at(fx, fy).map(|e| e.max(0.0));
         let inverse = 1.0 / (a + b + c).max(f32::MIN_POSITIVE);
         [a * inverse, b * inverse, c * inverse]
     }
@@ -88,10 +103,7 @@ impl VisibleTriangle {
     pub fn weights_beside(&self, x: i32, y: i32) -> (Weights, Weights) {
         let at = |x: i32, y: i32| {
             let (fx, fy) = ((x - self.origin[0]) as f32, (y - self.origin[1]) as f32);
-            let [a, b, c] = [0, 1, 2].map(|i| {
-                let e = &self.edges[i];
-                e[0] + (e[1] * fx + e[2] * fy)
-            });
+            let [a, b, c] = self.edges_at(fx, fy);
             let sum = a + b + c;
             // Beyond the horizon there is no such point: the derivative is that of the border.
             if sum > 0.0 { Some([a / sum, b / sum, c / sum]) } else { None }
@@ -100,14 +112,14 @@ impl VisibleTriangle {
         (at(x + 1, y).unwrap_or_else(here), at(x, y + 1).unwrap_or_else(here))
     }
 
-    /// The interpolated tangent, world axes, where the mesh has tangents.
+    /// The interpolated tangent, mesh axes, where the mesh has tangents.
     pub fn tangent(&self, mesh: &Mesh, w: Weights) -> Option<Vec4> {
         let [a, b, c] = match mesh.tangents.as_slice() {
             [] => return None,
             tangents => self.corners.map(|c| tangents[c as usize]),
         };
         let tangent = a * w[0] + b * w[1] + c * w[2];
-        Some((self.world_from_mesh * tangent.truncate()).normalize_or_zero().extend(a.w))
+        Some(tangent.truncate().extend(a.w))
     }
 
     /// [`Self::weights`] of eight pixels in a row, without shift.
@@ -117,13 +129,42 @@ impl VisibleTriangle {
         let zero = f32x8::splat(simd, 0.0);
         let fx = lanes + (x - self.origin[0]) as f32;
         let fy = (y - self.origin[1]) as f32;
-        let [e0, e1, e2] = &self.edges;
-        let a = (fx * e0[1] + e0[2] * fy + e0[0]).max(zero);
-        let b = (fx * e1[1] + e1[2] * fy + e1[0]).max(zero);
-        let c = (fx * e2[1] + e2[2] * fy + e2[0]).max(zero);
+        let [constant, dx, dy] = &self.edges;
+        let a = (fx * dx[0] + dy[0] * fy + constant[0]).max(zero);
+        let b = (fx * dx[1] + dy[1] * fy + constant[1]).max(zero);
+        let c = (fx * dx[2] + dy[2] * fy + constant[2]).max(zero);
         let sum = (a + b + c).max(f32x8::splat(simd, f32::MIN_POSITIVE));
         let inverse = f32x8::splat(simd, 1.0) / sum;
         [a * inverse, b * inverse, c * inverse]
+    }
+
+    /// Position and normal at eight pixels in a row, component by component.
+    #[inline(always)]
+    pub fn points_x8<S: Simd>(&self, simd: S, x: i32, y: i32) -> [f32x8<S>; 6] {
+        let w = self.weights_x8(simd, x, y);
+        let [a, b, c] = &self.rows;
+        let mut points = [w[0]; 6];
+        for (i, to) in points.iter_mut().enumerate() {
+            *to = w[0] * a[i] + w[1] * b[i] + w[2] * c[i];
+        }
+        points
+    }
+
+    /// Position and normal at one pixel, bit for bit what [`Self::points_x8`] gives.
+    #[inline(always)]
+    pub fn point<S: Simd>(&self, simd: S, x: i32, y: i32) -> f32x8<S> {
+        let (fx, fy) = ((x - self.origin[0]) as f32, (y - self.origin[1]) as f32);
+        let [constant, dx, dy] = &self.edges;
+        let (dx, dy) = (f32x4::from_slice(simd, dx), f32x4::from_slice(simd, dy));
+        let edges = dx * fx + dy * fy + f32x4::from_slice(simd, constant);
+        let edges = edges.max(f32x4::splat(simd, 0.0));
+        let [a, b, c, _]: [f32; 4] = edges.into();
+        let inverse = 1.0 / (a + b + c).max(f32::MIN_POSITIVE);
+        let [row_a, row_b, row_c] = &self.rows;
+        let row_a = f32x8::from_slice(simd, row_a) * (a * inverse);
+        let row_b = f32x8::from_slice(simd, row_b) * (b * inverse);
+        let row_c = f32x8::from_slice(simd, row_c) * (c * inverse);
+        row_a + row_b + row_c
     }
 }
 
@@ -138,17 +179,6 @@ pub fn blend(values: &[Vec3; 3], w: Weights) -> Vec3 {
     )
 }
 
-/// [`blend`] of eight pixels: x, y and z apart.
-#[inline(always)]
-pub fn blend_x8<S: Simd>(values: &[Vec3; 3], w: &[f32x8<S>; 3]) -> [f32x8<S>; 3] {
-    let [a, b, c] = values;
-    [
-        w[0] * a.x + w[1] * b.x + w[2] * c.x,
-        w[0] * a.y + w[1] * b.y + w[2] * c.y,
-        w[0] * a.z + w[1] * b.z + w[2] * c.z,
-    ]
-}
-
 /// Finds visible triangles by item; keeps the latest ones, for neighbours share them.
 pub struct Triangles<'a> {
     scene: &'a Scene,
@@ -156,7 +186,7 @@ pub struct Triangles<'a> {
     runs: &'a [Run],
     level: Level,
     transform: Option<RunTransform>,
-    cache: Vec<VisibleTriangle>,
+    cache: Box<[VisibleTriangle; CACHE]>,
 }
 
 /// Triangles kept: a power of two; about 64 kB.
@@ -164,7 +194,7 @@ const CACHE: usize = 256;
 
 impl<'a> Triangles<'a> {
     pub fn new(scene: &'a Scene, view: &'a View, runs: &'a [Run], level: Level) -> Self {
-        let cache = vec![VisibleTriangle::default(); CACHE];
+        let cache = Box::new([VisibleTriangle::default(); CACHE]);
         Self { scene, view, runs, level, transform: None, cache }
     }
 
@@ -223,17 +253,18 @@ fn prepare<S: Simd>(
         DVec3::new(ex[1], ey[1], ez[1]),
         DVec3::new(ex[2], ey[2], ez[2]),
     );
-    to.positions = [a.as_vec3(), b.as_vec3(), c.as_vec3()];
     let face = (b - a).cross(c - a) * f64::from(t.handedness);
     to.face_normal = face.normalize_or_zero().as_vec3();
-    to.normals = [to.face_normal; 3];
+    let mut normals = [to.face_normal; 3];
     if !mesh.normals.is_empty() {
-        for (normal, corner) in to.normals.iter_mut().zip(corners) {
+        for (normal, corner) in normals.iter_mut().zip(corners) {
             *normal = t.normal_from_mesh * mesh.normals[corner as usize];
         }
     }
+    for ((row, p), n) in to.rows.iter_mut().zip([a, b, c]).zip(normals) {
+        *row = [p.x as f32, p.y as f32, p.z as f32, n.x, n.y, n.z, 0.0, 0.0];
+    }
     to.corners = corners;
-    to.world_from_mesh = t.world_from_mesh;
 
     let m = &t.screen_from_mesh;
     let sx = px * m.x_axis.x + py * m.y_axis.x + pz * m.z_axis.x + m.w_axis.x;
@@ -283,14 +314,16 @@ fn edges<S: Simd>(simd: S, x: [f64; 3], y: [f64; 3], w: [f64; 3], to: &mut Visib
         (cross_x.into(), cross_y.into(), cross_w.into());
     let determinant = lx[0] * first_x[0] + ly[0] * first_y[0] + w[0] * first_w[0];
     if determinant == 0.0 {
-        to.edges = [[1.0, 0.0, 0.0]; 3];
+        to.edges = [[1.0; 4], [0.0; 4], [0.0; 4]];
         return;
     }
     let inverse = 1.0 / determinant;
-    let (constant, dx, dy): ([f64; 4], [f64; 4], [f64; 4]) =
-        ((cross_w * inverse).into(), (cross_x * inverse).into(), (cross_y * inverse).into());
-    for i in 0..3 {
-        to.edges[i] = [constant[i] as f32, dx[i] as f32, dy[i] as f32];
+    let functions = [cross_w * inverse, cross_x * inverse, cross_y * inverse];
+    for (to, function) in to.edges.iter_mut().zip(functions) {
+        let function: [f64; 4] = function.into();
+        for (to, from) in to.iter_mut().zip(function) {
+            *to = from as f32;
+        }
     }
 }
 
@@ -320,7 +353,6 @@ impl RunTransform {
             screen_from_mesh: view.screen_from_world() * world_from_mesh,
             eye_from_mesh: eye_from_world * world_from_mesh,
             normal_from_mesh: (cofactors * scale).as_mat3(),
-            world_from_mesh: linear.as_mat3(),
             handedness: sign as f32,
         }
     }

@@ -3,7 +3,9 @@
 use crate::scene::Scene;
 use crate::simd::Level;
 use crate::view::View;
-use crate::visibility::surface::setup::{Assembler, Counts, Filter, Run, ScreenTriangle, runs};
+use crate::visibility::surface::setup::{
+    Assembler, Counts, Coverage, Filter, Run, ScreenTriangle, runs,
+};
 
 /// The triangles of a scene on the screen, in item order; what each algorithm takes.
 ///
@@ -44,5 +46,31 @@ impl<'a> SurfaceInput<'a> {
     /// The run that a triangle of [`Self::triangles`] belongs to.
     pub fn run_of(&self, item: u32) -> &Run {
         &self.runs[crate::visibility::surface::attributes::run_of(&self.runs, item)]
+    }
+
+    /// The triangles of [`Self::triangles`] whose fragments come to be in one way.
+    pub(crate) fn having(&self, coverage: Coverage) -> TriangleSet {
+        let has = |t: &ScreenTriangle| self.run_of(t.item).coverage == coverage;
+        match self.runs.iter().any(|run| run.coverage == coverage) {
+            true => TriangleSet(self.triangles.iter().map(has).collect()),
+            false => TriangleSet(Vec::new()),
+        }
+    }
+}
+
+/// Some of the triangles of an input.
+#[derive(Debug, Clone)]
+pub(crate) struct TriangleSet(Vec<bool>);
+
+impl TriangleSet {
+    /// Whether the triangle at a place of the input's list is one of them.
+    #[inline(always)]
+    pub fn contains(&self, triangle: usize) -> bool {
+        self.0.get(triangle).copied().unwrap_or(false)
+    }
+
+    /// Whether there can be none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 }

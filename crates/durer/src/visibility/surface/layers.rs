@@ -1,103 +1,126 @@
 //! Blended surfaces over opaque ones.
 //!
 //! *Over* is T. Porter and T. Duff's (*Compositing Digital Images*, SIGGRAPH 1984), on premultiplied
-//! linear colours. Scan-line methods sort a row's layers by depth; depth sort meets them in order.
+//! linear colours. Scan-line methods sort a row's layers by depth, subdivision and rays those of a
+//! sample; depth sort meets them in order.
 
 use crate::math::Vec4;
 use crate::shade::color::premultiply;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::active::Active;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
 use crate::visibility::surface::picture::Picture;
-use crate::visibility::surface::setup::Coverage;
+use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 
-/// A blended surface at a pixel of a row.
+/// A blended surface at a sample.
 #[derive(Debug, Clone, Copy)]
-struct Layer {
-    x: u32,
-    item: u32,
-    depth: f32,
+pub(crate) struct Layer {
+    /// Which sample: a column of a row, or a place in a window.
+    pub place: u32,
+    pub item: u32,
+    pub depth: f32,
+}
+
+/// Sorts layers by place, those of a place from far to near; of equally far ones the lower item is in
+/// front.
+pub(crate) fn sort_layers(layers: &mut [Layer]) {
+    layers.sort_unstable_by(|a, b| {
+        a.place.cmp(&b.place).then(b.depth.total_cmp(&a.depth)).then(b.item.cmp(&a.item))
+    });
 }
 
 /// The blended surfaces of one row at a time.
-pub(crate) struct Layers {
+pub(crate) struct Layers<'a> {
+    triangles: &'a [ScreenTriangle],
+    blended: TriangleSet,
     opaque: DepthRow,
     layers: Vec<Layer>,
 }
 
-/// Whether some surface of an input blends.
-pub(crate) fn any_blended(input: &SurfaceInput<'_>) -> bool {
-    input.runs.iter().any(|run| run.coverage == Coverage::Blended)
+/// Writes row `y` to all planes: `row` is what is nearest, blended or not; in the colours blended
+/// surfaces, where there are some, lie over what is opaque.
+pub(crate) fn write_row(
+    y: i32,
+    row: &DepthRow,
+    active: &[Active],
+    layers: &mut Option<Layers<'_>>,
+    masked: &Masked<'_>,
+    picture: &mut Picture<'_>,
+) {
+    let Some(layers) = layers else {
+        return picture.write(0, y as u32, &row.item, &row.depth);
+    };
+    picture.write_planes(0, y as u32, &row.item, &row.depth);
+    layers.write(y, active, masked, picture);
 }
 
-impl Layers {
+impl<'a> Layers<'a> {
     /// `None` where nothing blends.
-    pub fn of(input: &SurfaceInput<'_>) -> Option<Self> {
+    pub fn of(input: &'a SurfaceInput<'_>) -> Option<Self> {
+        let (triangles, blended) = (&input.triangles, input.having(Coverage::Blended));
         let opaque = DepthRow::new(input.view.width());
-        any_blended(input).then(|| Self { opaque, layers: Vec::new() })
+        let layers = Vec::new();
+        (!blended.is_empty()).then(|| Self { triangles, blended, opaque, layers })
     }
 
     /// Writes the colours of row `y`: what is opaque, and over it what is blended and before it, far
     /// layers first; of equally far ones the lower item is in front.
-    pub fn write(
-        &mut self,
-        y: i32,
-        active: &[Active],
-        input: &SurfaceInput<'_>,
-        masked: &Masked<'_>,
-        picture: &mut Picture<'_>,
-    ) {
-        self.collect(y, active, input, masked, &mut picture.lit);
+    fn write(&mut self, y: i32, active: &[Active], masked: &Masked<'_>, picture: &mut Picture<'_>) {
+        self.collect(y, active, masked, &mut picture.lit);
         picture.write_color(0, y as u32, &self.opaque.item);
         let behind = premultiply(picture.behind(y));
-        for layers in self.layers.chunk_by(|a, b| a.x == b.x) {
-            let x = layers[0].x;
-            let below = self.opaque.item[x as usize];
-            let under = below_color(&mut picture.lit, below, behind, [x as i32, y]);
-            let sum = layers.iter().fold(under, |under, layer| {
-                over(&mut picture.lit, layer.item, under, [x as i32, y])
-            });
+        for layers in self.layers.chunk_by(|a, b| a.place == b.place) {
+            let x = layers[0].place;
+            let (below, items) = (self.opaque.item[x as usize], layers.iter().map(|l| l.item));
+            let sum = compose(&mut picture.lit, below, items, behind, [x as i32, y]);
             picture.set_color(x, y as u32, sum);
         }
     }
 
     /// Finds the opaque surface at each pixel, and the layers before it in order.
-    fn collect(
-        &mut self,
-        y: i32,
-        active: &[Active],
-        input: &SurfaceInput<'_>,
-        masked: &Masked<'_>,
-        lit: &mut Lit<'_>,
-    ) {
-        let Self { opaque, layers, .. } = self;
+    fn collect(&mut self, y: i32, active: &[Active], masked: &Masked<'_>, lit: &mut Lit<'_>) {
+        let Self { triangles, blended, opaque, layers } = self;
         opaque.clear();
         layers.clear();
-        let blended = |a: &&Active| {
-            let item = input.triangles[a.triangle as usize].item;
-            input.run_of(item).coverage == Coverage::Blended
-        };
-        for a in active.iter().filter(|a| !blended(a)) {
-            let t = &input.triangles[a.triangle as usize];
-            masked.enter(opaque, t, [a.x0, a.x1], y, lit, |_, _| ());
+        let blends = |a: &&Active| blended.contains(a.triangle as usize);
+        for a in active.iter().filter(|a| !blends(a)) {
+            masked.enter(opaque, a.triangle, [a.x0, a.x1], y, lit, |_, _| ());
         }
-        for a in active.iter().filter(blended) {
-            let t = &input.triangles[a.triangle as usize];
+        for a in active.iter().filter(blends) {
+            let t = &triangles[a.triangle as usize];
             let [ox, oy] = t.origin();
             for x in a.x0..a.x1 {
                 let depth = t.depth_at((x - ox) as f32, (y - oy) as f32);
                 let i = x as usize;
                 if is_nearer(depth, t.item, opaque.depth[i], opaque.item[i]) {
-                    layers.push(Layer { x: x as u32, item: t.item, depth });
+                    layers.push(Layer { place: x as u32, item: t.item, depth });
                 }
             }
         }
-        layers.sort_unstable_by(|a, b| {
-            a.x.cmp(&b.x).then(b.depth.total_cmp(&a.depth)).then(b.item.cmp(&a.item))
-        });
+        sort_layers(layers);
     }
+}
+
+/// Blended items over an opaque one, far ones first; linear, premultiplied.
+pub(crate) fn compose(
+    lit: &mut Lit<'_>,
+    opaque: u32,
+    blended: impl IntoIterator<Item = u32>,
+    behind: Vec4,
+    at: [i32; 2],
+) -> Vec4 {
+    let under = below_color(lit, opaque, behind, at);
+    blended.into_iter().fold(under, |under, item| over(lit, item, under, at))
+}
+
+/// The mean colour of a pixel's samples; those that show the same are lit once.
+pub(crate) fn mean<T: Ord>(samples: &mut [T], mut color: impl FnMut(&T) -> Vec4) -> Vec4 {
+    samples.sort_unstable();
+    let share = 1.0 / samples.len() as f32;
+    let parts = samples.chunk_by(|a, b| a == b);
+    parts.fold(Vec4::ZERO, |sum, same| sum + color(&same[0]) * (same.len() as f32 * share))
 }
 
 /// The linear, premultiplied colour of what is opaque at a pixel; `behind` where nothing is.

@@ -1,19 +1,19 @@
 //! Lighting visible items: one pixel with everything a material can have, or eight plain ones.
 
-use crate::math::{Vec2, Vec3, Vec4};
+use crate::math::{DMat3, Vec2, Vec3, Vec4};
 use crate::scene::{Mesh, Projection, Scene, Topology};
 use crate::shade::lane::Vec3Lane;
 use crate::shade::{
-    Batch, Points, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Shading,
-    Surface, TexCoord, shade, shade_face, shade_points, shade_vertex, shade_x8,
+    Points, PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Sample, Samples,
+    Shading, Surface, TexCoord, shade, shade_face, shade_points, shade_vertex,
 };
 use crate::simd::Level;
 use crate::target::NO_ITEM;
 use crate::view::View;
-use crate::visibility::surface::attributes::{
-    Triangles, VisibleTriangle, Weights, blend, blend_x8, run_of,
-};
+use crate::visibility::surface::attributes::{Triangles, VisibleTriangle, Weights, blend, run_of};
+use crate::visibility::surface::gather::{Gathered, points};
 use crate::visibility::surface::setup::Run;
+use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
 /// Sets of texture coordinates that are looked at.
@@ -32,6 +32,14 @@ pub struct Lighting<'a> {
     pub level: Level,
 }
 
+impl Lighting<'_> {
+    /// A direction of a run's mesh along world axes.
+    fn world_axes(&self, run: usize, direction: Vec3) -> Vec3 {
+        let world_from_mesh = self.scene.instances[self.runs[run].instance].world_from_mesh;
+        DMat3::from_mat4(world_from_mesh).as_mat3() * direction
+    }
+}
+
 /// What is the same for all items of a run.
 #[derive(Clone, Copy)]
 struct RunInfo<'a> {
@@ -43,6 +51,8 @@ struct RunInfo<'a> {
     shading: Shading,
     /// Whether eight pixels can be shaded at a time.
     plain: bool,
+    /// Whether eight pixels can be lit at a time, after their textures were looked up one by one.
+    together: bool,
 }
 
 /// From where a point of an item is seen.
@@ -105,6 +115,7 @@ impl<'a> Lit<'a> {
             None => material.shading(),
         };
         let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
+        let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
         let info = RunInfo {
             run: index,
             first_item: run.first_item,
@@ -112,7 +123,8 @@ impl<'a> Lit<'a> {
             mesh,
             material,
             shading,
-            plain: material.is_plain() && mesh.colors.is_empty() && per_pixel,
+            plain,
+            together: !plain && material.is_lit_together(shading),
         };
         self.latest = Some(info);
         info
@@ -132,7 +144,7 @@ impl<'a> Lit<'a> {
     pub fn face_color(&mut self, item: u32, lights: &PreparedLights) -> Vec4 {
         let parallel = self.parallel_view;
         let weights = [1.0 / 3.0; 3];
-        let view = parallel.unwrap_or_else(|| -blend(&self.triangle(item).positions, weights));
+        let view = parallel.unwrap_or_else(|| -blend(&self.triangle(item).positions(), weights));
         let seen = Seen::Point { weights, view };
         self.with_surface_seen(item, seen, |surface, material, _, shading| {
             if shading == Shading::Unlit {
@@ -173,8 +185,8 @@ impl<'a> Lit<'a> {
         let (parallel, run) = (self.parallel_view, self.run_info(item).run);
         let t = self.triangles.get(item, run);
         let w = t.weights(x, y, [0.0; 2]);
-        let normal = blend(&t.normals, w).normalize_or(t.face_normal);
-        let view = parallel.unwrap_or(-blend(&t.positions, w));
+        let normal = blend(&t.normals(), w).normalize_or(t.face_normal);
+        let view = parallel.unwrap_or(-blend(&t.positions(), w));
         if normal.dot(view) < 0.0 { -normal } else { normal }
     }
 
@@ -202,12 +214,12 @@ impl<'a> Lit<'a> {
             Seen::Pixel(x, y) => (t.weights(x, y, [0.0; 2]), parallel),
             Seen::Point { weights, view } => (weights, Some(view)),
         };
-        let position = blend(&t.positions, w);
+        let position = blend(&t.positions(), w);
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
         let mut surface = Surface {
             position,
             view: view.unwrap_or(-position),
-            normal: blend(&t.normals, w),
+            normal: blend(&t.normals(), w),
             geometric_normal: t.face_normal,
             lit: lit.map(|corners| Reflected::interpolate(corners, w)),
             ..Surface::default()
@@ -226,9 +238,12 @@ impl<'a> Lit<'a> {
                 tex_coords[set] = tex_coord(&corners, w, right, down);
             }
             if material.has_normal_map() {
-                surface.position_dx = blend(&t.positions, right) - position;
-                surface.position_dy = blend(&t.positions, down) - position;
-                surface.tangent = t.tangent(mesh, w);
+                surface.position_dx = blend(&t.positions(), right) - position;
+                surface.position_dy = blend(&t.positions(), down) - position;
+                surface.tangent = t.tangent(mesh, w).map(|tangent| {
+                    let world = self.shared.world_axes(run, tangent.truncate());
+                    world.normalize_or_zero().extend(tangent.w)
+                });
             }
             surface.tex_coords = &tex_coords;
         }
@@ -257,11 +272,13 @@ impl<'a> Lit<'a> {
         let t = self.triangles.get(item, run);
         let view = |p: Vec3| parallel.unwrap_or(-p);
         let corners = if shading == Shading::Flat {
-            let centroid = (t.positions[0] + t.positions[1] + t.positions[2]) / 3.0;
+            let [a, b, c] = t.positions();
+            let centroid = (a + b + c) / 3.0;
             [shade_face(centroid, view(centroid), t.face_normal, material, lights); 3]
         } else {
+            let (positions, normals) = (t.positions(), t.normals());
             [0, 1, 2].map(|i| {
-                let (p, n) = (t.positions[i], t.normals[i]);
+                let (p, n) = (positions[i], normals[i]);
                 shade_vertex(p, view(p), n, t.face_normal, material, lights)
             })
         };
@@ -292,6 +309,8 @@ impl<'a> Lit<'a> {
                     return self.one_triangle_x8(simd, &info, items[0], [x, y], colors);
                 }
                 self.plain_x8(simd, &info, items, [x, y], &mut done, colors);
+            } else if info.together {
+                self.textured_x8(simd, &info, items, [x, y], &mut done, colors);
             } else {
                 let color = self.color(items[i], x + i as i32, y);
                 set_lane(colors, i, color.truncate());
@@ -327,98 +346,114 @@ impl<'a> Lit<'a> {
         done: &mut [bool; 8],
         colors: &mut [[f32; 8]; 3],
     ) {
-        let mut batch = Batch::default();
+        let mut gathered = Gathered::default();
         let mut mine = [0; 8];
-        let parallel = self.parallel_view;
         for i in 0..8 {
-            if done[i] || items[i].wrapping_sub(info.first_item) >= info.count {
-                continue;
+            if !done[i] && items[i].wrapping_sub(info.first_item) < info.count {
+                (done[i], mine[i]) = (true, u32::MAX);
+                let t = self.triangles.get(items[i], info.run);
+                gathered.set(simd, i, t, [x + i as i32, y]);
             }
-            let mut lanes = [0; 8];
-            for j in i..8 {
-                let same = items[j] == items[i];
-                done[j] |= same;
-                lanes[j] = u32::from(same).wrapping_neg();
-                mine[j] |= lanes[j];
-            }
-            let t = self.triangles.get(items[i], info.run);
-            fill_lanes(&points_x8(simd, t, [x, y], parallel), &lanes, &mut batch);
         }
-        let shaded = shade_x8(simd, &batch, info.material, self.shared.lights, info.shading);
+        let shaded = self.shade_gathered(simd, info, &gathered);
         for (to, from) in colors.iter_mut().zip(&shaded) {
             fill_axis(*from, &mine, to);
         }
     }
 
-    /// Whether an item can be shaded in the batch of a queue.
+    /// Shades all of eight pixels whose items belong to one run that is lit together.
     #[inline(always)]
-    pub fn batch_of(&mut self, item: u32, queue: &Queue) -> Batched {
-        let info = self.run_info(item);
-        if !info.plain {
-            Batched::Never
-        } else if queue.count > 0 && queue.first_item != info.first_item {
-            Batched::Later
-        } else {
-            Batched::Now
+    fn textured_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 8],
+        [x, y]: [i32; 2],
+        done: &mut [bool; 8],
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let mut samples = Samples::default();
+        let mut mine = [0; 8];
+        for i in 0..8 {
+            if !done[i] && items[i].wrapping_sub(info.first_item) < info.count {
+                (done[i], mine[i]) = (true, u32::MAX);
+                samples.set(i, &self.sample(items[i], x + i as i32, y));
+            }
+        }
+        let shaded = samples.shade(simd, self.shared.lights, info.shading);
+        for (to, from) in colors.iter_mut().zip(&shaded) {
+            fill_axis(*from, &mine, to);
         }
     }
 
-    /// Adds a pixel to a batch of one plain run, for which [`Self::batch_of`] has said `Now`.
-    #[inline(always)]
-    pub fn add_to_batch(&mut self, item: u32, [x, y]: [i32; 2], queue: &mut Queue) {
-        let info = self.run_info(item);
-        queue.first_item = info.first_item;
-        let parallel = self.parallel_view;
-        let t = self.triangles.get(item, info.run);
-        set_point(&mut queue.batch, queue.count, t, [x, y], parallel);
-        queue.count += 1;
+    /// What the textures say of an item at a pixel's centre.
+    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample {
+        self.with_surface(item, x, y, |surface, material, _, shading| {
+            material.sample(surface, shading)
+        })
     }
 
-    /// Shades a batch that [`Self::add_to_batch`] has filled.
     #[inline(always)]
-    pub fn shade_batch<S: Simd>(&mut self, simd: S, queue: &Queue) -> [[f32; 8]; 3] {
+    fn shade_gathered<S: Simd>(
+        &self,
+        simd: S,
+        info: &RunInfo<'a>,
+        gathered: &Gathered,
+    ) -> [[f32; 8]; 3] {
+        let points = gathered.points(simd, self.parallel_view);
+        let color = shade_points(&points, info.material, self.shared.lights, info.shading);
+        [color.x.into(), color.y.into(), color.z.into()]
+    }
+
+    /// Adds a pixel of an item to a queue that is not full.
+    #[inline(always)]
+    pub fn queue<S: Simd>(
+        &mut self,
+        simd: S,
+        item: u32,
+        at: [i32; 2],
+        queue: &mut Queue,
+    ) -> Queued {
+        let RunInfo { run, first_item, plain, .. } = self.run_info(item);
+        if !plain {
+            return Queued::Never;
+        }
+        if queue.count > 0 && queue.first_item != first_item {
+            return Queued::OtherRun;
+        }
+        queue.first_item = first_item;
+        queue.gathered.set(simd, queue.count, self.triangles.get(item, run), at);
+        queue.count += 1;
+        Queued::Done
+    }
+
+    /// Shades the pixels that [`Self::queue`] has added.
+    #[inline(always)]
+    pub fn shade_queue<S: Simd>(&mut self, simd: S, queue: &Queue) -> [[f32; 8]; 3] {
         let info = self.run_info(queue.first_item);
-        shade_x8(simd, &queue.batch, info.material, self.shared.lights, info.shading)
+        self.shade_gathered(simd, &info, &queue.gathered)
     }
 }
 
-/// Whether an item fits into a batch.
+/// Whether an item has been queued.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Batched {
-    /// It does.
-    Now,
-    /// The batch is of another run and has to be shaded first.
-    Later,
-    /// The item has to be shaded alone.
+pub enum Queued {
+    /// It has.
+    Done,
+    /// Not yet: what waits is of another run and has to be shaded first.
+    OtherRun,
+    /// Its pixels have to be shaded one by one.
     Never,
 }
 
 /// Up to eight pixels of one plain run, from anywhere.
 #[derive(Default)]
 pub struct Queue {
-    batch: Batch,
+    gathered: Gathered,
     /// How many pixels there are.
     pub count: usize,
     /// The first item of their run.
     first_item: u32,
-}
-
-/// Puts the point of a triangle at a pixel into a lane of a batch; the bits are those of
-/// [`points_x8`].
-#[inline(always)]
-fn set_point(
-    batch: &mut Batch,
-    lane: usize,
-    t: &VisibleTriangle,
-    [x, y]: [i32; 2],
-    parallel_view: Option<Vec3>,
-) {
-    let w = t.weights(x, y, [0.0; 2]);
-    let position = blend(&t.positions, w);
-    set_lane(&mut batch.position, lane, position);
-    set_lane(&mut batch.view, lane, parallel_view.unwrap_or(-position));
-    set_lane(&mut batch.normal, lane, blend(&t.normals, w));
-    set_lane(&mut batch.geometric_normal, lane, t.face_normal);
 }
 
 #[inline(always)]
@@ -436,45 +471,18 @@ fn points_x8<S: Simd>(
     [x, y]: [i32; 2],
     parallel_view: Option<Vec3>,
 ) -> Points<f32x8<S>> {
-    let w = t.weights_x8(simd, x, y);
-    let [px, py, pz] = blend_x8(&t.positions, &w);
-    let [nx, ny, nz] = blend_x8(&t.normals, &w);
-    let position = Vec3Lane::new(px, py, pz);
-    let view = match parallel_view {
-        Some(v) => Vec3Lane::splat(px, v),
-        None => Vec3Lane::new(-px, -py, -pz),
-    };
-    let geometric_normal = Vec3Lane::splat(px, t.face_normal);
-    Points { position, view, normal: Vec3Lane::new(nx, ny, nz), geometric_normal }
-}
-
-/// Copies the chosen lanes of points into a batch.
-#[inline(always)]
-fn fill_lanes<S: Simd>(points: &Points<f32x8<S>>, lanes: &Lanes, batch: &mut Batch) {
-    fill_vector(&points.position, lanes, &mut batch.position);
-    fill_vector(&points.view, lanes, &mut batch.view);
-    fill_vector(&points.normal, lanes, &mut batch.normal);
-    fill_vector(&points.geometric_normal, lanes, &mut batch.geometric_normal);
+    let geometric_normal = Vec3Lane::splat(f32x8::splat(simd, 0.0), t.face_normal);
+    points(t.points_x8(simd, x, y), geometric_normal, parallel_view)
 }
 
 #[inline(always)]
-fn fill_vector<S: Simd>(from: &Vec3Lane<f32x8<S>>, lanes: &Lanes, to: &mut [[f32; 8]; 3]) {
-    fill_axis(from.x.into(), lanes, &mut to[0]);
-    fill_axis(from.y.into(), lanes, &mut to[1]);
-    fill_axis(from.z.into(), lanes, &mut to[2]);
-}
-
-#[inline(always)]
-fn fill_axis(from: [f32; 8], lanes: &Lanes, to: &mut [f32; 8]) {
+fn fill_axis(from: [f32; 8], lanes: &[u32; 8], to: &mut [f32; 8]) {
     // Bits instead of a choice, which would become a slow masked store.
     for i in 0..8 {
         let old = to[i].to_bits();
         to[i] = f32::from_bits(old ^ ((old ^ from[i].to_bits()) & lanes[i]));
     }
 }
-
-/// All bits set in the lanes that are meant.
-type Lanes = [u32; 8];
 
 /// Texture coordinates at a pixel, and their change to the pixels beside and below it.
 fn tex_coord(corners: &[Vec2; 3], w: Weights, right: Weights, down: Weights) -> TexCoord {

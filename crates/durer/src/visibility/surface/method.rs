@@ -43,11 +43,6 @@ impl SurfaceMethod {
         if scene.materials.iter().any(blends) { Self::ABuffer } else { Self::ZBuffer }
     }
 
-    /// Whether colours show what is behind blended surfaces; else these count as opaque.
-    pub fn composes(self) -> bool {
-        !matches!(self, Self::Warnock | Self::Ray)
-    }
-
     /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
         match self {

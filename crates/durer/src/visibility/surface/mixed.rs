@@ -2,7 +2,7 @@
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, unpremultiply};
-use crate::visibility::surface::lit::{Batched, Lit, Queue};
+use crate::visibility::surface::lit::{Lit, Queue, Queued};
 use fearless_simd::Simd;
 
 /// The sums of colours of pixels so far, and what still waits to be lit.
@@ -27,6 +27,19 @@ impl Mixed {
         }
     }
 
+    /// Begins a pixel, of which there is nothing yet.
+    #[inline(always)]
+    pub fn begin(&mut self, pixel: u32) {
+        self.pixels.push(pixel);
+        self.sums[pixel as usize] = Vec4::ZERO;
+    }
+
+    /// Adds a colour's share of a pixel.
+    #[inline(always)]
+    pub fn add_color(&mut self, pixel: u32, color: Vec4, weight: f32) {
+        self.sums[pixel as usize] += color * weight;
+    }
+
     /// Adds an item's share of a pixel.
     #[inline(always)]
     pub fn add<S: Simd>(
@@ -38,17 +51,18 @@ impl Mixed {
         weight: f32,
         at: [i32; 2],
     ) {
-        match lit.batch_of(item, &self.queue) {
-            Batched::Now => {}
-            Batched::Later => self.flush(simd, lit),
-            Batched::Never => {
+        match lit.queue(simd, item, at, &mut self.queue) {
+            Queued::Done => {}
+            Queued::OtherRun => {
+                self.flush(simd, lit);
+                lit.queue(simd, item, at, &mut self.queue);
+            }
+            Queued::Never => {
                 let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
-                self.sums[index as usize] += color * weight;
-                return;
+                return self.add_color(index, color, weight);
             }
         }
-        lit.add_to_batch(item, at, &mut self.queue);
-        self.waiting[self.queue.count - 1] = (index, weight);
+        self.waiting[(self.queue.count - 1) % 8] = (index, weight);
         if self.queue.count == 8 {
             self.flush(simd, lit);
         }
@@ -60,9 +74,9 @@ impl Mixed {
         if self.queue.count == 0 {
             return;
         }
-        let [r, g, b] = lit.shade_batch(simd, &self.queue);
-        for (i, &(pixel, weight)) in self.waiting[..self.queue.count].iter().enumerate() {
-            self.sums[pixel as usize] += Vec4::new(r[i], g[i], b[i], 1.0) * weight;
+        let [r, g, b] = lit.shade_queue(simd, &self.queue);
+        for (i, (pixel, weight)) in self.waiting.into_iter().take(self.queue.count).enumerate() {
+            self.add_color(pixel, Vec4::new(r[i], g[i], b[i], 1.0), weight);
         }
         self.queue.count = 0;
     }

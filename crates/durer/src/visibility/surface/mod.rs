@@ -6,6 +6,7 @@ pub(crate) mod attributes;
 pub(crate) mod background;
 pub mod cover;
 pub mod depth_sort;
+pub(crate) mod gather;
 pub mod input;
 pub(crate) mod layers;
 pub(crate) mod lit;

@@ -1,7 +1,7 @@
 //! One row of depth: which triangle is nearest at each pixel's centre.
 
 use crate::target::NO_ITEM;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 
@@ -59,36 +59,31 @@ pub fn is_nearer(depth: f32, item: u32, kept: f32, kept_item: u32) -> bool {
     depth < kept || (depth == kept && item < kept_item && kept_item != NO_ITEM)
 }
 
-/// Which items have to be asked at each pixel whether they are there.
+/// Enters triangles into rows, with holes where they have them.
 pub(crate) struct Masked<'a> {
-    input: &'a SurfaceInput<'a>,
-    any: bool,
+    triangles: &'a [ScreenTriangle],
+    /// Those that have to be asked at each pixel whether they are there.
+    pub masked: TriangleSet,
 }
 
 impl<'a> Masked<'a> {
-    pub fn new(input: &'a SurfaceInput<'a>) -> Self {
-        let any = input.runs.iter().any(|run| run.coverage == Coverage::Masked);
-        Self { input, any }
+    pub fn new(input: &'a SurfaceInput<'_>) -> Self {
+        Self { triangles: &input.triangles, masked: input.having(Coverage::Masked) }
     }
 
-    /// Whether an item's surface has holes by its alpha.
-    #[inline(always)]
-    pub fn contains(&self, item: u32) -> bool {
-        self.any && self.input.run_of(item).coverage == Coverage::Masked
-    }
-
-    /// Enters a triangle's span into a row, with holes where it has them.
+    /// Enters a span of the triangle at a place of the input's list.
     #[inline(always)]
     pub fn enter(
         &self,
         row: &mut DepthRow,
-        t: &ScreenTriangle,
+        triangle: u32,
         span: [i32; 2],
         y: i32,
         lit: &mut Lit<'_>,
         wrote: impl FnMut(i32, f32),
     ) {
-        if self.contains(t.item) {
+        let t = &self.triangles[triangle as usize];
+        if self.masked.contains(triangle as usize) {
             row.enter(t, span, y, |x| lit.passes_mask(t.item, x, y), wrote);
         } else {
             row.enter(t, span, y, |_| true, wrote);

@@ -1,8 +1,8 @@
 //! From the visible item of each pixel to the planes of a picture: what all methods that find one
 //! surface per pixel end with.
 //!
-//! Blended surfaces count as opaque here, as they do in the z-buffer's depth, item and normal
-//! planes; their colour is shown without its alpha. The module `layers` lays them over each other.
+//! Blended surfaces count as opaque in the depth, item and normal planes; in the colours those that
+//! come here do too. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, encode_srgb8};

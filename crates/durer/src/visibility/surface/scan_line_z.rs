@@ -17,7 +17,7 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::active::ActiveList;
 use crate::visibility::surface::input::SurfaceInput;
-use crate::visibility::surface::layers::Layers;
+use crate::visibility::surface::layers::{Layers, write_row};
 use crate::visibility::surface::nearest::{DepthRow, Masked};
 pub use crate::visibility::surface::picture::Options;
 use crate::visibility::surface::picture::Picture;
@@ -88,17 +88,11 @@ pub fn render(
         let item = |triangle: u32| input.triangles[triangle as usize].item;
         let active = list.advance(y, |a| t.step(|| Step::Enter { item: item(a.triangle) }));
         for span in active.iter().filter(|a| a.x0 < a.x1) {
-            let triangle = &input.triangles[span.triangle as usize];
-            let (item, x0, x1) = (triangle.item, span.x0, span.x1);
+            let (item, x0, x1) = (item(span.triangle), span.x0, span.x1);
             t.step(|| Step::Span { item, x0, x1 });
             let wrote = |x, depth| t.step(|| Step::Write { item, x, depth });
-            masked.enter(&mut row, triangle, [x0, x1], y, &mut picture.lit, wrote);
+            masked.enter(&mut row, span.triangle, [x0, x1], y, &mut picture.lit, wrote);
         }
-        let Some(layers) = &mut layers else {
-            picture.write(0, y as u32, &row.item, &row.depth);
-            continue;
-        };
-        picture.write_planes(0, y as u32, &row.item, &row.depth);
-        layers.write(y, active, input, &masked, &mut picture);
+        write_row(y, &row, active, &mut layers, &masked, &mut picture);
     }
 }

@@ -346,6 +346,9 @@ pub struct Filter {
     pub sample_reach: i32,
 }
 
+/// Triangles without indices whose vertices are transformed at a time.
+const UNINDEXED: u32 = 512;
+
 /// Width in pixels at which lines of a model are drawn.
 pub const LINE_WIDTH: f64 = 1.5;
 
@@ -413,22 +416,29 @@ impl<'a> Assembler<'a> {
         emit: &mut impl FnMut(ScreenTriangle),
     ) {
         let mut vertices = std::mem::take(&mut self.vertices);
-        let first = self.transform_vertices(mesh, transform, &range, &mut vertices);
-        for triangle in range.start..range.end {
-            let corners = mesh.triangle(triangle as usize);
-            let at = match first {
-                Some(first) => {
-                    let [a, b, c] = corners;
-                    [a - first, b - first, c - first].map(|i| i as usize)
-                }
-                None => {
-                    let i = 3 * (triangle - range.start) as usize;
-                    [i, i + 1, i + 2]
-                }
-            };
-            let v = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
-            let item = run.first_item + (triangle - run.range.start);
-            self.assemble(mesh, transform, corners, v, item, emit);
+        // Without indices no vertex serves two triangles, and a few at a time stay in the cache.
+        let most = if mesh.indices.is_none() { UNINDEXED } else { u32::MAX };
+        let mut start = range.start;
+        while start < range.end {
+            let part = start..range.end.min(start.saturating_add(most));
+            start = part.end;
+            let first = self.transform_vertices(mesh, transform, &part, &mut vertices);
+            for triangle in part.clone() {
+                let corners = mesh.triangle(triangle as usize);
+                let at = match first {
+                    Some(first) => {
+                        let [a, b, c] = corners;
+                        [a - first, b - first, c - first].map(|i| i as usize)
+                    }
+                    None => {
+                        let i = 3 * (triangle - part.start) as usize;
+                        [i, i + 1, i + 2]
+                    }
+                };
+                let v = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
+                let item = run.first_item + (triangle - run.range.start);
+                self.assemble(mesh, transform, corners, v, item, emit);
+            }
         }
         self.vertices = vertices;
     }

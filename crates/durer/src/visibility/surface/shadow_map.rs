@@ -173,8 +173,7 @@ fn depths(scene: &Scene, view: &View, lights: &PreparedLights) -> Result<Pixels<
         for y in 0..view.height() {
             row.clear();
             for a in list.advance(y as i32, |_| ()) {
-                let t = &input.triangles[a.triangle as usize];
-                masked.enter(&mut row, t, [a.x0, a.x1], y as i32, &mut lit, |_, _| ());
+                masked.enter(&mut row, a.triangle, [a.x0, a.x1], y as i32, &mut lit, |_, _| ());
             }
             depths.row_mut(y).copy_from_slice(&row.depth);
         }

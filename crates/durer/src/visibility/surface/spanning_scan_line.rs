@@ -24,7 +24,7 @@ use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::active::{Active, ActiveList};
 use crate::visibility::surface::input::SurfaceInput;
-use crate::visibility::surface::layers::Layers;
+use crate::visibility::surface::layers::{Layers, write_row};
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::nearest::{DepthRow, Masked, is_nearer};
 pub use crate::visibility::surface::picture::Options;
@@ -128,12 +128,7 @@ pub fn render(
         let active = list.advance(y, |_| ());
         edges.replace(active);
         line.sweep(&edges, &mut picture.lit, t);
-        let Some(layers) = &mut layers else {
-            picture.write(0, y as u32, &line.row.item, &line.row.depth);
-            continue;
-        };
-        picture.write_planes(0, y as u32, &line.row.item, &line.row.depth);
-        layers.write(y, active, input, &line.masked, &mut picture);
+        write_row(y, &line.row, active, &mut layers, &line.masked, &mut picture);
     }
 }
 
@@ -227,7 +222,7 @@ impl Line<'_> {
 
     /// Decides a span, in parts where one triangle does not win all of it.
     fn span(&mut self, [x0, x1]: [i32; 2], lit: &mut Lit<'_>, t: &mut impl Tracer<Step>) {
-        if x1 - x0 < SHORT || self.inside.iter().any(|&i| self.masked.contains(self.item(i))) {
+        if x1 - x0 < SHORT || self.inside.iter().any(|&i| self.masked.masked.contains(i as usize)) {
             return self.compare([x0, x1], lit, t);
         }
         self.parts.push([x0, x1]);
@@ -320,8 +315,7 @@ impl Line<'_> {
     fn compare(&mut self, part: [i32; 2], lit: &mut Lit<'_>, t: &mut impl Tracer<Step>) {
         let Self { triangles, masked, row, y, inside, .. } = self;
         for &triangle in inside.iter() {
-            let triangle = &triangles[triangle as usize];
-            let item = triangle.item;
+            let item = triangles[triangle as usize].item;
             let wrote = |x, _| t.step(|| Step::Write { item, x });
             masked.enter(row, triangle, part, *y, lit, wrote);
         }

@@ -6,7 +6,7 @@ use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::cover::Window;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
@@ -36,11 +36,23 @@ impl Visible {
         (y - w.y0) as usize * (w.x1 - w.x0) as usize + (x - w.x0) as usize
     }
 
-    /// Row number, items and depths of each row.
-    fn rows(&self) -> impl Iterator<Item = (u32, &[u32], &[f32])> {
+    /// The samples it holds.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Column and row of a place.
+    pub fn place(&self, index: usize) -> [i32; 2] {
+        let width = (self.window.x1 - self.window.x0).max(1) as usize;
+        [self.window.x0 + (index % width) as i32, self.window.y0 + (index / width) as i32]
+    }
+
+    /// Row number, items and depths of each row of a window that begins at the left border.
+    pub fn rows(&self) -> impl Iterator<Item = (u32, &[u32], &[f32])> {
         let width = ((self.window.x1 - self.window.x0).max(1)) as usize;
         let rows = self.item.chunks(width).zip(self.depth.chunks(width));
-        (0..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
+        let first = self.window.y0.max(0) as u32;
+        (first..).zip(rows).map(|(y, (items, depths))| (y, items, depths))
     }
 
     /// Writes a sample, whatever was there; what lies beyond the far plane is not seen.
@@ -67,26 +79,19 @@ pub fn nearer(a: (f32, u32), b: (f32, u32)) -> bool {
 /// Says of masked materials where they are; knows which triangles have one.
 pub struct Masks<'a> {
     lit: Lit<'a>,
-    /// Of each triangle of the input; empty where nothing is masked.
-    masked: Vec<bool>,
+    masked: TriangleSet,
 }
 
 impl<'a> Masks<'a> {
     /// For the triangles of an input.
     pub fn new(input: &SurfaceInput<'_>, lighting: Lighting<'a>) -> Self {
-        let any = input.runs.iter().any(|r| r.coverage == Coverage::Masked);
-        let masked = |item: u32| input.run_of(item).coverage == Coverage::Masked;
-        let masked = match any {
-            true => input.triangles.iter().map(|t| masked(t.item)).collect(),
-            false => Vec::new(),
-        };
-        Self { lit: Lit::new(lighting), masked }
+        Self { lit: Lit::new(lighting), masked: input.having(Coverage::Masked) }
     }
 
     /// Whether a triangle may have holes.
     #[inline]
     pub fn is_masked(&self, triangle: usize) -> bool {
-        self.masked.get(triangle).copied().unwrap_or(false)
+        self.masked.contains(triangle)
     }
 
     /// Whether a triangle is there at a pixel.

@@ -2,7 +2,7 @@
 
 use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::overlay::{Options, overlay};
-use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, rectangle};
+use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, rectangle, signed_area};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 use proptest::prelude::*;
@@ -54,6 +54,69 @@ proptest! {
         let options = Options::default();
         let apart = distance::both_ways([&triangle, &mask], BooleanOp::Intersection, &options, &clipped, 1e-9);
         prop_assert!(apart.iter().all(|d| *d < 1e-7), "{:?} {:?}", apart, clipped);
+    }
+}
+
+fn whole((x, y): (i32, i32)) -> DVec2 {
+    DVec2::new(x.into(), y.into())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Triangles with hardly any area, beside and across others, add hardly any to a union
+    /// (AngusJohnson/Clipper2#1067).
+    #[test]
+    fn slivers_add_no_more_than_their_area(
+        corners in prop::array::uniform6((-40_000_000..=40_000_000i32, -40_000_000..=40_000_000i32)),
+        slivers in prop::collection::vec((0..6usize, 1..6usize, 0.0..1.0f64, -2..=2i32, -2..=2i32), 1..4),
+    ) {
+        let corner = |i: usize| whole(corners[i % 6]);
+        // All run one way: in a region wound both ways, winding numbers may cancel.
+        let triangle = |mut ring: [DVec2; 3]| {
+            if signed_area(&ring) < 0.0 {
+                ring.reverse();
+            }
+            ring
+        };
+        let a = Shapes::from_rings([triangle([corner(0), corner(1), corner(2)])]);
+        let b = Shapes::from_rings([triangle([corner(3), corner(4), corner(5)])]);
+        let mut with = b.clone();
+        for &(i, by, t, x, y) in &slivers {
+            let (p, q) = (corner(i), corner(i + by));
+            with.push_ring(triangle([p, (p + (q - p) * t).round() + whole((x, y)), q]));
+            with.end_polygon();
+        }
+        let area = |clip: &Shapes| {
+            let options = Options::with_rule(FillRule::NonZero);
+            let out = overlay(&a, clip, BooleanOp::Union, &options, &mut NoTrace).expect("finite");
+            validity::check(&out.shapes, out.cell).expect("valid");
+            out.shapes.area()
+        };
+        let added = area(&with) - area(&b);
+        let length: f64 = distance::edges(&a).iter().chain(&distance::edges(&with)).map(|(p, q)| p.distance(*q)).sum();
+        let most: f64 = with.rings().skip(1).map(|r| signed_area(r).abs()).sum();
+        // Crossings move by less than a tenth: the cells are an eighth wide.
+        prop_assert!(added >= -0.1 * length && added <= most + 0.1 * length, "{added} {most}");
+    }
+
+    /// A strip a few units wide along a bent line, whose two sides touch and cross after rounding, gives
+    /// simple rings (AngusJohnson/Clipper2#1083).
+    #[test]
+    fn narrow_strips_give_simple_rings(
+        steps in prop::collection::vec((-900..=900i32, 200..=1500i32), 4..30),
+        off in prop::collection::vec((-2..=2i32, -1..=1i32), 30),
+    ) {
+        let mut at = DVec2::ZERO;
+        let line: Vec<DVec2> = steps.iter().map(|&s| { at += whole(s); at }).collect();
+        let back = line.iter().zip(&off).rev().map(|(&p, &o)| p + whole(o));
+        // Halfway points of the way back, rounded, lie beside the way out.
+        let back: Vec<DVec2> = back.collect();
+        let halves = back.windows(2).flat_map(|w| [w[0], ((w[0] + w[1]) * 0.5).round()]);
+        let strip = Shapes::from_rings([line.iter().copied().chain(halves).collect::<Vec<_>>()]);
+        let none = Shapes::new();
+        let alone = area(&strip, &none, BooleanOp::Union);
+        prop_assert!((area(&strip, &strip, BooleanOp::Union) - alone).abs() < 1e-6 * alone.max(1.0));
     }
 }
 

@@ -4,7 +4,7 @@
 //! Every pixel lies in exactly one leaf, and a segment is listed in every leaf it comes within one
 //! pixel of, before and after snap rounding. So leaves can be worked on alone.
 
-use super::lattice::{Coord, Point, Segment};
+use super::lattice::{Coord, Point, Segment, whole};
 
 /// Leaves with no more segments than this are not divided.
 const SMALL_LEAF: usize = 24;
@@ -20,6 +20,9 @@ const PER_SQUARE: f64 = 8.0;
 /// The first division has at most this many times more squares than segments call for, so that
 /// empty squares cost little.
 const SPARSEST: f64 = 1.0 / 16.0;
+
+/// Curves that go on in the next square all but once in so many segments are in order as they come.
+const FEW_JUMPS: usize = 64;
 
 /// The sides of a cell are at least 2³ pixels, so that the margin of a pixel stays a margin.
 const SMALLEST_SHIFT: u32 = 3;
@@ -49,9 +52,31 @@ impl Block {
         self.holds(p.x.i64(), p.y.i64())
     }
 
+    /// Its width and height in pixels.
+    fn size(&self) -> (f64, f64) {
+        ((self.max.0 - self.min.0 + 1) as f64, (self.max.1 - self.min.1 + 1) as f64)
+    }
+
     #[inline(always)]
     fn holds(&self, x: i64, y: i64) -> bool {
         self.min.0 <= x && x <= self.max.0 && self.min.1 <= y && y <= self.max.1
+    }
+}
+
+/// How segments lie in the block around them.
+#[derive(Debug, Clone, Copy)]
+pub struct Spread {
+    /// The share of squares of a rough grid in which a segment starts: small for curves.
+    occupied: f64,
+    /// The sum of all widths and heights.
+    length: f64,
+}
+
+impl<C: Coord> Segment<C> {
+    /// Its width and its height, neither more than these.
+    fn length(&self, width: f64, height: f64) -> f64 {
+        let (low, high) = self.y_range();
+        (self.b.x.f64() - self.a.x.f64()).min(width) + (high.f64() - low.f64()).min(height)
     }
 }
 
@@ -95,23 +120,16 @@ pub struct Grid {
 }
 
 impl Frame {
-    fn new<C: Coord>(
-        block: Block,
-        segments: &[Segment<C>],
-        items: &[u32],
-        occupied: f64,
-    ) -> Option<Self> {
-        let width = (block.max.0 - block.min.0 + 1) as f64;
-        let height = (block.max.1 - block.min.1 + 1) as f64;
-        let total: f64 = items
-            .iter()
-            .filter_map(|&i| segments.get(i as usize))
-            .map(|s| {
-                let (low, high) = s.y_range();
-                (s.b.x.f64() - s.a.x.f64()).min(width) + (high.f64() - low.f64()).min(height)
-            })
-            .sum();
-        let count = items.len() as f64;
+    fn new<C: Coord>(block: Block, segments: &[Segment<C>], items: &[u32]) -> Option<Self> {
+        let (width, height) = block.size();
+        let length = |i: &u32| segments[*i as usize].length(width, height);
+        let spread = Spread { occupied: 1.0, length: items.iter().map(length).sum() };
+        Self::of(block, items.len(), spread)
+    }
+
+    fn of(block: Block, count: usize, spread: Spread) -> Option<Self> {
+        let ((width, height), count) = (block.size(), count as f64);
+        let Spread { occupied, length: total } = spread;
         // A few segments per square, none much shorter than a mean segment.
         let side = (width * height * occupied / count * PER_SQUARE).sqrt().max(total / count * 0.8);
         let side = side.max(width.max(height) / count);
@@ -147,7 +165,7 @@ impl Frame {
             let x1 = ((start + (1 << self.shift)) as f64 + 0.5).min(s.b.x.f64());
             let (y0, y1) = (ay + (x0 - ax) * slope, ay + (x1 - ax) * slope);
             let (y0, y1) = if y0 <= y1 { (y0, y1) } else { (y1, y0) };
-            let (y0, y1) = ((y0 - 1.6).floor() as i64, (y1 + 1.6).ceil() as i64);
+            let (y0, y1) = (whole(y0 - 1.6), whole(y1 + 1.6) + 1);
             if y1 < min.1 || y0 > max.1 {
                 continue;
             }
@@ -172,21 +190,29 @@ impl Frame {
     }
 
     /// The segments of every square, one after the other, and where each square's list starts.
+    #[inline(never)]
     fn distribute<C: Coord>(&self, segments: &[Segment<C>], items: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let mut starts = vec![0u32; self.columns * self.rows + 1];
+        let mut entries: Vec<(u32, u32)> = Vec::with_capacity(items.len() * 2);
         for &i in items {
-            self.visit(&segments[i as usize], |square| starts[square + 1] += 1);
+            self.visit(&segments[i as usize], |square| {
+                starts[square + 1] += 1;
+                entries.push((square as u32, i));
+            });
         }
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut next = starts.clone();
-        let mut lists = vec![0u32; starts[starts.len() - 1] as usize];
-        for &i in items {
-            self.visit(&segments[i as usize], |square| {
-                lists[next[square] as usize] = i;
-                next[square] += 1;
-            });
+        let mut lists = vec![0u32; entries.len()];
+        // Backwards, from the end of each list, so that afterwards its start is at hand.
+        starts.rotate_left(1);
+        for &(square, i) in entries.iter().rev() {
+            let next = &mut starts[square as usize];
+            *next -= 1;
+            lists[*next as usize] = i;
+        }
+        if let Some(last) = starts.last_mut() {
+            *last = lists.len() as u32;
         }
         (starts, lists)
     }
@@ -204,18 +230,33 @@ impl Log2Floor for f64 {
 }
 
 /// The order in which segments that start close together have close indices, so that all that
-/// follows finds its data in the cache.
-///
-/// Also the share of squares of a rough grid in which a segment starts: small for curves.
-pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> (Vec<u32>, f64) {
-    let items: Vec<u32> = (0..segments.len() as u32).collect();
-    let Some(frame) = Frame::new(block, segments, &items, 1.0) else { return (items, 1.0) };
+/// follows finds its data in the cache, `None` where they are in such an order; and how they lie.
+#[inline(never)]
+pub fn spatial_order<C: Coord>(
+    segments: &[Segment<C>],
+    block: Block,
+) -> (Option<Vec<u32>>, Spread) {
+    let (width, height) = block.size();
+    let length = segments.iter().map(|s| s.length(width, height)).sum();
+    let mut spread = Spread { occupied: 1.0, length };
+    let Some(frame) = Frame::of(block, segments.len(), spread) else {
+        return (None, spread);
+    };
     let square = |s: &Segment<C>| frame.index(s.a.x.i64(), s.a.y.i64());
     let mut starts = vec![0u32; frame.columns * frame.rows + 1];
+    let (mut jumps, mut last) = (0, 0);
     for s in segments {
-        starts[square(s) + 1] += 1;
+        let index = square(s);
+        starts[index + 1] += 1;
+        let apart = index.abs_diff(last);
+        jumps += usize::from(apart > 1 && apart.abs_diff(frame.columns) > 1);
+        last = index;
     }
     let filled = starts.iter().filter(|&&count| count > 0).count();
+    spread.occupied = (filled as f64 / (starts.len() - 1) as f64).max(SPARSEST);
+    if jumps * FEW_JUMPS < segments.len() {
+        return (None, spread);
+    }
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
     }
@@ -225,16 +266,16 @@ pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> (Vec<u3
         order[*next as usize] = i as u32;
         *next += 1;
     }
-    (order, (filled as f64 / (starts.len() - 1) as f64).max(SPARSEST))
+    (Some(order), spread)
 }
 
 impl Grid {
     /// Distributes the segments; `block` must hold them all.
-    pub fn new<C: Coord>(segments: &[Segment<C>], block: Block, occupied: f64) -> Self {
+    pub fn new<C: Coord>(segments: &[Segment<C>], block: Block, spread: Spread) -> Self {
         let mut grid = Self::default();
         let items: Vec<u32> = (0..segments.len() as u32).collect();
         grid.nodes.push(Node::EMPTY);
-        grid.divide(segments, 0, block, &items, Some(occupied));
+        grid.divide(segments, 0, block, &items, Some(spread));
         grid
     }
 
@@ -244,12 +285,13 @@ impl Grid {
         node: usize,
         block: Block,
         items: &[u32],
-        top: Option<f64>,
+        top: Option<Spread>,
     ) {
-        let occupied = top.unwrap_or(1.0);
-        let frame = (items.len() > SMALL_LEAF)
-            .then(|| Frame::new(block, segments, items, occupied))
-            .flatten();
+        let frame = match top {
+            _ if items.len() <= SMALL_LEAF => None,
+            Some(spread) => Frame::of(block, items.len(), spread),
+            None => Frame::new(block, segments, items),
+        };
         let parts = frame.map(|frame| (frame, frame.distribute(segments, items)));
         match parts {
             Some((frame, (starts, lists)))

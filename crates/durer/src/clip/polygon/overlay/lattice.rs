@@ -21,6 +21,10 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
         + Sub<Output = Self::Wide>
         + Mul<Output = Self::Wide>
         + Neg<Output = Self::Wide>;
+    /// Holds both coordinates of a point.
+    type Key: Ord;
+    /// A word that orders points by x, then y.
+    fn key(x: Self, y: Self) -> Self::Key;
     /// Coordinates lie in `−LIMIT … LIMIT`.
     const LIMIT: i64;
     /// Widens.
@@ -41,6 +45,11 @@ pub trait Coord: Copy + Ord + Debug + Send + Sync + Default + 'static {
 
 impl Coord for i32 {
     type Wide = i64;
+    type Key = i64;
+    #[inline(always)]
+    fn key(x: i32, y: i32) -> i64 {
+        i64::from(x) << 32 | i64::from(y as u32 ^ 1 << 31)
+    }
     const LIMIT: i64 = 1 << 29;
     #[inline(always)]
     fn wide(self) -> i64 {
@@ -70,6 +79,11 @@ impl Coord for i32 {
 
 impl Coord for i64 {
     type Wide = i128;
+    type Key = (i64, i64);
+    #[inline(always)]
+    fn key(x: i64, y: i64) -> (i64, i64) {
+        (x, y)
+    }
     const LIMIT: i64 = 1 << 40;
     #[inline(always)]
     fn wide(self) -> i128 {
@@ -94,12 +108,26 @@ impl Coord for i64 {
 }
 
 /// A grid point; ordered by x, then y.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Point<C> {
     /// In cells, to the right.
     pub x: C,
     /// In cells, upwards.
     pub y: C,
+}
+
+impl<C: Coord> PartialOrd for Point<C> {
+    #[inline(always)]
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<C: Coord> Ord for Point<C> {
+    #[inline(always)]
+    fn cmp(&self, other: &Self) -> Ordering {
+        C::key(self.x, self.y).cmp(&C::key(other.x, other.y))
+    }
 }
 
 impl<C: Coord> Point<C> {
@@ -115,6 +143,14 @@ impl<C: Coord> Point<C> {
 pub fn cross<C: Coord>(a: Point<C>, b: Point<C>, c: Point<C>) -> C::Wide {
     (b.x.wide() - a.x.wide()) * (c.y.wide() - a.y.wide())
         - (b.y.wide() - a.y.wide()) * (c.x.wide() - a.x.wide())
+}
+
+/// The largest whole number that is not above `x`; without the call that [`f64::floor`] is on
+/// processors of the oldest kind.
+#[inline(always)]
+pub fn whole(x: f64) -> i64 {
+    let truncated = x as i64;
+    truncated - i64::from(truncated as f64 > x)
 }
 
 /// A segment whose first end is the lexicographically smaller one.
@@ -187,9 +223,10 @@ impl<C: Coord> Segment<C> {
             let value = a.f64() + delta * t + 0.5;
             // t carries four roundings, the rest two more: 2⁻⁵⁰ bounds them all.
             let error = (delta.abs() + a.f64().abs() + 1.0) * (1.0 / (1u64 << 50) as f64);
-            let whole = value.floor();
-            if value - whole > error && whole + 1.0 - value > error {
-                return C::from_i64(whole as i64);
+            let below = whole(value);
+            let rest = value - below as f64;
+            if rest > error && 1.0 - rest > error {
+                return C::from_i64(below);
             }
             let (num, den) = (C::i128(num), C::i128(den));
             let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
@@ -287,7 +324,7 @@ impl Lattice {
     pub fn snap<C: Coord>(&self, p: DVec2) -> Point<C> {
         let q = ((p - self.origin) / self.cell)
             .clamp(DVec2::splat(-self.reach), DVec2::splat(self.reach));
-        Point::new((q.x + 0.5).floor() as i64, (q.y + 0.5).floor() as i64)
+        Point::new(whole(q.x + 0.5), whole(q.y + 0.5))
     }
 
     /// The grid point in the caller's coordinates.

@@ -6,6 +6,10 @@
 //! to the cell's centre. So no vertex moves further than half a cell's diagonal. On the graph of
 //! these edges winding numbers decide, by connected parts, and the border of the result is cut into
 //! simple rings. All decisions are made with integers.
+//!
+//! It takes 150 to 200 bytes per edge beside the input, the result included. There is no mode that
+//! does without hot pixels: they cost less than a tenth of the time, and without them the graph is
+//! not planar, so that windings would be wrong far from the place.
 
 pub(crate) mod arrangement;
 pub(crate) mod grid;
@@ -13,7 +17,9 @@ pub(crate) mod lattice;
 pub(crate) mod noding;
 mod parallel;
 mod rings;
+pub(crate) mod search;
 mod strips;
+mod winding;
 
 use super::{BooleanOp, FillRule, Ring, Shapes};
 use crate::info::{Class, Info};
@@ -21,11 +27,12 @@ use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 
-use arrangement::{Arrangement, Search, Winding};
+use arrangement::{Arrangement, Winding};
 use grid::{Block, Grid};
 use lattice::{Coord, Lattice, Segment};
 use noding::{Cause, Ends, Noding};
 use rings::Rings;
+use search::Search;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -285,6 +292,10 @@ impl Source {
     }
 }
 
+fn reorder<T: Copy>(list: Vec<T>, order: &[u32]) -> Vec<T> {
+    order.iter().map(|&i| list[i as usize]).collect()
+}
+
 struct Job<'a> {
     subject: &'a Shapes,
     clip: &'a Shapes,
@@ -303,23 +314,31 @@ impl Job<'_> {
         let Some(block) = Block::around(&segments) else {
             return Output { cell: self.lattice.cell(), ..Output::default() };
         };
-        let (order, occupied) = grid::spatial_order(&segments, block);
-        let segments: Vec<Segment<C>> = order.iter().map(|&i| segments[i as usize]).collect();
-        let sources: Vec<Source> = order.iter().map(|&i| sources[i as usize]).collect();
-        let grid = Grid::new(&segments, block, occupied);
+        let (order, spread) = grid::spatial_order(&segments, block);
+        // In place of the first ones, whose memory serves what follows.
+        let (segments, sources) = match order {
+            Some(order) => (reorder(segments, &order), reorder(sources, &order)),
+            None => (segments, sources),
+        };
+        let grid = Grid::new(&segments, block, spread);
         let ends = |i: u32| if sources[i as usize].reversed() { Ends::Second } else { Ends::First };
         let noding = noding::node(&segments, &grid, ends);
-        let mut graph = Arrangement::new(&noding, |i| sources[i].step());
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
-        match self.winder {
-            Winder::Parts => graph.wind(&search),
-            Winder::Sweep => {
-                let mut tell = |p, active| {
-                    t.step(|| Step::Sweep { at: self.lattice.unsnap(p), active });
-                };
-                graph.sweep(&mut tell);
+        let step = |i: usize| sources[i].step();
+        let graph = match self.winder {
+            Winder::Parts => {
+                let mut graph = Arrangement::of_rings(&noding, step);
+                graph.wind(&search);
+                graph
             }
-        }
+            Winder::Sweep => {
+                let mut graph = Arrangement::of_straight(&noding, step);
+                graph.sweep(|p, active| {
+                    t.step(|| Step::Sweep { at: self.lattice.unsnap(p), active });
+                });
+                graph
+            }
+        };
         let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
         let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
         let rings = rings::link(&graph, &search, inside);
@@ -328,6 +347,7 @@ impl Job<'_> {
     }
 
     /// The edges of both inputs on the grid, without those that shrink to a point.
+    #[inline(never)]
     fn segments<C: Coord>(&self) -> (Vec<Segment<C>>, Vec<Source>) {
         let count = self.subject.points().len() + self.clip.points().len();
         let (mut segments, mut sources) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -367,14 +387,16 @@ impl Job<'_> {
         matches!((around, other), (Some(a), Some(b)) if a.overlaps(&b))
     }
 
+    #[inline(never)]
     fn report<C: Coord>(&self, noding: &Noding<C>, t: &mut impl Tracer<Step>) {
         for (&p, cause) in noding.nodes.iter().zip(&noding.causes) {
-            if matches!(cause, Cause::Crossing(..)) {
+            if matches!(cause.get(), Cause::Crossing(..)) {
                 t.step(|| Step::Crossing { at: self.lattice.unsnap(p) });
             }
         }
     }
 
+    #[inline(never)]
     fn output<C: Coord>(
         &self,
         rings: &Rings,
@@ -383,7 +405,7 @@ impl Job<'_> {
         sources: &[Source],
         t: &mut impl Tracer<Step>,
     ) -> Output {
-        let mut shapes = Shapes::new();
+        let mut shapes = rings.room();
         let mut origins = Vec::new();
         let origin = |n: u32| self.origin(n, noding, segments, sources);
         let mut start = 0;
@@ -412,7 +434,7 @@ impl Job<'_> {
         segments: &[Segment<C>],
         sources: &[Source],
     ) -> Origin {
-        match noding.causes[node as usize] {
+        match noding.causes[node as usize].get() {
             Cause::End(end) => {
                 let source = sources[(end / 2) as usize];
                 let edge = self.edge(source);

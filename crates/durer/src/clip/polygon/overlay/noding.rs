@@ -8,13 +8,39 @@ use super::strips::Strips;
 /// Leaves with more segments than this are divided into strips, smaller ones compare all pairs.
 const CROWD: usize = 96;
 
-/// What made a pixel hot: of several causes an end comes before a crossing, small indices first.
+/// What made a pixel hot, in one word; of several causes the smallest counts, so that an end comes
+/// before a crossing, and small indices first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct CauseWord(u64);
+
+/// What made a pixel hot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// The first (even) or second (odd) end of segment index / 2.
     End(u32),
     /// Two segments cross here; the smaller index comes first.
     Crossing(u32, u32),
+}
+
+impl CauseWord {
+    const CROSSING: u64 = 1 << 63;
+
+    fn end(end: u32) -> Self {
+        Self(u64::from(end))
+    }
+
+    fn crossing(i: u32, j: u32) -> Self {
+        Self(Self::CROSSING | u64::from(i) << 32 | u64::from(j))
+    }
+
+    /// The cause itself.
+    pub fn get(self) -> Cause {
+        if self.0 & Self::CROSSING == 0 {
+            Cause::End(self.0 as u32)
+        } else {
+            Cause::Crossing((self.0 >> 32) as u32 & !(1 << 31), self.0 as u32)
+        }
+    }
 }
 
 /// The hot pixels and which segment passes through which of them.
@@ -23,7 +49,7 @@ pub struct Noding<C> {
     /// The hot pixels, each once, leaf by leaf.
     pub nodes: Vec<Point<C>>,
     /// What made each hot.
-    pub causes: Vec<Cause>,
+    pub causes: Vec<CauseWord>,
     /// The nodes of segment i, in its direction, are `hits[starts[i]..starts[i + 1]]`.
     pub starts: Vec<u32>,
     /// Indices into `nodes`.
@@ -41,14 +67,17 @@ impl<C> Noding<C> {
 #[derive(Debug)]
 struct Part<C> {
     nodes: Vec<Point<C>>,
-    causes: Vec<Cause>,
+    causes: Vec<CauseWord>,
     hits: Vec<(u32, u32)>,
 }
 
 /// Scratch space for one leaf.
 struct Workbench<C> {
     segments: Vec<Segment<C>>,
-    pixels: Vec<(Point<C>, Cause)>,
+    /// The smallest and largest y of each segment.
+    spans: Vec<(C, C)>,
+    near: Vec<u32>,
+    pixels: Vec<(Point<C>, CauseWord)>,
     strips: Strips<C>,
 }
 
@@ -111,8 +140,13 @@ fn work<C: Coord>(
 ) -> Vec<Part<C>> {
     let run = |leaves: &[Leaf]| {
         let mut part = Part { nodes: Vec::new(), causes: Vec::new(), hits: Vec::new() };
-        let mut bench =
-            Workbench { segments: Vec::new(), pixels: Vec::new(), strips: Strips::default() };
+        let mut bench = Workbench {
+            segments: Vec::new(),
+            spans: Vec::new(),
+            near: Vec::new(),
+            pixels: Vec::new(),
+            strips: Strips::default(),
+        };
         for leaf in leaves {
             bench.leaf(segments, grid.items(leaf), leaf, &ends, &mut part);
         }
@@ -160,41 +194,56 @@ impl<C: Coord> Workbench<C> {
     }
 
     /// Every point of a ring is the start of one edge, so only starts are looked at there.
+    #[inline(never)]
     fn ends(&mut self, items: &[u32], leaf: &Leaf, ends: &impl Fn(u32) -> Ends) {
         for (s, &i) in self.segments.iter().zip(items) {
             let which = ends(i);
             if which != Ends::Second && leaf.block.contains(s.a) {
-                self.pixels.push((s.a, Cause::End(2 * i)));
+                self.pixels.push((s.a, CauseWord::end(2 * i)));
             }
             if which != Ends::First && leaf.block.contains(s.b) {
-                self.pixels.push((s.b, Cause::End(2 * i + 1)));
+                self.pixels.push((s.b, CauseWord::end(2 * i + 1)));
             }
         }
     }
 
+    #[inline(never)]
     fn crossings(&mut self, items: &[u32], leaf: &Leaf) {
+        self.spans.clear();
+        self.spans.extend(self.segments.iter().map(Segment::y_range));
+        self.near.clear();
+        self.near.resize(items.len(), 0);
         for (j, t) in self.segments.iter().enumerate() {
-            let (low, high) = t.y_range();
-            for (i, s) in self.segments[..j].iter().enumerate() {
-                let (s_low, s_high) = s.y_range();
-                let apart = (s.b.x < t.a.x) | (t.b.x < s.a.x) | (s_high < low) | (high < s_low);
-                if apart {
-                    continue;
-                }
-                if let Some(p) = s.crossing(t) {
+            let (low, high) = self.spans[j];
+            // Which ones come near is hard to foretell: a list without a branch, then the list.
+            let mut count = 0;
+            let earlier = self.segments[..j].iter().zip(&self.spans[..j]);
+            for (i, (s, span)) in (0..).zip(earlier) {
+                let apart = (s.b.x < t.a.x) | (t.b.x < s.a.x) | (span.1 < low) | (high < span.0);
+                self.near[count] = i;
+                count += usize::from(!apart);
+            }
+            for &i in &self.near[..count] {
+                let i = i as usize;
+                if let Some(p) = self.segments[i].crossing(t) {
                     push(&mut self.pixels, leaf, items, (i, j), p);
                 }
             }
         }
     }
 
+    /// Pixels are in the order of x: of each segment only those in its range of x are looked at.
+    #[inline(never)]
     fn hits(&self, items: &[u32], first: u32, part: &mut Part<C>) {
         for (s, &i) in self.segments.iter().zip(items) {
             let (low, high) = s.y_range();
-            for (k, &(p, _)) in self.pixels.iter().enumerate() {
-                let outside = (p.x < s.a.x) | (p.x > s.b.x) | (p.y < low) | (p.y > high);
-                if !outside && s.side_of_pixel(p).is_eq() {
-                    part.hits.push((i, first + k as u32));
+            let start = self.pixels.partition_point(|(p, _)| p.x < s.a.x);
+            for (&(p, _), k) in self.pixels[start..].iter().zip(start as u32..) {
+                if p.x > s.b.x {
+                    break;
+                }
+                if (p.y >= low) & (p.y <= high) && s.side_of_pixel(p).is_eq() {
+                    part.hits.push((i, first + k));
                 }
             }
         }
@@ -203,7 +252,7 @@ impl<C: Coord> Workbench<C> {
 
 /// Keeps a crossing if its pixel belongs to the leaf; otherwise another leaf finds it.
 fn push<C: Coord>(
-    pixels: &mut Vec<(Point<C>, Cause)>,
+    pixels: &mut Vec<(Point<C>, CauseWord)>,
     leaf: &Leaf,
     items: &[u32],
     (i, j): (usize, usize),
@@ -211,11 +260,12 @@ fn push<C: Coord>(
 ) {
     if leaf.block.contains(p) {
         let (i, j) = (items[i].min(items[j]), items[i].max(items[j]));
-        pixels.push((p, Cause::Crossing(i, j)));
+        pixels.push((p, CauseWord::crossing(i, j)));
     }
 }
 
 /// Sorts the hits by segment and along each segment.
+#[inline(never)]
 fn gather<C: Coord>(
     segments: &[Segment<C>],
     parts: &[Part<C>],

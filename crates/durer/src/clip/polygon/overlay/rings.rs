@@ -1,9 +1,9 @@
 //! From the edges that bound the result to simple rings, and from rings to polygons.
 
-use super::arrangement::{Arrangement, Search, Winding};
-use super::lattice::{Coord, cross};
-
-const NONE: u32 = u32::MAX;
+use super::arrangement::{Arrangement, Half, NONE, Winding};
+use super::lattice::{Coord, Point, cross};
+use super::search::Search;
+use crate::clip::polygon::Shapes;
 
 /// Which way an edge bounds the result, whose inside is on its left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +26,11 @@ pub struct Rings {
 }
 
 impl Rings {
+    /// Shapes with room for all these rings.
+    pub fn room(&self) -> Shapes {
+        Shapes::with_capacity(self.nodes.len(), self.ring_ends.len(), self.polygon_ends.len())
+    }
+
     /// The nodes of a ring.
     pub fn ring(&self, index: u32) -> &[u32] {
         let index = index as usize;
@@ -54,6 +59,7 @@ struct Linker<'a, 'b, C> {
 }
 
 /// Links the edges where `inside` differs between the two sides.
+#[inline(never)]
 pub fn link<C: Coord>(
     graph: &Arrangement<C>,
     search: &Search<C>,
@@ -82,40 +88,32 @@ pub fn link<C: Coord>(
 impl<C: Coord> Linker<'_, '_, C> {
     /// At each node, an edge that arrives goes on with the edge that leaves on the other side of
     /// the piece of inside to its left, so that pieces that only touch stay apart.
+    #[inline(never)]
     fn pair(&mut self) {
-        // Counter-clockwise around a node: does the border arrive by this edge, or leave?
-        let mut around: Vec<(u32, bool)> = Vec::new();
         for node in 0..self.graph.nodes.len() as u32 {
-            around.clear();
-            for e in self.graph.outs(node) {
-                self.push(&mut around, e as u32, Course::Down);
-            }
-            for &e in self.graph.ins(node) {
-                self.push(&mut around, e, Course::Up);
-            }
-            for (k, &(e, arrives)) in around.iter().enumerate() {
-                if arrives {
-                    let before = if k == 0 { around.len() - 1 } else { k - 1 };
-                    self.next[e as usize] = around[before].0;
+            // The one before in the sense of the clock; around the first one, that is the last.
+            let on = |half: &&Half| self.courses[half.edge()] != Course::No;
+            let around = self.graph.around(node);
+            let Some(&last) = around.iter().rev().find(on) else { continue };
+            let mut before = last;
+            for &half in around.iter().filter(on) {
+                if self.arrives(half) {
+                    self.next[half.edge()] = before.edge() as u32;
                 }
+                before = half;
             }
         }
     }
 
-    fn push(&self, around: &mut Vec<(u32, bool)>, edge: u32, arriving: Course) {
-        let course = self.courses[edge as usize];
-        if course != Course::No {
-            around.push((edge, course == arriving));
-        }
-    }
-
-    fn start(&self, edge: u32) -> u32 {
-        let e = &self.graph.edges[edge as usize];
-        if self.courses[edge as usize] == Course::Up { e.low } else { e.high }
+    /// Whether the border runs against a half-edge that leaves a node.
+    fn arrives(&self, half: Half) -> bool {
+        let arriving = if half.is_back() { Course::Up } else { Course::Down };
+        self.courses[half.edge()] == arriving
     }
 
     /// Walks along the border of every piece and cuts each walk into simple rings where it comes
     /// back to a node.
+    #[inline(never)]
     fn trace(&mut self) {
         let mut path: Vec<u32> = Vec::new();
         let mut position = vec![NONE; self.graph.nodes.len()];
@@ -125,14 +123,12 @@ impl<C: Coord> Linker<'_, '_, C> {
             }
             let id = self.walks.len() as u32;
             let first_ring = self.rings.ring_ends.len() as u32;
-            let mut walk =
-                Walk { first: self.start(start), rings: first_ring..first_ring, outer: None };
+            let mut walk = Walk { first: NONE, rings: first_ring..first_ring, outer: None };
             let mut edge = start;
             loop {
-                let node = self.start(edge);
-                if self.graph.nodes[node as usize] < self.graph.nodes[walk.first as usize] {
-                    walk.first = node;
-                }
+                let up = self.courses[edge as usize] == Course::Up;
+                let ends = &self.graph.edges[edge as usize];
+                let node = if up { ends.low } else { ends.high };
                 let at = position[node as usize];
                 if at != NONE {
                     self.close(&path[at as usize..], &mut position, &mut walk);
@@ -143,6 +139,12 @@ impl<C: Coord> Linker<'_, '_, C> {
                 }
                 position[node as usize] = path.len() as u32;
                 path.push(node);
+                let inner = self.graph.inner(edge as usize).iter();
+                if up {
+                    path.extend(inner)
+                } else {
+                    path.extend(inner.rev())
+                }
                 self.walk_of[edge as usize] = id;
                 edge = self.next[edge as usize];
             }
@@ -154,80 +156,97 @@ impl<C: Coord> Linker<'_, '_, C> {
     /// Stores a simple ring, from its smallest node on, without nodes on straight edges.
     fn close(&mut self, path: &[u32], position: &mut [u32], walk: &mut Walk) {
         let nodes = self.graph.nodes;
-        for &n in path {
+        let point = |n: u32| nodes[n as usize];
+        let mut smallest = 0;
+        for (i, &n) in path.iter().enumerate() {
             position[n as usize] = NONE;
+            if point(n) < point(path[smallest]) {
+                smallest = i;
+            }
         }
-        let smallest = (0..path.len()).min_by_key(|&i| nodes[path[i] as usize]).unwrap_or(0);
-        let at = |i: usize| path[(smallest + i) % path.len()];
-        let point = |i: usize| nodes[at(i) as usize];
+        let first = path[smallest];
+        if walk.first == NONE || point(first) < point(walk.first) {
+            walk.first = first;
+        }
+        let (tail, head) = path.split_at(smallest);
+        let mut before = *tail.last().or(path.last()).unwrap_or(&first);
+        let after = *path.get(smallest + 1).or(path.first()).unwrap_or(&first);
         // The smallest node is a corner, and the turn there tells the orientation.
-        let turn = cross(point(path.len() - 1), point(0), point(1));
-        if turn > C::Wide::default() {
+        if cross(point(before), point(first), point(after)) > C::Wide::default() {
             walk.outer = Some(self.rings.ring_ends.len() as u32);
         }
-        for i in 0..path.len() {
-            let before = if i == 0 { path.len() - 1 } else { i - 1 };
-            let straight = cross(point(before), point(i), point(i + 1)) == C::Wide::default();
-            if !straight || self.touched(at(i)) {
-                self.rings.nodes.push(at(i));
+        let mut at = first;
+        for &after in head[1..].iter().chain(tail).chain([&first]) {
+            let straight = cross(point(before), point(at), point(after)) == C::Wide::default();
+            if !straight || self.touched(at) {
+                self.rings.nodes.push(at);
             }
+            (before, at) = (at, after);
         }
         self.rings.ring_ends.push(self.rings.nodes.len() as u32);
     }
 
     /// Whether more than one ring passes the node: then it stays, so that the touch is a vertex.
     fn touched(&self, node: u32) -> bool {
-        let on = |e: u32| self.courses[e as usize] != Course::No;
-        let outs = self.graph.outs(node).filter(|&e| on(e as u32)).count();
-        outs + self.graph.ins(node).iter().filter(|&&e| on(e)).count() > 2
+        let on = |half: &&Half| self.courses[half.edge()] != Course::No;
+        self.graph.around(node).iter().filter(on).count() > 2
     }
 
     /// Gives every walk without an outer ring to the piece it is a hole of: that of the edge below
-    /// its first node. Walks that start further left are done before.
+    /// its first node. Such walks that start further left are done before.
+    #[inline(never)]
     fn nest(&mut self, search: &Search<C>) {
         let nodes = self.graph.nodes;
-        let mut order: Vec<u32> = (0..self.walks.len() as u32).collect();
-        order.sort_unstable_by_key(|&w| nodes[self.walks[w as usize].first as usize]);
         // The outer ring of each walk's polygon, and of each ring.
-        let mut outer_of = vec![NONE; self.walks.len()];
+        let mut outer_of: Vec<u32> = self.walks.iter().map(|w| w.outer.unwrap_or(NONE)).collect();
+        let mut holes: Vec<(Point<C>, u32)> = (self.walks.iter().zip(0..))
+            .filter(|(walk, _)| walk.outer.is_none() && walk.first != NONE)
+            .map(|(walk, id)| (nodes[walk.first as usize], id))
+            .collect();
+        holes.sort_unstable();
+        for (_, id) in holes {
+            let on = |e: usize| self.courses[e] != Course::No;
+            let below = search.below(self.graph, self.walks[id as usize].first, on);
+            let walk = below.map_or(NONE, |half| self.walk_of[half.edge()]);
+            outer_of[id as usize] = outer_of.get(walk as usize).copied().unwrap_or(NONE);
+        }
         let mut owners = vec![NONE; self.rings.ring_ends.len()];
-        for w in order {
-            let walk = &self.walks[w as usize];
-            let outer = walk.outer.or_else(|| {
-                let on = |e: usize| self.courses[e] != Course::No;
-                let below = search.below(self.graph, walk.first, on)?;
-                Some(outer_of[self.walk_of[below] as usize])
-            });
-            let outer = outer.unwrap_or(NONE);
-            outer_of[w as usize] = outer;
-            walk.rings.clone().for_each(|r| owners[r as usize] = outer);
+        for (walk, outer) in self.walks.iter().zip(outer_of) {
+            owners[walk.rings.start as usize..walk.rings.end as usize].fill(outer);
         }
         self.sort(&owners);
     }
 
     /// Puts polygons in the order of their outer rings' points, and the holes of each likewise.
+    #[inline(never)]
     fn sort(&mut self, owners: &[u32]) {
         let nodes = self.graph.nodes;
         let rings = &self.rings;
         let points = |r: u32| rings.ring(r).iter().map(|&n| nodes[n as usize]);
-        let compare = |a: &u32, b: &u32| points(*a).cmp(points(*b));
-        let is_outer = |&r: &u32| owners[r as usize] == r;
+        let first = |r: u32| points(r).next().unwrap_or_default();
+        // The first points differ, but for rings that touch there.
+        let compare = |a: &(Point<C>, u32), b: &(Point<C>, u32)| {
+            a.0.cmp(&b.0).then_with(|| points(a.1).cmp(points(b.1)))
+        };
         let all = 0..rings.ring_ends.len() as u32;
-        let (mut outers, mut holes): (Vec<u32>, Vec<u32>) = all.partition(is_outer);
+        let of = |keeps: &dyn Fn(u32) -> bool| -> Vec<(Point<C>, u32)> {
+            all.clone().filter(|&r| keeps(r)).map(|r| (first(r), r)).collect()
+        };
+        let mut outers = of(&|r| owners[r as usize] == r);
+        let mut holes = of(&|r| owners[r as usize] != r && owners[r as usize] != NONE);
         outers.sort_unstable_by(compare);
-        holes.retain(|&h| owners[h as usize] != NONE);
         let mut rank = vec![NONE; owners.len()];
-        for (i, &outer) in outers.iter().enumerate() {
-            rank[outer as usize] = i as u32;
+        for (&(_, outer), i) in outers.iter().zip(0..) {
+            rank[outer as usize] = i;
         }
         let rank_of = |hole: u32| rank[owners[hole as usize] as usize];
-        holes.sort_unstable_by(|a, b| rank_of(*a).cmp(&rank_of(*b)).then_with(|| compare(a, b)));
-        let mut holes = holes.into_iter().peekable();
+        holes.sort_unstable_by(|a, b| rank_of(a.1).cmp(&rank_of(b.1)).then_with(|| compare(a, b)));
+        let mut holes = holes.into_iter().map(|(_, hole)| hole).peekable();
         let (mut order, mut ends) =
             (Vec::with_capacity(owners.len()), Vec::with_capacity(outers.len()));
-        for (i, &outer) in outers.iter().enumerate() {
+        for (&(_, outer), i) in outers.iter().zip(0..) {
             order.push(outer);
-            while let Some(hole) = holes.next_if(|&h| rank_of(h) == i as u32) {
+            while let Some(hole) = holes.next_if(|&h| rank_of(h) == i) {
                 order.push(hole);
             }
             ends.push(order.len() as u32);

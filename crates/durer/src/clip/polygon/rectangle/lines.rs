@@ -4,6 +4,7 @@ use super::{Extent, extent, non_finite};
 use crate::Result;
 use crate::clip::attribute::Source;
 use crate::clip::line::cut_inside;
+use crate::clip::outcode::Outcode;
 use crate::math::{DVec2, Rect};
 
 /// Pieces of polylines in one flat buffer, in the order and direction of the input.
@@ -93,20 +94,16 @@ fn cut(
     sources: bool,
     out: &mut ClippedLines,
 ) {
-    let (min, max) = (window.min(), window.max());
-    let apart = |a: DVec2, b: DVec2| {
-        (a.x < min.x && b.x < min.x)
-            || (a.x > max.x && b.x > max.x)
-            || (a.y < min.y && b.y < min.y)
-            || (a.y > max.y && b.y > max.y)
-    };
+    // An edge whose ends have a bit in common lies beyond that border.
+    let code = |p: DVec2| Outcode::of_point_2d(window, p);
+    let mut before = part.first().map_or(Outcode::INSIDE, |&p| code(p));
     // Whether the piece being built ends with the point reached.
     let mut open = false;
     let mut next = 1;
     while next < part.len() {
         if open {
             // The whole run of points inside at once.
-            let run = part[next..].iter().position(|p| !window.contains(*p));
+            let run = part[next..].iter().position(|p| !code(*p).is_inside());
             let end = run.map_or(part.len(), |length| next + length);
             out.points.extend_from_slice(&part[next..end]);
             if sources {
@@ -116,10 +113,14 @@ fn cut(
             if next == part.len() {
                 break;
             }
+            before = Outcode::INSIDE;
         }
         let (k, a, b) = (next - 1, part[next - 1], part[next]);
         next += 1;
-        if apart(a, b) {
+        let after = code(b);
+        let apart = !(before & after).is_inside();
+        before = after;
+        if apart {
             continue;
         }
         let mut push = |point: DVec2| {

@@ -10,7 +10,8 @@
 //!   crossings are interpolated; no pixels, no sampling.
 //! - **Cost**: O(n h) for n cells, h the pieces of the horizon over one cell (a few), after O(n) for
 //!   projecting. Memory O(n).
-//! - **Limits**: one height per point of the grid. What lies between the eye and the near plane hides
+//! - **Limits**: one height per point of the grid. Horizons know that a line is hidden, not how often:
+//!   hidden lines count one surface in front of them. What lies between the eye and the near plane hides
 //!   all the same.
 //! - **Deviations**: cells are two triangles each, whose union is the covered area, so the result is
 //!   that of a visible-surface algorithm on [`HeightField::to_mesh`]. Where points are missing, one looks

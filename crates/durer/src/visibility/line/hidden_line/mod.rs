@@ -23,8 +23,10 @@ mod occluders;
 pub use cover::Cover;
 
 use self::occluders::Occluders;
-use super::arrange::{SLIVER, arrange};
-use super::edge_lines::{ClassSet, EdgeLine, Facing, Intersections, NO_ITEM, Rules, materials};
+use super::arrange::{How, SLIVER, arrange};
+use super::edge_lines::{
+    ClassSet, EdgeLine, Facing, Intersections, NO_ITEM, Rules, material_number, materials,
+};
 use super::intersection::intersections;
 use super::overlap::Piece;
 use super::page::{GridPoint, Page, Projected, Vertex};
@@ -35,8 +37,7 @@ use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
-use crate::view::picture_plane::PicturePlane;
-use crate::visibility::object::{Bodies, Faces};
+use crate::visibility::object::{Bodies, Edges, Faces};
 use crate::{Error, Result, parallel};
 
 /// The facts.
@@ -61,6 +62,9 @@ pub struct Options {
     pub crease: f64,
     /// Where penetrating faces are looked for, if [`LineClass::Intersection`] is among the classes.
     pub intersections: Intersections,
+    /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): where they
+    /// end is [`LineClass::Section`].
+    pub cap_material: Option<usize>,
     /// Whether silhouettes are those of the smooth surface that the mesh stands for, where its normals
     /// are at a right angle to the sight, and not the edges between faces. Such a line runs beside the
     /// mesh's own outline, so faces that touch its triangle do not hide it.
@@ -72,6 +76,12 @@ pub struct Options {
     /// simplified within it, those shorter are left out, and lines much closer than it to another
     /// along their whole length are drawn once. 0 gives all that the grid has.
     pub tolerance: f64,
+    /// Silhouettes of round parts and creases that end in the open are cut back to the next junction,
+    /// or left out, where that takes at most this part of the drawing's larger side, or four times as
+    /// much but three edges of the mesh; gaps between their tips are closed up to 0.3 times as wide.
+    /// 0 leaves all as it is on the mesh, and so does a choice of classes that lacks some of
+    /// [`ClassSet::default`]. 0.01 suits drawings that are looked at.
+    pub stubs: f64,
     /// Whether lines are put in an order with short ways for a pen, class by class.
     pub pen_order: bool,
 }
@@ -84,9 +94,11 @@ impl Default for Options {
             classes: ClassSet::default(),
             crease: 40.0_f64.to_radians(),
             intersections: Intersections::default(),
+            cap_material: None,
             smooth: false,
             hidden: true,
             tolerance: 5e-5,
+            stubs: 0.0,
             pen_order: false,
         }
     }
@@ -97,10 +109,15 @@ impl Options {
         if !(0.0..=std::f64::consts::PI).contains(&self.crease) {
             return Err(Error::parameter("crease", self.crease.to_degrees(), "0 to 180 degrees"));
         }
-        if !(0.0..0.5).contains(&self.tolerance) {
-            return Err(Error::parameter("tolerance", self.tolerance, "at least 0 and below 0.5"));
-        }
-        Ok(())
+        self.how().check()
+    }
+
+    /// Stubs are known by what they do not touch, so only where everything is drawn.
+    fn how(&self) -> How {
+        let edges = |set: ClassSet| set.with(LineClass::Wire).with(LineClass::Section);
+        let all = edges(self.classes) == edges(ClassSet::default());
+        let stubs = if all { self.stubs } else { 0.0 };
+        How { tolerance: self.tolerance, stubs, pen_order: self.pen_order }
     }
 }
 
@@ -113,6 +130,8 @@ pub enum Step {
     Line {
         /// What it shows.
         class: LineClass,
+        /// Whether it is a silhouette across a part of the surface that is not sharp there.
+        smooth: bool,
         /// Its ends in the plane of the picture.
         ends: [DVec2; 2],
         /// What hides it, by item.
@@ -126,12 +145,12 @@ pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
     let mut pieces = Vec::new();
     let mut spans = Vec::new();
     for step in steps {
-        if let Step::Line { class, ends, covers } = step {
+        if let Step::Line { class, smooth, ends, covers } = step {
             let ends = ends.map(|p| page.grid_from_plane(p));
-            cut(*class, ends, covers, options.hidden, &mut spans, &mut pieces);
+            cut(*class, *smooth, ends, covers, options.hidden, &mut spans, &mut pieces);
         }
     }
-    arrange(page, pieces, options.tolerance, options.pen_order)
+    arrange(page, pieces, options.how())
 }
 
 /// Draws the lines of a scene.
@@ -172,62 +191,82 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
     options.check()?;
-    let faces = Faces::new(scene)?;
-    let plane = PicturePlane::new(view);
-    let empty = Drawing { window: plane.window(), ..Drawing::default() };
-    let Some(projected) = Projected::new(&faces, plane) else { return Ok(empty) };
-    t.step(|| Step::Page(projected.page));
-    let (bodies, edges) = Bodies::find(&faces);
-    let facing = Facing::new(&faces, &bodies, &projected);
+    super::page::draw(scene, view, |faces, projected| {
+        t.step(|| Step::Page(projected.page));
+        let (bodies, edges) = Bodies::find(faces);
+        let facing = Facing::new(faces, &bodies, projected);
+        let lines = lines(scene, faces, &bodies, edges, &facing, options, projected);
+        let segments: Vec<[Vertex; 2]> = lines.iter().map(|l| l.ends).collect();
+        let occluders = Occluders::new(faces, &bodies, &facing, projected, &segments);
+        let pieces = hide(&lines, &occluders, options, t);
+        arrange(&projected.page, pieces, options.how())
+    })
+}
+
+/// All lines, before it is known what of them can be seen.
+fn lines(
+    scene: &Scene,
+    faces: &Faces,
+    bodies: &Bodies,
+    edges: Edges,
+    facing: &Facing,
+    options: &Options,
+    projected: &Projected,
+) -> Vec<FeatureLine> {
     let rules = Rules {
-        faces: &faces,
+        faces,
         edges: &edges,
-        facing: &facing,
-        bodies: &bodies,
-        materials: materials(&faces),
+        facing,
+        bodies,
+        materials: materials(faces),
+        cap: options.cap_material.map(|m| material_number(Some(m))),
         classes: options.classes,
         crease: libm::cos(options.crease) as f32,
         smooth: options.smooth,
     };
-    let mut lines = feature_lines(&rules, &projected);
+    let mut lines = feature_lines(&rules, projected);
     drop(rules);
     drop(edges);
     if options.classes.contains(LineClass::Intersection) {
-        lines.extend(meeting_lines(&faces, &bodies, options.intersections, &projected));
+        lines.extend(meeting_lines(faces, bodies, options.intersections, projected));
     }
     if options.smooth && options.classes.contains(LineClass::Silhouette) {
-        lines.extend(smooth_lines(scene, &faces, &projected));
+        lines.extend(smooth_lines(scene, faces, projected));
     }
-    let segments: Vec<[Vertex; 2]> = lines.iter().map(|l| l.ends).collect();
-    let occluders = Occluders::new(&faces, &bodies, &facing, &projected, &segments);
+    lines
+}
+
+/// The pieces of all lines.
+fn hide(
+    lines: &[FeatureLine],
+    occluders: &Occluders<'_>,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Vec<Piece> {
     let jobs: Vec<&[FeatureLine]> = lines.chunks(JOB).collect();
-    let touching = projected.page.touching;
+    let page = occluders.page();
+    let covers_of = |line: &FeatureLine, covers: &mut Vec<Cover>| {
+        covers_of(line, occluders, page.touching, !options.hidden, covers);
+    };
     let hide = |lines: &[FeatureLine]| {
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
         for line in lines {
-            covers_of(line, &occluders, touching, !options.hidden, &mut covers);
-            cut(
-                line.class,
-                line.ends.map(|v| v.at),
-                &covers,
-                options.hidden,
-                &mut spans,
-                &mut pieces,
-            );
+            covers_of(line, &mut covers);
+            let ends = line.ends.map(|v| v.at);
+            cut(line.class, line.smooth, ends, &covers, options.hidden, &mut spans, &mut pieces);
         }
         pieces
     };
-    let pieces: Vec<Piece> = parallel::map(jobs, hide).into_iter().flatten().collect();
-    for line in &lines {
+    let pieces = parallel::map(jobs, hide).into_iter().flatten().collect();
+    for line in lines {
         t.step(|| {
             let mut covers = Vec::new();
-            covers_of(line, &occluders, touching, !options.hidden, &mut covers);
-            let ends = line.ends.map(|v| projected.page.plane_from_grid(v.at));
-            Step::Line { class: line.class, ends, covers }
+            covers_of(line, &mut covers);
+            let ends = line.ends.map(|v| page.plane_from_grid(v.at));
+            Step::Line { class: line.class, smooth: line.smooth, ends, covers }
         });
     }
-    let lines = arrange(&projected.page, pieces, options.tolerance, options.pen_order);
-    Ok(Drawing { lines, ..empty })
+    pieces
 }
 
 /// Lines per job.
@@ -241,13 +280,16 @@ struct FeatureLine {
     items: [u32; 2],
     /// Faces with one of these vertices do not hide it; [`NO_ITEM`] is none.
     around: [u32; 3],
+    /// See [`Step::Line`].
+    smooth: bool,
 }
 
 impl FeatureLine {
     /// `None` for a line that is a point in the picture.
     fn new(ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
         let around = [NO_ITEM; 3];
-        (ends[0].at != ends[1].at).then_some(Self { ends, class, items, around })
+        let line = Self { ends, class, items, around, smooth: false };
+        (ends[0].at != ends[1].at).then_some(line)
     }
 }
 
@@ -257,8 +299,10 @@ fn feature_lines(rules: &Rules<'_>, projected: &Projected) -> Vec<FeatureLine> {
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
     let of = |vertices| {
         let lines = rules.lines(vertices).into_iter();
-        let line =
-            |l: EdgeLine| FeatureLine::new(projected.edge(rules.faces, l.ends)?, l.class, l.items);
+        let line = |l: EdgeLine| {
+            let ends = projected.edge(rules.faces, l.ends)?;
+            Some(FeatureLine { smooth: l.smooth, ..FeatureLine::new(ends, l.class, l.items)? })
+        };
         lines.filter_map(line).collect::<Vec<_>>()
     };
     parallel::map(jobs, of).into_iter().flatten().collect()
@@ -282,7 +326,7 @@ fn smooth_lines(scene: &Scene, faces: &Faces, projected: &Projected) -> Vec<Feat
     let line = |s: SmoothSilhouette| {
         let ends = projected.segment(s.ends)?;
         let line = FeatureLine::new(ends, LineClass::Silhouette, [s.item, NO_ITEM])?;
-        Some(FeatureLine { around: faces.triangle(s.item)?, ..line })
+        Some(FeatureLine { around: faces.triangle(s.item)?, smooth: true, ..line })
     };
     smooth_silhouettes(scene, faces, &projected.plane).into_iter().filter_map(line).collect()
 }
@@ -318,6 +362,7 @@ fn covers_of(
 /// Cuts one line into pieces.
 fn cut(
     class: LineClass,
+    smooth: bool,
     ends: [GridPoint; 2],
     covers: &[Cover],
     hidden: bool,
@@ -333,6 +378,7 @@ fn cut(
         _ => GridPoint { x: p.x + (t * dx).round() as i32, y: p.y + (t * dy).round() as i32 },
     };
     for s in spans.iter().filter(|s| hidden || s.invisibility == 0) {
-        pieces.push(Piece { ends: [at(s.from), at(s.to)], class, invisibility: s.invisibility });
+        let ends = [at(s.from), at(s.to)];
+        pieces.push(Piece { ends, class, invisibility: s.invisibility, smooth });
     }
 }

@@ -5,7 +5,7 @@
 //! nothing nearer comes.
 
 use super::super::edge_lines::{Facing, turned_on_grid};
-use super::super::page::{GridPoint, Projected, Vertex};
+use super::super::page::{GridPoint, Page, Projected, Vertex};
 use crate::visibility::object::{Bodies, Faces};
 
 /// A face in a cell's list.
@@ -196,6 +196,11 @@ impl<'a> Occluders<'a> {
             -1 => Some(Occluder { item, corners: [a, c, b] }),
             _ => None,
         }
+    }
+
+    /// The grid.
+    pub fn page(&self) -> &Page {
+        &self.projected.page
     }
 
     /// Whether a face has one of three vertices.

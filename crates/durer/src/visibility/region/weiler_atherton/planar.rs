@@ -2,10 +2,11 @@
 //! to the faces that they lie in.
 
 use super::faces::{Place, float};
-use crate::clip::polygon::overlay::arrangement::{Arrangement, Search};
+use crate::clip::polygon::overlay::arrangement::Arrangement;
 use crate::clip::polygon::overlay::grid::{self, Block, Grid};
 use crate::clip::polygon::overlay::lattice::{Segment, cross};
 use crate::clip::polygon::overlay::noding::{self, Ends};
+use crate::clip::polygon::overlay::search::Search;
 use crate::math::DVec2;
 
 const NONE: u32 = u32::MAX;
@@ -35,9 +36,12 @@ impl Planar {
         let Some(block) = Block::around(&segments) else {
             return Self { face_count: 1, starts: vec![0], ..Self::default() };
         };
-        let (order, occupied) = grid::spatial_order(&segments, block);
-        let segments: Vec<Segment<i32>> = order.iter().map(|&i| segments[i as usize]).collect();
-        let grid = Grid::new(&segments, block, occupied);
+        let (order, spread) = grid::spatial_order(&segments, block);
+        let segments: Vec<Segment<i32>> = match order {
+            Some(order) => order.iter().map(|&i| segments[i as usize]).collect(),
+            None => segments,
+        };
+        let grid = Grid::new(&segments, block, spread);
         let noding = noding::node(&segments, &grid, |_| Ends::Both);
         let graph = Arrangement::of_lines(&noding);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
@@ -52,8 +56,7 @@ impl Planar {
         let mut starts = Vec::with_capacity(graph.nodes.len() + 1);
         for node in 0..graph.nodes.len() as u32 {
             starts.push(around.len() as u32);
-            around.extend(graph.outs(node).map(|e| 2 * e as u32));
-            around.extend(graph.ins(node).iter().map(|e| 2 * e + 1));
+            around.extend(graph.around(node).iter().map(|half| half.0));
         }
         starts.push(around.len() as u32);
         Self { points: graph.nodes.to_vec(), edges, around, starts, ..Self::default() }
@@ -124,7 +127,7 @@ impl Planar {
         self.part_count = parts.len();
         for (_, vertex, cycle) in parts {
             let below = search.below(graph, vertex, |_| true);
-            let face = below.map_or(0, |e| face_of_cycle[cycle_of[2 * e] as usize]);
+            let face = below.map_or(0, |half| face_of_cycle[cycle_of[half.0 as usize] as usize]);
             // Parts further left are done before; one that is not found lies around everything.
             face_of_cycle[cycle as usize] = if face == NONE { 0 } else { face };
         }

@@ -222,7 +222,6 @@ fn touched_rows(t: &ScreenTriangle) -> [i32; 2] {
 
 /// What is at the centres of the pixels, for the planes besides colour.
 struct Centers<'a> {
-    triangles: &'a [ScreenTriangle],
     masked: Masked<'a>,
     list: ActiveList<'a>,
     row: DepthRow,
@@ -233,7 +232,6 @@ impl<'a> Centers<'a> {
     fn new(input: &'a SurfaceInput<'a>, picture: &Picture<'_>) -> Option<Self> {
         let (width, height) = (input.view.width(), input.view.height());
         picture.wants_planes().then(|| Self {
-            triangles: &input.triangles,
             masked: Masked::new(input),
             list: ActiveList::new(&input.triangles, width, height),
             row: DepthRow::new(width),
@@ -243,9 +241,8 @@ impl<'a> Centers<'a> {
     fn row(&mut self, y: i32, picture: &mut Picture<'_>) {
         self.row.clear();
         for a in self.list.advance(y, |_| ()) {
-            let t = &self.triangles[a.triangle as usize];
             let span = [a.x0, a.x1];
-            self.masked.enter(&mut self.row, t, span, y, &mut picture.lit, |_, _| ());
+            self.masked.enter(&mut self.row, a.triangle, span, y, &mut picture.lit, |_, _| ());
         }
         picture.write_planes(0, y as u32, &self.row.item, &self.row.depth);
     }

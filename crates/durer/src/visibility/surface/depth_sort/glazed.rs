@@ -4,16 +4,16 @@ use crate::math::Vec4;
 use crate::shade::color::premultiply;
 use crate::target::Framebuffer;
 use crate::visibility::surface::background::background_rows;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::layers::{below_color, over};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::picture;
-use crate::visibility::surface::setup::Coverage;
 use crate::visibility::surface::visible::{Visible, pixels_of, write};
 
 /// What is opaque so far, and the sum of what was blended over it since.
 pub struct Glazed<'a> {
     input: &'a SurfaceInput<'a>,
+    blended: TriangleSet,
     lighting: Lighting<'a>,
     look: &'a picture::Options,
     opaque: Visible,
@@ -25,21 +25,22 @@ pub struct Glazed<'a> {
 impl<'a> Glazed<'a> {
     pub fn new(
         input: &'a SurfaceInput<'a>,
+        blended: TriangleSet,
         lighting: Lighting<'a>,
         look: &'a picture::Options,
     ) -> Self {
         let opaque = Visible::new(pixels_of(input.view));
         let sums = vec![None; opaque.item.len()];
-        Self { input, lighting, look, opaque, sums, lit: Lit::new(lighting) }
+        Self { input, blended, lighting, look, opaque, sums, lit: Lit::new(lighting) }
     }
 
-    /// Paints a pixel.
-    pub fn put(&mut self, [x, y]: [i32; 2], item: u32, depth: f32) {
+    /// Paints a pixel of a triangle of the input.
+    pub fn put(&mut self, [x, y]: [i32; 2], triangle: usize, depth: f32) {
         if depth >= 1.0 {
             return;
         }
-        let index = self.opaque.index(x, y);
-        if self.input.run_of(item).coverage != Coverage::Blended {
+        let (index, item) = (self.opaque.index(x, y), self.input.triangles[triangle].item);
+        if !self.blended.contains(triangle) {
             self.opaque.put(x, y, depth, item);
             self.sums[index] = None;
             return;

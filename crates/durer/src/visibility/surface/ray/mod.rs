@@ -7,28 +7,31 @@
 //!
 //! Deviations: rays from the eye are cast in screen space (see `primary`), with the z-buffer's
 //! coverage and depths. Reflection is that of the material: Schlick's approximation of Fresnel's law,
-//! less for rough surfaces. Without secondary rays blended surfaces count as opaque; with them, rays go
-//! on through what is blended. Flat and Gouraud shading light each point where shadows are cast.
+//! less for rough surfaces. Rays go on through what is blended: without secondary rays straight, to the
+//! first opaque surface. Flat and Gouraud shading light each point where shadows are cast.
 
 mod bvh;
+mod eye;
 mod primary;
 mod whitted;
 mod world;
 
 use crate::info::{Class, Info};
-use crate::math::Vec4;
 use crate::shade::PreparedLights;
-use crate::target::{Framebuffer, NO_ITEM};
+use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::Samples;
-use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
+use crate::visibility::surface::layers::mean;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture;
+use crate::visibility::surface::setup::Coverage;
 use crate::visibility::surface::visible::{
-    Masks, Visible, background_at, pixels_of, with_lighting, write, write_planes,
+    Visible, background_at, pixels_of, with_lighting, write, write_planes,
 };
-use primary::{ScreenHit, ScreenRays};
+use eye::Eye;
+use primary::ScreenRays;
 use whitted::Whitted;
 use world::WorldTriangles;
 
@@ -128,16 +131,17 @@ pub fn render(
         let rays = ScreenRays::new(&input.triangles, input.view);
         let secondary = options.shadows || options.reflections;
         let world = secondary.then(|| WorldTriangles::new(input));
-        let caster = Caster { input, lighting, options, rays, world, listens };
-        let height = input.view.height() as i32;
-        let bands = (0..height).step_by(BAND as usize).collect();
-        let bands = crate::parallel::map(bands, |top| caster.band(top, height.min(top + BAND)));
+        // Secondary rays find for themselves what is behind glass.
+        let blended = Some(input.having(Coverage::Blended));
+        let blended = blended.filter(|set| !secondary && !set.is_empty());
+        let caster = Caster { input, lighting, options, rays: &rays, world, blended, listens };
+        let bands = caster.bands();
         let mut visible = Visible::new(pixels_of(input.view));
         let mut colors = Vec::new();
         for band in bands {
             band.steps.into_iter().for_each(|step| t.step(|| step));
-            for ([x, y], hit) in band.hits {
-                visible.put(x, y, hit.depth, hit.item);
+            for ([x, y], (depth, item)) in band.hits {
+                visible.put(x, y, depth, item);
             }
             colors.extend(band.colors);
         }
@@ -150,12 +154,44 @@ pub fn render(
     });
 }
 
+/// The rays from the eye alone: what is seen, without light.
+pub struct PrimaryRays<'a> {
+    input: &'a SurfaceInput<'a>,
+    rays: ScreenRays<'a>,
+}
+
+impl<'a> PrimaryRays<'a> {
+    /// Builds the hierarchy of boxes. Cost: O(n log n).
+    pub fn new(input: &'a SurfaceInput<'a>) -> Self {
+        Self { input, rays: ScreenRays::new(&input.triangles, input.view) }
+    }
+
+    /// What the rays through the pixels' centres hit first: column and row, window depth and item, row
+    /// by row; pixels that show nothing are left out. Cost: about O(log n) per pixel.
+    pub fn hits(&self) -> Vec<([i32; 2], (f32, u32))> {
+        let Self { input, rays } = self;
+        let options = Options::default();
+        with_lighting(
+            input,
+            &PreparedLights::new(&[], input.view.camera()),
+            &options.look,
+            |lighting| {
+                let (options, blended) = (&options, None);
+                let caster =
+                    Caster { input, lighting, options, rays, world: None, blended, listens: false };
+                caster.bands().into_iter().flat_map(|band| band.hits).collect()
+            },
+        )
+    }
+}
+
 /// Rows of pixels that one thread takes at a time.
 const BAND: i32 = 16;
 
 /// The rows that one thread has worked on.
 struct Band {
-    hits: Vec<([i32; 2], ScreenHit)>,
+    /// Depth and item of what is nearest at pixels' centres.
+    hits: Vec<([i32; 2], (f32, u32))>,
     /// Empty where rays are only cast to find what is visible.
     colors: Vec<[u8; 4]>,
     steps: Vec<Step>,
@@ -165,77 +201,67 @@ struct Caster<'a> {
     input: &'a SurfaceInput<'a>,
     lighting: Lighting<'a>,
     options: &'a Options,
-    rays: ScreenRays<'a>,
+    rays: &'a ScreenRays<'a>,
     world: Option<WorldTriangles>,
+    /// What rays from the eye go through.
+    blended: Option<TriangleSet>,
     listens: bool,
 }
 
 impl Caster<'_> {
     /// Whether one ray a pixel says all.
     fn is_plain(&self) -> bool {
-        self.world.is_none() && self.options.samples == Samples::One
+        self.world.is_none() && self.blended.is_none() && self.options.samples == Samples::One
+    }
+
+    /// Works on all rows, on all threads.
+    fn bands(&self) -> Vec<Band> {
+        let height = self.input.view.height() as i32;
+        let tops = (0..height).step_by(BAND as usize).collect();
+        crate::parallel::map(tops, |top| self.band(top, height.min(top + BAND)))
     }
 
     fn band(&self, top: i32, bottom: i32) -> Band {
         let mut band = Band { hits: Vec::new(), colors: Vec::new(), steps: Vec::new() };
-        let mut masks = Masks::new(self.input, self.lighting);
-        let mut stack = Vec::new();
+        let mut eye = Eye::new(self);
         let mut whitted = Whitted::new(self.world.as_ref(), self.lighting, self.options);
-        for (x, y) in
-            (top..bottom).flat_map(|y| (0..self.input.view.width() as i32).map(move |x| (x, y)))
-        {
-            let mut cast = |offset: [i32; 2]| {
-                let hit = self.rays.cast([x, y], offset, &mut masks, &mut stack);
-                if self.listens {
-                    let kind = if offset == [0; 2] { RayKind::Primary } else { RayKind::Sample };
-                    let hit = hit.map(|h| h.item);
-                    band.steps.push(Step::Ray { x, y, kind, generation: 0, hit });
-                }
-                hit
-            };
-            let center = cast([0; 2]);
-            if let Some(hit) = center {
-                band.hits.push(([x, y], hit));
-            }
+        let columns = self.input.view.width() as i32;
+        for at in (top..bottom).flat_map(|y| (0..columns).map(move |x| [x, y])) {
+            let center = eye.cast(at, [0; 2], &mut band.steps);
+            band.hits.extend(eye.nearest(center).map(|hit| (at, hit)));
             if self.is_plain() {
                 continue;
             }
-            let items: Vec<u32> = match self.options.samples {
-                Samples::One => vec![center.map_or(NO_ITEM, |h| h.item)],
+            let stacks = match self.options.samples {
+                Samples::One => vec![eye.items(center)],
                 samples => {
-                    let hits = samples.offsets().iter().map(|&offset| cast(offset));
-                    hits.map(|h| h.map_or(NO_ITEM, |h| h.item)).collect()
+                    let sample = |&offset| {
+                        let opaque = eye.cast(at, offset, &mut band.steps);
+                        eye.items(opaque)
+                    };
+                    samples.offsets().iter().map(sample).collect()
                 }
             };
+            let [x, y] = at;
             let mut report = |kind, generation, hit| {
                 if self.listens {
                     band.steps.push(Step::Ray { x, y, kind, generation, hit });
                 }
             };
-            band.colors.push(self.color(&mut whitted, items, [x, y], &mut report));
+            band.colors.push(self.color(&mut whitted, stacks, at, &mut report));
         }
         band
     }
 
-    /// The mean of a pixel's samples; each item is lit once.
+    /// The mean of a pixel's samples, each with all that its ray sees.
     fn color(
         &self,
         whitted: &mut Whitted<'_>,
-        mut items: Vec<u32>,
-        [x, y]: [i32; 2],
+        mut stacks: Vec<Vec<u32>>,
+        at: [i32; 2],
         report: &mut impl FnMut(RayKind, u32, Option<u32>),
     ) -> [u8; 4] {
-        items.sort_unstable();
-        let share = 1.0 / items.len() as f32;
-        let behind = background_at(&self.options.look, self.input.view.height(), y);
-        let parts = items.chunk_by(|a, b| a == b);
-        let sum = parts.fold(Vec4::ZERO, |sum, same| {
-            let color = match same[0] {
-                NO_ITEM => behind,
-                item => whitted.at_pixel(item, [x, y], behind, report),
-            };
-            sum + color * (same.len() as f32 * share)
-        });
-        encode(sum)
+        let behind = background_at(&self.options.look, self.input.view.height(), at[1]);
+        encode(mean(&mut stacks, |stack| whitted.at_pixel(stack, at, behind, report)))
     }
 }

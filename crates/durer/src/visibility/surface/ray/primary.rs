@@ -11,7 +11,7 @@ use crate::math::Vec3;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use crate::view::View;
 use crate::visibility::surface::setup::ScreenTriangle;
-use crate::visibility::surface::visible::{Masks, nearer};
+use crate::visibility::surface::visible::nearer;
 
 pub struct ScreenRays<'a> {
     triangles: &'a [ScreenTriangle],
@@ -33,14 +33,15 @@ impl<'a> ScreenRays<'a> {
         Self { triangles, bvh: Bvh::new(&boxes, face) }
     }
 
-    /// The nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre.
+    /// The nearest triangle at a point `offset` (1/256 pixel) from a pixel's centre of those that `hides`
+    /// says hide what is behind them; it is asked of hits before the nearest so far.
     #[inline]
     pub fn cast(
         &self,
         [x, y]: [i32; 2],
         offset: [i32; 2],
-        masks: &mut Masks<'_>,
         stack: &mut Vec<(u32, f32)>,
+        mut hides: impl FnMut(&ScreenHit) -> bool,
     ) -> Option<ScreenHit> {
         let place = |v: i32, o: i32| (v << SUBPIXEL_BITS) + HALF_PIXEL + o;
         let at = [place(x, offset[0]), place(y, offset[1])];
@@ -59,9 +60,10 @@ impl<'a> ScreenRays<'a> {
             let [ox, oy] = t.origin();
             let depth = t.depth_at((x - ox) as f32 + rest[0], (y - oy) as f32 + rest[1]);
             let wins = best.is_none_or(|b| nearer((depth, t.item), (b.depth, b.item)));
-            if depth < 1.0 && wins && masks.passes(i as usize, t.item, x, y) {
+            let hit = ScreenHit { depth, item: t.item, triangle: i };
+            if depth < 1.0 && wins && hides(&hit) {
                 *limit = depth;
-                best = Some(ScreenHit { depth, item: t.item, triangle: i });
+                best = Some(hit);
             }
         });
         best

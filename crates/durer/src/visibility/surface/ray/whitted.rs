@@ -11,6 +11,7 @@ use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, Shading};
 use crate::visibility::surface::Background;
 use crate::visibility::surface::attributes::{blend, run_of};
+use crate::visibility::surface::layers::compose;
 use crate::visibility::surface::lit::{Lighting, Lit, Seen};
 use crate::visibility::surface::setup::Coverage;
 
@@ -81,21 +82,23 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// Linear premultiplied colour of an item at a pixel's centre.
+    /// Linear premultiplied colour at a pixel's centre of what a ray from the eye sees: an item, or
+    /// [`crate::target::NO_ITEM`], and what was seen through without secondary rays, far ones first.
     pub fn at_pixel(
         &mut self,
-        item: u32,
+        stack: &[u32],
         [x, y]: [i32; 2],
         behind: Vec4,
         hear: &mut impl FnMut(RayKind, u32, Option<u32>),
     ) -> Vec4 {
+        let Some((&item, blended)) = stack.split_first() else { return behind };
         let Some(world) = self.world.filter(|_| u64::from(item) < self.triangle_count()) else {
-            return self.lit.color(item, x, y).truncate().extend(1.0);
+            return compose(&mut self.lit, item, blended.iter().copied(), behind, [x, y]);
         };
         let camera = self.shared.view.camera();
         let weights = self.lit.triangle(item).weights(x, y, [0.0; 2]);
         let towards_eye = match camera.projection {
-            Projection::Perspective { .. } => -blend(&self.lit.triangle(item).positions, weights),
+            Projection::Perspective { .. } => -blend(&self.lit.triangle(item).positions(), weights),
             Projection::Orthographic { .. } => camera.axes()[2].as_vec3(),
         };
         let point = self.point(item, Seen::Pixel(x, y), weights, towards_eye);
@@ -112,9 +115,9 @@ impl<'a> Whitted<'a> {
         let view = view.normalize_or_zero();
         let front = t.face_normal.dot(view) >= 0.0;
         let face_normal = if front { t.face_normal } else { -t.face_normal };
-        let normal = blend(&t.normals, weights).normalize_or(face_normal);
+        let normal = blend(&t.normals(), weights).normalize_or(face_normal);
         let normal = if normal.dot(view) < 0.0 { -normal } else { normal };
-        let position = blend(&t.positions, weights);
+        let position = blend(&t.positions(), weights);
         Point { item, seen, position, view, normal, face_normal, front }
     }
 

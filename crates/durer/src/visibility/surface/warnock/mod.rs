@@ -8,25 +8,29 @@
 //!
 //! Deviations: windows consist of whole samples, so their corners are samples and all relations are
 //! decided exactly, with the z-buffer's own coverage and depth. What a surrounding triangle hides is
-//! dropped before a window is divided. Blended surfaces count as opaque.
+//! dropped before a window is divided. Blended surfaces hide nothing: where they are, windows are divided
+//! until all that is left surrounds them, and a sample keeps a list of them, front to back until opaque.
 
 mod depth;
+mod glass;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
 use crate::shade::PreparedLights;
-use crate::target::{Framebuffer, NO_ITEM};
+use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
 use crate::visibility::surface::input::SurfaceInput;
+use crate::visibility::surface::layers::{below_color, mean};
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture;
-use crate::visibility::surface::setup::ScreenTriangle;
+use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
     Masks, Visible, background_at, nearer, pixels_of, with_lighting, write, write_planes,
 };
 use depth::{farthest, hides};
+use glass::Glass;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -37,7 +41,7 @@ pub const INFO: Info = Info {
     source: "A Hidden Surface Algorithm for Computer Generated Halftone Pictures, University of Utah",
     class: Class::ImageSpace,
     cost: "O(triangles · log pixels) for small triangles; memory likewise",
-    limits: "blended surfaces count as opaque",
+    limits: "where surfaces blend, each sample is decided",
 };
 
 /// Where a window is divided.
@@ -127,6 +131,10 @@ pub fn render(
     t: &mut impl Tracer<Step>,
 ) {
     with_lighting(input, lights, &options.look, |lighting| {
+        let blended = input.having(Coverage::Blended);
+        if !blended.is_empty() {
+            return glass::render(input, lighting, blended, options, framebuffer, t);
+        }
         let whole = pixels_of(input.view);
         let visible = solve(input, lighting, options.division, SampleGrid::PIXELS, whole, t);
         if options.sub_levels == 0 {
@@ -157,27 +165,26 @@ fn anti_aliased(
         let visible = solve(input, lighting, options.division, grid, window, t);
         for (x, y) in (top..bottom).flat_map(|y| (0..x1).map(move |x| (x, y))) {
             let behind = background_at(&options.look, input.view.height(), y);
-            let color = encode(mean(&visible, &mut lit, n, [x, y], behind));
+            let color = encode(pixel_mean(&visible, &mut lit, n, [x, y], behind));
             framebuffer.color.set(x as u32, y as u32, color);
         }
     }
 }
 
-/// The mean of a pixel's samples; each item is lit once.
-fn mean(visible: &Visible, lit: &mut Lit<'_>, n: i32, [x, y]: [i32; 2], behind: Vec4) -> Vec4 {
+/// The mean of a pixel's samples.
+fn pixel_mean(
+    visible: &Visible,
+    lit: &mut Lit<'_>,
+    n: i32,
+    [x, y]: [i32; 2],
+    behind: Vec4,
+) -> Vec4 {
     let mut items: Vec<u32> = Vec::with_capacity((n * n) as usize);
     for row in y * n..(y + 1) * n {
         let start = visible.index(x * n, row);
         items.extend(&visible.item[start..start + n as usize]);
     }
-    items.sort_unstable();
-    let share = 1.0 / items.len() as f32;
-    let color = |lit: &mut Lit<'_>, item: u32| match item {
-        NO_ITEM => behind,
-        item => lit.color(item, x, y).truncate().extend(1.0),
-    };
-    let parts = items.chunk_by(|a, b| a == b);
-    parts.fold(Vec4::ZERO, |sum, same| sum + color(lit, same[0]) * (same.len() as f32 * share))
+    mean(&mut items, |&item| below_color(lit, item, behind, [x, y]))
 }
 
 /// What is visible at the samples of a window.
@@ -189,11 +196,7 @@ pub(crate) fn solve(
     window: Window,
     t: &mut impl Tracer<Step>,
 ) -> Visible {
-    let covers = input.triangles.iter().map(|t| Cover::new(t, grid)).collect();
-    let masks = Masks::new(input, lighting);
-    let visible = Visible::new(window);
-    let mut solver = Solver { triangles: &input.triangles, covers, grid, masks, visible };
-    t.step(|| Step::Begin { window, per_pixel: grid.per_pixel() });
+    let mut solver = Solver::new(input, lighting, grid, window, None);
     solver.run(window, division, t);
     solver.visible
 }
@@ -217,12 +220,41 @@ struct Solver<'a> {
     covers: Vec<Cover>,
     grid: SampleGrid,
     masks: Masks<'a>,
+    /// What is opaque.
     visible: Visible,
+    /// What is blended and before it, where something blends.
+    glass: Option<Glass>,
 }
 
-impl Solver<'_> {
+impl<'a> Solver<'a> {
+    fn new(
+        input: &'a SurfaceInput<'_>,
+        lighting: Lighting<'a>,
+        grid: SampleGrid,
+        window: Window,
+        glass: Option<Glass>,
+    ) -> Self {
+        let triangles = &input.triangles;
+        let covers = triangles.iter().map(|t| Cover::new(t, grid)).collect();
+        let (masks, visible) = (Masks::new(input, lighting), Visible::new(window));
+        Self { triangles, covers, grid, masks, visible, glass }
+    }
+
+    /// Begins with an empty window.
+    fn restart(&mut self, window: Window) {
+        self.visible = Visible::new(window);
+        if let Some(glass) = &mut self.glass {
+            glass.layers.clear();
+        }
+    }
+
+    fn is_blended(&self, triangle: usize) -> bool {
+        self.glass.as_ref().is_some_and(|glass| glass.blended.contains(triangle))
+    }
+
     /// Looks at windows from a stack; the windows of a stack share one list of entries.
     fn run(&mut self, whole: Window, division: Division, t: &mut impl Tracer<Step>) {
+        t.step(|| Step::Begin { window: whole, per_pixel: self.grid.per_pixel() });
         let mut list = Vec::new();
         if !whole.is_empty() {
             let all = 0..self.triangles.len() as u32;
@@ -269,7 +301,8 @@ impl Solver<'_> {
     fn drop_hidden(&self, window: &Window, entries: &mut Vec<Entry>) {
         let surrounding = entries.iter().filter(|e| e.surrounds);
         let mut best: Option<(f32, u32, u32)> = None;
-        for e in surrounding.filter(|e| !self.masks.is_masked(e.triangle as usize)) {
+        let hiding = |i: usize| !self.masks.is_masked(i) && !self.is_blended(i);
+        for e in surrounding.filter(|e| hiding(e.triangle as usize)) {
             let triangle = &self.triangles[e.triangle as usize];
             let far = farthest(triangle, self.grid, window);
             if best.is_none_or(|(depth, item, _)| nearer((far, triangle.item), (depth, item))) {
@@ -284,7 +317,8 @@ impl Solver<'_> {
         });
     }
 
-    /// Draws a window that is empty, has one triangle, or one sample; gives whether it was so.
+    /// Draws a window that is empty, has one triangle or one sample, or in which no division would tell
+    /// blended surfaces apart; gives whether it was so.
     fn draw_simple(
         &mut self,
         window: &Window,
@@ -304,6 +338,11 @@ impl Solver<'_> {
             _ if window.x1 - window.x0 == 1 && window.y1 - window.y0 == 1 => {
                 self.decide(entries, [window.x0, window.y0], t);
             }
+            _ if self.glass.is_some() && entries.iter().all(|e| e.surrounds) => {
+                for y in window.y0..window.y1 {
+                    (window.x0..window.x1).for_each(|x| self.decide(entries, [x, y], t));
+                }
+            }
             _ => return false,
         }
         true
@@ -311,12 +350,20 @@ impl Solver<'_> {
 
     /// Scan converts one triangle in a window.
     fn draw(&mut self, window: &Window, triangle: usize) {
-        let Self { triangles, covers, grid, masks, visible } = self;
+        let blended = self.is_blended(triangle);
+        let Self { triangles, covers, grid, masks, visible, glass } = self;
         let (t, n) = (&triangles[triangle], grid.per_pixel());
         covers[triangle].spans(window, |span| {
             for x in span.x0..span.x1 {
-                if masks.passes(triangle, t.item, x / n, span.y / n) {
-                    visible.put(x, span.y, grid.depth(t, x, span.y), t.item);
+                if !masks.passes(triangle, t.item, x / n, span.y / n) {
+                    continue;
+                }
+                let depth = grid.depth(t, x, span.y);
+                match glass {
+                    Some(glass) if blended => {
+                        glass.put(visible.index(x, span.y), depth, t.item);
+                    }
+                    _ => visible.put(x, span.y, depth, t.item),
                 }
             }
         });
@@ -325,18 +372,36 @@ impl Solver<'_> {
     /// Decides one sample by depth.
     fn decide(&mut self, entries: &[Entry], [x, y]: [i32; 2], t: &mut impl Tracer<Step>) {
         let n = self.grid.per_pixel();
-        let mut best: Option<(f32, u32, u32)> = None;
+        // What is nearest of what is opaque, and of all.
+        let [mut best, mut front]: [Option<(f32, u32, u32)>; 2] = [None, None];
+        let place = self.visible.index(x, y);
+        let first = self.glass.as_ref().map_or(0, |glass| glass.layers.len());
         for &Entry { triangle, .. } in entries {
             let i = triangle as usize;
             let (depth, item) = (self.grid.depth(&self.triangles[i], x, y), self.triangles[i].item);
-            let wins = best.is_none_or(|(d, other, _)| nearer((depth, item), (d, other)));
-            if wins && self.covers[i].covers(x, y) && self.masks.passes(i, item, x / n, y / n) {
-                best = Some((depth, item, triangle));
+            let wins = |over: Option<(f32, u32, u32)>| {
+                over.is_none_or(|(d, other, _)| nearer((depth, item), (d, other)))
+            };
+            if !wins(best)
+                || !self.covers[i].covers(x, y)
+                || !self.masks.passes(i, item, x / n, y / n)
+            {
+                continue;
+            }
+            if wins(front) {
+                front = Some((depth, item, triangle));
+            }
+            match &mut self.glass {
+                Some(glass) if glass.blended.contains(i) => glass.put(place, depth, item),
+                _ => best = Some((depth, item, triangle)),
             }
         }
-        t.step(|| Step::Sample { x, y, triangle: best.map(|b| b.2) });
+        t.step(|| Step::Sample { x, y, triangle: front.map(|b| b.2) });
         if let Some((depth, item, _)) = best {
             self.visible.put(x, y, depth, item);
+            if let Some(glass) = &mut self.glass {
+                glass.keep_before(first, (depth, item));
+            }
         }
     }
 

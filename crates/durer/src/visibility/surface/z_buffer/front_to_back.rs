@@ -71,3 +71,93 @@ impl<'a> FrontToBack<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bins::jobs;
+    use super::super::rasterize::{AllPass, rasterize};
+    use super::super::tile::SamplePlane;
+    use super::*;
+    use crate::math::{DMat4, DVec3, Vec3};
+    use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
+    use crate::simd::Level;
+    use crate::view::View;
+    use crate::visibility::surface::setup::{Filter, runs};
+    use crate::visibility::surface::{Cull, Samples};
+    use fearless_simd::dispatch;
+
+    /// Far triangles, then a wall of many small ones before most of them; on the right half of the last
+    /// rows nothing hides them.
+    fn scene() -> (Scene, View) {
+        let mut positions = Vec::new();
+        for i in 0..300_u32 {
+            let (x, y) = ((i % 20) as f32 / 10.0 - 1.0, (i / 20) as f32 / 7.5 - 1.0);
+            let z = -0.2 - (i * 37 % 64) as f32 / 100.0;
+            positions.extend(
+                [(0.0, 0.0), (0.2, 0.0), (0.0, 0.2)].map(|(a, b)| Vec3::new(x + a, y + b, z)),
+            );
+        }
+        for (x, y) in (0..8).flat_map(|y| (0..8).map(move |x| (x, y))) {
+            if y == 0 && x >= 4 {
+                continue;
+            }
+            let at = |i: i32, j: i32| Vec3::new(i as f32 / 4.0 - 1.0, j as f32 / 4.0 - 1.0, 0.5);
+            let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+            positions.extend([a, b, c, a, c, d]);
+        }
+        let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
+        let scene = Scene {
+            meshes: vec![Mesh { positions, ..Mesh::default() }],
+            instances: vec![instance],
+            ..Scene::default()
+        };
+        let projection = Projection::Orthographic { height: 2.0 };
+        let (eye, target, up) = (DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y);
+        let camera = Camera { eye, target, up, projection, near: 1.0, far: 4.0 };
+        (scene, View::new(camera, 64, 64).expect("view"))
+    }
+
+    #[test]
+    fn what_a_wall_hides_is_skipped_and_the_picture_stays() {
+        let (scene, view) = scene();
+        let runs = runs(&scene).expect("runs");
+        for samples in [Samples::One, Samples::Four] {
+            let level = Level::new();
+            let filter = Filter { cull: Cull::None, sample_reach: 128 };
+            let bins: Vec<Bins> = jobs(&runs)
+                .iter()
+                .map(|job| Bins::new(job, &runs, &scene, &view, filter, level))
+                .collect();
+            let area = [[0, 0], [64, 64]];
+            let mut order = FrontToBack::default();
+            let (mut given, mut skipped) = (Vec::new(), 0);
+            let mut sorted = SamplePlane::of(samples.offsets());
+            for (i, part) in order.parts(&bins, 0).enumerate() {
+                dispatch!(level, simd => {
+                    if i > 0 {
+                        sorted.iter_mut().for_each(|plane| plane.find_farthest(simd));
+                    }
+                    let hidden = |t: &&&ScreenTriangle| {
+                        let [x0, y0, x1, y1] = t.pixel_bounds(128).expect("pixels");
+                        let in_tile = [x0.max(0), y0.max(0), x1.min(63), y1.min(63)];
+                        sorted.iter().all(|p| p.hides(in_tile, t.depth_min.to_bits() as i32))
+                    };
+                    skipped += part.iter().filter(hidden).count();
+                    rasterize(simd, &mut sorted, area, part.iter().copied(), None::<&mut AllPass>)
+                });
+                given.extend(part.iter().map(|t| t.item));
+            }
+            assert!(skipped > 150, "{skipped} of {}", given.len());
+            given.sort_unstable();
+            assert!(given.into_iter().eq(bins[0].of_tile(0).map(|t| t.item)), "each once");
+            let mut plain = SamplePlane::of(samples.offsets());
+            let all = bins[0].of_tile(0);
+            dispatch!(level, simd => rasterize(simd, &mut plain, area, all, None::<&mut AllPass>));
+            for (a, b) in sorted.iter().zip(&plain) {
+                assert!(a.item == b.item && a.depth == b.depth, "{samples:?}");
+            }
+            // Some of the far ones are seen, some hidden.
+            assert!(plain[0].item.iter().any(|&item| item < 300));
+        }
+    }
+}

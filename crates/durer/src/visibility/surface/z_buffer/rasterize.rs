@@ -76,6 +76,16 @@ impl<S: Simd> LaneEdges<S> {
         self.row[0] | self.row[1] | self.row[2]
     }
 
+    /// [`Self::outside`] so many rows further down.
+    #[inline(always)]
+    fn outside_in_row(&self, row: i32) -> i32x8<S> {
+        let [a, b, c] = &self.row;
+        let [step_a, step_b, step_c] = self.step_y;
+        (*a + step_a.wrapping_mul(row))
+            | (*b + step_b.wrapping_mul(row))
+            | (*c + step_c.wrapping_mul(row))
+    }
+
     #[inline(always)]
     fn next_row(&mut self) {
         self.row[0] += self.step_y[0];
@@ -183,6 +193,9 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
     let mut lanes = [i32x8::splat(simd, 0); 3];
     // What they change at least and at most from the centre of a block's first pixel to its samples.
     let (mut lowest, mut highest) = ([0; 3], [0; 3]);
+    // What they are at most among eight samples in each row of a block, from the same place.
+    let mut rows = [i32x8::splat(simd, 0); 3];
+    let row_numbers = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     for i in 0..3 {
         let (dx, dy) = (i64::from(dx[i]), i64::from(dy[i]));
         let rest = at[i] & i64::from(SUBPIXELS - 1);
@@ -197,13 +210,23 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
         let (y_first, y_last) = (dy * i64::from(up), dy * i64::from(last + down));
         lowest[i] = x_first.min(x_last) + y_first.min(y_last);
         highest[i] = x_first.max(x_last) + y_first.max(y_last);
+        let x_last = dx * i64::from((columns - 1) * SUBPIXELS + right);
+        let y_last = dy * i64::from(down);
+        let most = (rest + x_first.max(x_last) + y_first.max(y_last)) >> SUBPIXEL_BITS;
+        rows[i] = row_numbers * dy as i32 + most as i32;
     }
     let (x0, mut y) = (x0 & -BLOCK, y0 & -BLOCK);
+    let nearest = t.depth_min.to_bits() as i32;
     while y <= y1 {
         let mut x = x0;
         while x <= x1 {
+            if plane.hides([x, y, x, y], nearest) {
+                x += BLOCK;
+                continue;
+            }
             let (fx, fy) = (i64::from(x * SUBPIXELS), i64::from(y * SUBPIXELS));
             let mut edges = LaneEdges { row: [i32x8::splat(simd, 0); 3], step_y: [0; 3] };
+            let mut most = [i32x8::splat(simd, 0); 3];
             let (mut step_x, mut outside) = ([0; 3], false);
             for i in 0..3 {
                 let here = at[i] + i64::from(dx[i]) * fx + i64::from(dy[i]) * fy;
@@ -211,17 +234,23 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
                 // An edge that the whole block lies inside of is left out; the others fit i32.
                 if here + lowest[i] < 0 {
                     edges.row[i] = lanes[i] + (here >> SUBPIXEL_BITS) as i32;
+                    most[i] = rows[i] + (here >> SUBPIXEL_BITS) as i32;
                     edges.step_y[i] = dy[i];
                     step_x[i] = dx[i].wrapping_mul(columns);
                 }
             }
             if !outside {
+                let in_box = (2u64 << (y1 - y).min(7)) - 1;
                 let mut column = 0;
                 while column < BLOCK {
-                    fill_rows(simd, plane, t, tile, edges, [x + column, y, y1.min(y + 7)], test);
-                    edges.row[0] += step_x[0];
-                    edges.row[1] += step_x[1];
-                    edges.row[2] += step_x[2];
+                    // Rows with a sample that may be inside; thin triangles have few of them.
+                    let inside = (most[0] | most[1] | most[2]).simd_ge(i32x8::splat(simd, 0));
+                    let found = inside.to_bitmask() & in_box;
+                    fill_found(simd, plane, t, tile, &edges, [x + column, y], found, test);
+                    for i in 0..3 {
+                        edges.row[i] += step_x[i];
+                        most[i] += step_x[i];
+                    }
                     column += columns;
                 }
             }
@@ -242,44 +271,108 @@ fn fill_rows<S: Simd, T: FragmentTest>(
     [x, y0, y1]: [i32; 3],
     test: &mut Option<&mut T>,
 ) {
-    let origin = t.origin();
-    let [lanes_x, lanes_y] = &plane.lanes_in_pixels;
-    let from_x = f32x8::from_slice(simd, lanes_x) + (tile[0] + x - origin[0]) as f32;
-    let lanes_y = f32x8::from_slice(simd, lanes_y);
-    let depth_x = from_x * t.depth_dx;
+    let depths = LaneDepths::new(simd, plane, t, [tile[0] + x, tile[1]]);
     for y in y0..=y1 {
         let outside = edges.outside();
         edges.next_row();
-        // Thin triangles leave most rows of their boxes and blocks empty.
-        if !outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
-            continue;
+        // Thin triangles leave most rows of their boxes empty.
+        if outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+            fill_row(simd, plane, t, &depths, outside, [x, y], test);
         }
-        let index = ((y * TILE + x) << plane.shift) as usize;
-        let depth_y = (lanes_y + (tile[1] + y - origin[1]) as f32) * t.depth_dy;
-        let depth = (depth_x + depth_y) + t.depth;
-        let depth = depth.max(f32x8::splat(simd, t.depth_min)).min(f32x8::splat(simd, t.depth_max));
-        let depth: i32x8<S> = depth.bitcast();
-        let stored = &mut plane.depth[index..index + 8];
-        let old = i32x8::from_slice(simd, stored);
-        // Both are bits of floats ≥ 0, so the difference keeps its sign.
-        let mut write = !((old - depth) | outside) >> 31u32;
-        if !write.simd_lt(i32x8::splat(simd, 0)).any_true() {
-            continue;
-        }
-        let items = &mut plane.item[index..index + 8];
-        let old_item: i32x8<S> = u32x8::from_slice(simd, items).bitcast();
-        let item = t.item as i32;
-        // At equal depths the lower item wins, whatever the order of drawing.
-        let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
-        write &= !(tie_lost >> 31u32);
-        if let Some(test) = test.as_mut() {
-            write = tested(simd, write, t, [x, y], (plane.first, plane.shift), *test);
-        }
-        // Not a select: that would become a masked store, which is far slower.
-        (old ^ ((old ^ depth) & write)).store_slice(stored);
-        let new_item: u32x8<S> = (old_item ^ ((old_item ^ item) & write)).bitcast();
-        new_item.store_slice(items);
     }
+}
+
+/// Eight samples wide from column x, the rows from y on whose bits are set in `rows`.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one call, all of it a block's state")]
+fn fill_found<S: Simd, T: FragmentTest>(
+    simd: S,
+    plane: &mut SamplePlane,
+    t: &ScreenTriangle,
+    tile: [i32; 2],
+    edges: &LaneEdges<S>,
+    [x, y]: [i32; 2],
+    mut rows: u64,
+    test: &mut Option<&mut T>,
+) {
+    if rows == 0 {
+        return;
+    }
+    let depths = LaneDepths::new(simd, plane, t, [tile[0] + x, tile[1]]);
+    while rows != 0 {
+        let row = rows.trailing_zeros() as i32;
+        rows &= rows - 1;
+        let outside = edges.outside_in_row(row);
+        if outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+            fill_row(simd, plane, t, &depths, outside, [x, y + row], test);
+        }
+    }
+}
+
+/// The depth of a triangle at eight samples side by side.
+struct LaneDepths<S: Simd> {
+    /// What x adds to the depth.
+    from_x: f32x8<S>,
+    /// Where the samples lie in their row.
+    lanes_y: f32x8<S>,
+    /// From row 0 of the tile to the row that depths are counted from.
+    rows: i32,
+}
+
+impl<S: Simd> LaneDepths<S> {
+    /// From column `x` on, with the first row of the tile.
+    #[inline(always)]
+    fn new(simd: S, plane: &SamplePlane, t: &ScreenTriangle, [x, tile_y]: [i32; 2]) -> Self {
+        let origin = t.origin();
+        let [lanes_x, lanes_y] = &plane.lanes_in_pixels;
+        let from_x = f32x8::from_slice(simd, lanes_x) + (x - origin[0]) as f32;
+        let lanes_y = f32x8::from_slice(simd, lanes_y);
+        Self { from_x: from_x * t.depth_dx, lanes_y, rows: tile_y - origin[1] }
+    }
+
+    /// The bits of the depths in a row of the tile.
+    #[inline(always)]
+    fn at(&self, simd: S, t: &ScreenTriangle, y: i32) -> i32x8<S> {
+        let from_y = (self.lanes_y + (y + self.rows) as f32) * t.depth_dy;
+        let depth = (self.from_x + from_y) + t.depth;
+        let depth = depth.max(f32x8::splat(simd, t.depth_min)).min(f32x8::splat(simd, t.depth_max));
+        depth.bitcast()
+    }
+}
+
+/// Eight samples of row y from column x, some of which lie inside all edges: depth test, write.
+#[inline(always)]
+fn fill_row<S: Simd, T: FragmentTest>(
+    simd: S,
+    plane: &mut SamplePlane,
+    t: &ScreenTriangle,
+    depths: &LaneDepths<S>,
+    outside: i32x8<S>,
+    [x, y]: [i32; 2],
+    test: &mut Option<&mut T>,
+) {
+    let index = ((y * TILE + x) << plane.shift) as usize;
+    let depth = depths.at(simd, t, y);
+    let stored = &mut plane.depth[index..index + 8];
+    let old = i32x8::from_slice(simd, stored);
+    // Both are bits of floats ≥ 0, so the difference keeps its sign.
+    let mut write = !((old - depth) | outside) >> 31u32;
+    if !write.simd_lt(i32x8::splat(simd, 0)).any_true() {
+        return;
+    }
+    let items = &mut plane.item[index..index + 8];
+    let old_item: i32x8<S> = u32x8::from_slice(simd, items).bitcast();
+    let item = t.item as i32;
+    // At equal depths the lower item wins, whatever the order of drawing.
+    let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
+    write &= !(tie_lost >> 31u32);
+    if let Some(test) = test.as_mut() {
+        write = tested(simd, write, t, [x, y], (plane.first, plane.shift), *test);
+    }
+    // Not a select: that would become a masked store, which is far slower.
+    (old ^ ((old ^ depth) & write)).store_slice(stored);
+    let new_item: u32x8<S> = (old_item ^ ((old_item ^ item) & write)).bitcast();
+    new_item.store_slice(items);
 }
 
 #[inline(never)]

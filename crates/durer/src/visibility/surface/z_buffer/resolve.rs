@@ -228,26 +228,43 @@ fn add_mixed<S: Simd>(
     [x, y]: [i32; 2],
 ) {
     for i in (0..differs.len()).filter(|&i| differs[i] != 0) {
-        let pixel = (index + i) as u32;
-        mixed.pixels.push(pixel);
-        mixed.sums[pixel as usize] = Vec4::ZERO;
-        let (items, count) = sample_items(planes, index + i);
-        let (share, mut seen) = (1.0 / count as f32, 0u32);
-        for (s, &item) in items[..count].iter().enumerate() {
-            if seen >> s & 1 == 1 {
-                continue;
-            }
-            let mut same = 0u32;
-            for (j, other) in items[..count].iter().enumerate() {
-                same |= u32::from(*other == item) << j;
-            }
-            seen |= same;
-            let weight = same.count_ones() as f32 * share;
-            if item == NO_ITEM {
-                mixed.sums[pixel as usize] += behind * weight;
-            } else {
-                mixed.add(simd, lit, item, pixel, weight, [x + i as i32, y]);
-            }
+        let (pixel, at) = ((index + i) as u32, [x + i as i32, y]);
+        mixed.begin(pixel);
+        if let [plane] = planes
+            && let Some(items) = plane.items(index + i).as_array::<4>()
+        {
+            add_shares(simd, items, mixed, lit, behind, pixel, at);
+        } else {
+            let (items, _) = sample_items(planes, index + i);
+            add_shares(simd, &items, mixed, lit, behind, pixel, at);
+        }
+    }
+}
+
+/// Adds what each item, and the background, has of the samples of a pixel.
+#[inline(always)]
+fn add_shares<S: Simd, const N: usize>(
+    simd: S,
+    items: &[u32; N],
+    mixed: &mut Mixed,
+    lit: &mut Lit<'_>,
+    behind: Vec4,
+    pixel: u32,
+    at: [i32; 2],
+) {
+    let mut left = (1u32 << N) - 1;
+    while left != 0 {
+        let item = items[left.trailing_zeros() as usize % N];
+        let mut same = 0u32;
+        for (i, other) in items.iter().enumerate() {
+            same |= u32::from(*other == item) << i;
+        }
+        left &= !same;
+        let weight = same.count_ones() as f32 * (1.0 / N as f32);
+        if item == NO_ITEM {
+            mixed.add_color(pixel, behind, weight);
+        } else {
+            mixed.add(simd, lit, item, pixel, weight, at);
         }
     }
 }

@@ -1,0 +1,77 @@
+//! Same input, same bytes: every command that writes something, on one, two and four threads.
+
+use crate::harness::Folder;
+use std::path::Path;
+
+/// What comes after `durer`, and the file it writes; later ones read what earlier ones wrote.
+const COMMANDS: &[(&str, &str)] = &[
+    ("render teapot.obj --item items.png --depth depth.png --normal normals.png", "a.png"),
+    (
+        "render teapot.obj --eye 6,3,8 --target 0,1,0 --fov 30 --near 2 --far 30 --depth depth.png",
+        "front.png",
+    ),
+    ("render teapot.obj --aa 1 --background transparent --shadows map", "shadows.png"),
+    ("render teapot.obj --aa 64", "masks.png"),
+    ("render crate.glb --aa 16 --shading phong", "textured.png"),
+    ("render glass.glb", "glass.png"),
+    ("render glass.glb --algorithm z-buffer", "sorted.png"),
+    ("render glass.glb --algorithm depth-sort", "depth_sort.png"),
+    ("render glass.glb --bounces 3", "bounces.png"),
+    ("render bracket.stl --algorithm scan-line-z", "scan_line_z.png"),
+    ("render bracket.stl --algorithm spanning-scan-line", "spans.png"),
+    ("render bracket.stl --algorithm depth-sort", "sort.png"),
+    ("render bracket.stl --algorithm warnock", "warnock.png"),
+    ("render bracket.stl --algorithm ray --shadows rays", "rays.png"),
+    ("render bracket.stl --algorithm wireframe", "wires.png"),
+    ("render bracket.stl --section 1,0,0,0", "section.png"),
+    ("render bracket.stl --hidden dashed", "lines.svg"),
+    ("render bracket.stl --hidden layer", "lines.pdf"),
+    ("render bracket.stl --sheet third-angle", "sheet.dxf"),
+    ("render bracket.stl --style wireframe", "wires.hpgl"),
+    ("render bracket.stl --style regions", "regions.geojson"),
+    ("render teapot.obj --style regions+lines", "regions.svg"),
+    ("render bracket.stl --style shadows --hatch shade", "shadows.pdf"),
+    ("render bracket.stl --style regions+lines", "drawn.png"),
+    ("clip countries.geojson --window -10,35,30,60", "window.geojson"),
+    ("clip countries.geojson --by window.geojson --op difference", "rest.geojson"),
+    ("clip countries.geojson --window -10,35,30,60 --grid 0.5", "coarse.wkt"),
+    ("draw perspective.svg", "drawn_svg.png"),
+    ("draw countries.geojson --label name --fill #dde6cc --stroke #335533", "map.png"),
+    ("fill map.png --at 3,3 --color red --tolerance 4", "filled.png"),
+    ("plot --formula sin(x)*cos(z) --samples 61x40", "plot.svg"),
+    ("plot --formula sin(x)*cos(z) --samples 61x40", "plot.png"),
+    (
+        "warp front.png depth.png --eye 6,3,8 --target 0,1,0 --fov 30 --near 2 --far 30 --to-eye 6.2,3,8",
+        "warp.png",
+    ),
+];
+
+/// Runs all commands; the bytes of everything in the folder, by name.
+fn written(threads: u32) -> Vec<(String, Vec<u8>)> {
+    let folder = Folder::new();
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples");
+    for entry in std::fs::read_dir(samples).expect("samples are part of the repository") {
+        let path = entry.expect("a file").path();
+        let name = path.file_name().expect("a name").to_string_lossy();
+        folder.write(&name, std::fs::read(&path).expect("a sample"));
+    }
+    for (command, out) in COMMANDS {
+        let pixels = command.starts_with("render") && out.ends_with(".png");
+        let size = if pixels { "--size 96x80" } else { "" };
+        folder.must(&format!("{command} {size} -o {out} --threads {threads}"));
+        assert!(folder.path(out).exists(), "{command}");
+    }
+    let names = folder.names().into_iter();
+    names.map(|name| (name.clone(), folder.read(&name))).collect()
+}
+
+#[test]
+fn all_commands_write_the_same_bytes_on_any_number_of_threads() {
+    let expected = written(1);
+    assert!(expected.len() > COMMANDS.len());
+    for threads in [2, 4] {
+        for (found, expected) in written(threads).into_iter().zip(&expected) {
+            assert!(found == *expected, "{} with {threads} threads", expected.0);
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! How the work of visible-surface methods grows with triangles and with pixels, counted in steps.
+//!
+//! `cargo run --release --example growth -- docs/algorithms`
+
+mod chart;
+mod terrain;
+
+use chart::Chart;
+use durer::visibility::surface::method::SurfaceMethod;
+use durer_formats::png::{Compression, write_color};
+use terrain::{steps, terrain};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
+    // Cells along the sides of the surface, pixels along those of the picture.
+    for (name, sizes) in [
+        ("triangles", [8, 16, 32, 64].map(|n| (n, 128))),
+        ("pixels", [32, 64, 128, 256].map(|side| (16, side))),
+    ] {
+        let title = format!("{name}, four times as many each time; up: steps, tenfold");
+        let mut chart = Chart::new(&title)?;
+        for &method in SurfaceMethod::ALL.iter().filter(|m| **m != SurfaceMethod::ZBuffer) {
+            let counts = sizes.iter().map(|&(n, side)| steps(method, &terrain(n), side));
+            let counts = counts.collect::<durer::Result<Vec<f64>>>()?;
+            println!("{name} {method}: {counts:?}");
+            chart.curve(method.name(), &counts)?;
+        }
+        let file = std::fs::File::create(format!("{folder}/growth_{name}.png"))?;
+        write_color(file, &chart.picture()?, Compression::Small)?;
+    }
+    Ok(())
+}

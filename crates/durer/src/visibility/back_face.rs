@@ -1,0 +1,187 @@
+//! Back-face removal: faces that turn their back to the eye are left out before anything else is done.
+//!
+//! L. G. Roberts, *Machine Perception of Three-Dimensional Solids*, MIT Lincoln Laboratory TR 315, 1963:
+//! the eye is put into the equation of each face's plane. Normals are M. Newell's, from all corners of
+//! a polygon (in I. Sutherland, R. Sproull, R. Schumacker, *A Characterization of Ten Hidden-Surface
+//! Algorithms*, ACM Computing Surveys 1974), so that concave and slightly bent ones have their right
+//! side too. Object space. Cost: O(corners); memory O(1) but for the result.
+//!
+//! Limits: of closed bodies only, whose faces run counter-clockwise seen from outside. It finds all that
+//! is visible of one convex body; else it leaves out what certainly is not, about half of the faces.
+//! Coherence used: objects (a body's back is hidden by its front).
+//!
+//! The image-space algorithms do the same by the sign of a triangle's area on the screen
+//! ([`super::surface::setup`], switched by [`super::surface::Cull`]): the same triangles go, but for
+//! slivers that rounding to the grid of 1/256 pixel turns over.
+//!
+//! ```
+//! use durer::math::DVec3;
+//! use durer::trace::NoTrace;
+//! use durer::visibility::back_face::{Eye, Options, remove};
+//!
+//! let square = |z: f64| [(0., 0.), (1., 0.), (1., 1.), (0., 1.)].map(|(x, y)| DVec3::new(x, y, z));
+//! let (mut bottom, top) = (square(0.0), square(1.0));
+//! bottom.reverse();
+//! let eye = Eye::At(DVec3::new(0.5, 0.5, 3.0));
+//! let kept = remove([&bottom[..], &top[..]], eye, &Options::default(), &mut NoTrace);
+//! assert_eq!(kept, [1]);
+//! ```
+
+use crate::info::{Class, Info};
+use crate::math::DVec3;
+use crate::scene::{Camera, Mesh, Projection, Scene};
+use crate::trace::Tracer;
+use crate::view::cull::{Face, face_along, face_from_point, newell_area};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "back-face-removal",
+    title: "Back-face removal",
+    authors: "L. G. Roberts; M. Newell",
+    year: 1963,
+    source: "Machine Perception of Three-Dimensional Solids, MIT Lincoln Laboratory TR 315",
+    class: Class::ObjectSpace,
+    cost: "O(corners)",
+    limits: "closed bodies; finds all that is visible of one convex body only",
+};
+
+/// From where faces are seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Eye {
+    /// From a point, in perspective.
+    At(DVec3),
+    /// Along a direction, by parallel rays.
+    Along(DVec3),
+}
+
+impl Eye {
+    /// The eye of a camera, world space.
+    pub fn of(camera: &Camera) -> Self {
+        match camera.projection {
+            Projection::Perspective { .. } => Self::At(camera.eye),
+            Projection::Orthographic { .. } => Self::Along(-camera.axes()[2]),
+        }
+    }
+
+    fn side(self, normal: DVec3, point: DVec3) -> Face {
+        match self {
+            Self::At(eye) => face_from_point(normal, point, eye),
+            Self::Along(direction) => face_along(normal, direction),
+        }
+    }
+}
+
+/// What is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Whether faces are kept whose plane the eye lies in; they cover no area.
+    pub keep_edge_on: bool,
+    /// Of a scene: whether the triangles of a polygon ([`Mesh::faces`]) stay or go together, by the
+    /// polygon's normal, or each by its own.
+    pub whole_polygons: bool,
+}
+
+impl Default for Options {
+    /// Faces seen edge-on go; polygons stay or go as a whole.
+    fn default() -> Self {
+        Self { keep_edge_on: false, whole_polygons: true }
+    }
+}
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The eye was put into the equation of a face's plane.
+    Tested {
+        /// The face's place among those given.
+        face: usize,
+        /// Its vector area by Newell's method: along its normal, as long as its area.
+        area: DVec3,
+        /// The side that is seen.
+        side: Face,
+    },
+}
+
+/// The places of the polygons that turn their front to the eye, in order. Corners run
+/// counter-clockwise seen from the front; faces that are not finite or have no area count as seen
+/// edge-on.
+pub fn remove<'a>(
+    polygons: impl IntoIterator<Item = &'a [DVec3]>,
+    eye: Eye,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Vec<usize> {
+    let faces = polygons.into_iter().enumerate();
+    let kept = faces.filter(|(face, ring)| stays(*face, ring, 1.0, eye, options, t));
+    kept.map(|(face, _)| face).collect()
+}
+
+/// The items of a scene's triangles that turn their front to the eye, in order; the scene has passed
+/// [`Scene::check`]. Faces are numbered through all instances. Matrices that mirror turn no front into
+/// a back.
+pub fn remove_of_scene(
+    scene: &Scene,
+    eye: Eye,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Vec<u32> {
+    let (mut kept, mut ring) = (Vec::new(), Vec::new());
+    let (mut face, mut first_item) = (0, 0);
+    for instance in &scene.instances {
+        let mesh = &scene.meshes[instance.mesh];
+        let matrix = instance.world_from_mesh;
+        let mirrored = glam::DMat3::from_mat4(matrix).determinant() < 0.0;
+        for triangles in polygons(mesh, options.whole_polygons) {
+            ring.clear();
+            let corners = fan(mesh, triangles.clone());
+            let corner = |v: u32| matrix.transform_point3(mesh.positions[v as usize].as_dvec3());
+            ring.extend(corners.map(corner));
+            let sign = if mirrored { -1.0 } else { 1.0 };
+            if stays(face, &ring, sign, eye, options, t) {
+                kept.extend(triangles.map(|i| first_item + i as u32));
+            }
+            face += 1;
+        }
+        first_item += mesh.triangle_count() as u32;
+    }
+    kept
+}
+
+/// Whether a face stays; `sign` turns its normal over where the corners run the other way round.
+fn stays(
+    face: usize,
+    ring: &[DVec3],
+    sign: f64,
+    eye: Eye,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> bool {
+    let area = newell_area(ring) * sign;
+    // Newell's plane goes through the mean of the corners.
+    let mean = ring.iter().sum::<DVec3>() / ring.len() as f64;
+    let side = eye.side(area, mean);
+    t.step(|| Step::Tested { face, area, side });
+    match side {
+        Face::Front => true,
+        Face::Edge => options.keep_edge_on,
+        Face::Back => false,
+    }
+}
+
+/// The triangles of each face of a mesh.
+fn polygons(mesh: &Mesh, whole: bool) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+    let count = mesh.triangle_count();
+    let faces = if whole { mesh.faces.as_slice() } else { &[] };
+    let faces = faces.iter().map(move |&first| (first as usize).min(count));
+    let ends = faces.clone().skip(1).chain([count]);
+    let single = if whole && !mesh.faces.is_empty() { 0 } else { count };
+    // Without a list of faces each triangle is one.
+    faces.zip(ends).map(|(first, end)| first..end.max(first)).chain((0..single).map(|i| i..i + 1))
+}
+
+/// The corners of a polygon that is fanned from its first vertex.
+fn fan(mesh: &Mesh, triangles: std::ops::Range<usize>) -> impl Iterator<Item = u32> + '_ {
+    let first = triangles.clone().next().map(|i| mesh.triangle(i));
+    let start = first.into_iter().flat_map(|[a, b, _]| [a, b]);
+    start.chain(triangles.map(|i| mesh.triangle(i)[2]))
+}

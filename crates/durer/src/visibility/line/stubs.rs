@@ -1,0 +1,334 @@
+//! Short lines that end in the open are cut back.
+//!
+//! On a mesh the silhouette of a round surface is a zigzag of edges: it leaves spurs where it turns into
+//! the surface, and gaps where one edge hides the next. Creases flicker where a rounding is about as
+//! sharp as the crease angle. A draughtsman draws none of this. So tips of such lines that nearly meet
+//! are joined, and those that end in the open are cut back to the next junction, or left out, where
+//! that is not far. O(n) for lines that do not crowd.
+
+use super::chain::{Walk, point, walks};
+use super::overlap::Piece;
+use super::page::GridPoint;
+use super::table::Table;
+use crate::target::drawing::LineClass;
+
+/// What a stub ended at may end in the open without it, so cutting is repeated.
+const ROUNDS: usize = 3;
+
+/// A stub of so few edges of the mesh may be [`COARSE_LENGTH`] times as long: on a coarse mesh an
+/// edge is.
+const COARSE: usize = 3;
+const COARSE_LENGTH: f64 = 4.0;
+
+/// Gaps up to this part of a stub are closed, whichever line goes on in the other.
+const GAP: f64 = 0.3;
+
+/// What lies within this part of a stub meets on paper: a pen's stroke is as wide.
+const MEETS: f64 = 0.1;
+
+/// Silhouettes and creases shorter than this part of a stub are dust, sharp or not: they do not hold
+/// each other.
+const DUST: f64 = 0.3;
+
+/// The pieces without stubs up to `length` steps; what lies within `touch` steps touches.
+pub(super) fn without_stubs(mut pieces: Vec<Piece>, length: f64, touch: f64) -> Vec<Piece> {
+    let touch = touch.max(4.0);
+    let gaps = match Lines::new(&pieces, length, touch) {
+        Some(mut lines) => lines.gaps(),
+        None => return pieces,
+    };
+    pieces.extend(gaps);
+    for _ in 0..ROUNDS {
+        let Some(mut lines) = Lines::new(&pieces, length, touch) else { break };
+        let cuts = lines.stubs();
+        if cuts.is_empty() {
+            break;
+        }
+        for cut in cuts {
+            match cut {
+                Cut::All(piece) => pieces[piece].ends[1] = pieces[piece].ends[0],
+                Cut::Until(end, at) => pieces[end as usize / 2].ends[end as usize & 1] = at,
+            }
+        }
+        pieces.retain(|p| p.ends[0] != p.ends[1]);
+    }
+    pieces
+}
+
+/// What becomes of a piece.
+enum Cut {
+    /// It is left out.
+    All(usize),
+    /// An end moves to here.
+    Until(u32, GridPoint),
+}
+
+/// The lines of a drawing, chained and by place.
+struct Lines<'a> {
+    pieces: &'a [Piece],
+    walks: Vec<Walk>,
+    /// Whether the line that a piece belongs to is dust.
+    dust: Vec<bool>,
+    table: Table,
+    length: f64,
+    touch: f64,
+}
+
+/// The end of a line that nothing else touches.
+struct Tip {
+    end: u32,
+    at: GridPoint,
+}
+
+impl<'a> Lines<'a> {
+    fn new(pieces: &'a [Piece], length: f64, touch: f64) -> Option<Self> {
+        let mut table = Table::new(pieces, touch)?;
+        for (piece, i) in pieces.iter().zip(0..) {
+            table.enter(piece.ends, touch, i);
+        }
+        let walks = walks(pieces);
+        let mut dust = vec![false; pieces.len()];
+        for walk in &walks {
+            let piece = |end: &u32| &pieces[*end as usize / 2];
+            let class = piece(&walk.ends[0]).class;
+            if matches!(class, LineClass::Silhouette | LineClass::Crease)
+                && walk.ends.iter().map(|e| piece(e).length()).sum::<f64>() < length * DUST
+            {
+                walk.ends.iter().for_each(|e| dust[*e as usize / 2] = true);
+            }
+        }
+        Some(Self { pieces, walks, dust, table, length, touch })
+    }
+
+    /// The open walks from both sides.
+    fn open_walks(&self) -> Vec<Vec<u32>> {
+        let open = self.walks.iter().filter(|w| !w.closed);
+        let ways = open.flat_map(|w| {
+            let back = w.ends.iter().rev().map(|e| e ^ 1).collect();
+            [w.ends.clone(), back]
+        });
+        ways.filter(|ends| self.may_end_anywhere(ends[0])).collect()
+    }
+
+    fn may_end_anywhere(&self, end: u32) -> bool {
+        let i = end as usize / 2;
+        self.dust[i] || self.pieces[i].may_end_anywhere()
+    }
+
+    fn stubs(&mut self) -> Vec<Cut> {
+        let rings = self.walks.iter().filter(|w| w.closed).flat_map(|w| &w.ends);
+        let pieces = rings.map(|e| *e as usize / 2);
+        let mut cuts: Vec<Cut> = pieces.filter(|&i| self.dust[i]).map(Cut::All).collect();
+        for ends in self.open_walks() {
+            if self.is_in_the_open(&ends, self.touch.max(self.length * MEETS)) {
+                self.cut_back(&ends, &mut cuts);
+            }
+        }
+        cuts
+    }
+
+    /// Whether no other line lies within `radius` of the first point of a walk.
+    fn is_in_the_open(&mut self, ends: &[u32], radius: f64) -> bool {
+        let tip = point(self.pieces, ends[0]);
+        // Pieces of the walk that are near only because they are short.
+        let mut own = Vec::new();
+        for &end in ends {
+            own.push(end / 2);
+            if point(self.pieces, end ^ 1).distance(tip) > 2.0 * radius {
+                break;
+            }
+        }
+        let (pieces, dust) = (self.pieces, &self.dust);
+        let first = ends[0] as usize / 2;
+        let mut open = true;
+        self.table.cells(&[tip, tip], radius, |near| {
+            let touches = |&&i: &&u32| {
+                let other = &pieces[i as usize];
+                counts(&pieces[first], other)
+                    && !(dust[first] && dust[i as usize])
+                    && distance(tip, other) <= radius
+                    && !own.contains(&i)
+            };
+            open = near.iter().find(touches).is_none();
+        });
+        open
+    }
+
+    /// Takes away what lies between the tip of a walk and the next junction, if that is near.
+    fn cut_back(&mut self, ends: &[u32], cuts: &mut Vec<Cut>) {
+        let length = self.length;
+        let is_short = |sum: f64, edges: usize| {
+            sum <= length || (edges <= COARSE && sum <= length * COARSE_LENGTH)
+        };
+        let mut sum = 0.0;
+        for (k, &end) in ends.iter().enumerate() {
+            let piece = &self.pieces[end as usize / 2];
+            if !self.may_end_anywhere(end) {
+                return;
+            }
+            let junction = self.junction(ends, k);
+            sum += junction.map_or(piece.length(), |j| j.0);
+            if !is_short(sum, k + 1) {
+                return;
+            }
+            if let Some((_, at)) = junction {
+                cuts.extend(ends[..k].iter().map(|e| Cut::All(*e as usize / 2)));
+                return cuts.push(Cut::Until(end, at));
+            }
+        }
+        cuts.extend(ends.iter().map(|e| Cut::All(*e as usize / 2)));
+    }
+
+    /// The first place along a piece of a walk where another line ends on it, or where it ends on another
+    /// line.
+    fn junction(&mut self, ends: &[u32], k: usize) -> Option<(f64, GridPoint)> {
+        let (pieces, touch) = (self.pieces, self.touch);
+        let piece = &pieces[ends[k] as usize / 2];
+        let (start, far) = (point(pieces, ends[k]), point(pieces, ends[k] ^ 1));
+        let own = &ends[k.saturating_sub(1)..(k + 2).min(ends.len())];
+        let mut first: Option<(f64, GridPoint)> = None;
+        self.table.cells(&piece.ends, touch, |near| {
+            for &i in near {
+                let other = &pieces[i as usize];
+                if own.iter().any(|e| e / 2 == i) || !counts(piece, other) {
+                    continue;
+                }
+                let on_it = other.ends.map(|p| (p, distance(p, piece)));
+                let here = on_it.into_iter().filter(|o| o.1 <= touch).map(|o| o.0);
+                let there = (distance(far, other) <= touch).then_some(far);
+                for at in here.chain(there) {
+                    let along = start.distance(at);
+                    // The tip itself touches nothing.
+                    let away = k > 0 || along > touch;
+                    if away && first.is_none_or(|f| (along, at) < f) {
+                        first = Some((along, at));
+                    }
+                }
+            }
+        });
+        first
+    }
+
+    /// Pieces between tips that meet, or lie near each other and go on in each other's direction.
+    fn gaps(&mut self) -> Vec<Piece> {
+        let most = self.length * GAP;
+        let mut tips = Vec::new();
+        for ends in self.open_walks() {
+            if self.is_in_the_open(&ends, self.touch) {
+                tips.push(Tip { end: ends[0], at: point(self.pieces, ends[0]) });
+            }
+        }
+        tips.sort_unstable_by_key(|t| (t.at, t.end));
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for (i, a) in tips.iter().enumerate() {
+            let near = |b: &&Tip| b.at.minus(a.at)[0] as f64 <= most;
+            for (k, b) in tips[i + 1..].iter().take_while(near).enumerate() {
+                if a.at.distance(b.at) <= most && self.go_on(a, b) {
+                    pairs.push((a.at.distance(b.at), i, i + 1 + k));
+                }
+            }
+        }
+        pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        let mut used = vec![false; tips.len()];
+        let mut found = Vec::new();
+        for (_, a, b) in pairs {
+            if !used[a] && !used[b] {
+                (used[a], used[b]) = (true, true);
+                let like = self.pieces[tips[a].end as usize / 2];
+                found.push(Piece { ends: [tips[a].at, tips[b].at], ..like });
+            }
+        }
+        found
+    }
+
+    /// Whether one line goes on in the other: of one class, with turns below 60°.
+    fn go_on(&self, a: &Tip, b: &Tip) -> bool {
+        let of = |t: &Tip| &self.pieces[t.end as usize / 2];
+        let (p, q) = (of(a), of(b));
+        let same = (p.class, p.invisibility) == (q.class, q.invisibility);
+        let [gx, gy] = b.at.minus(a.at).map(|d| d as f64);
+        let ahead = |t: &Tip, sign: f64| {
+            let [x, y] = t.at.minus(point(self.pieces, t.end ^ 1)).map(|d| d as f64 * sign);
+            let cosine = (x * gx + y * gy) / ((x * x + y * y) * (gx * gx + gy * gy)).sqrt();
+            cosine > 0.5
+        };
+        let meet = a.at.distance(b.at) <= self.length * MEETS;
+        let on = meet || (ahead(a, 1.0) && ahead(b, -1.0));
+        same && a.end / 2 != b.end / 2 && a.at != b.at && on
+    }
+}
+
+/// A visible line ends in the open, whatever is hidden there.
+fn counts(of: &Piece, other: &Piece) -> bool {
+    of.invisibility > 0 || other.invisibility == 0
+}
+
+/// The distance of a point from a piece.
+fn distance(p: GridPoint, piece: &Piece) -> f64 {
+    let ([px, py], [dx, dy]) = (
+        p.minus(piece.ends[0]).map(|d| d as f64),
+        piece.ends[1].minus(piece.ends[0]).map(|d| d as f64),
+    );
+    let t = ((px * dx + py * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+    let (x, y) = (px - t * dx, py - t * dy);
+    (x * x + y * y).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn piece(a: [i32; 2], b: [i32; 2], smooth: bool) -> Piece {
+        let ends = [a, b].map(|[x, y]| GridPoint { x, y });
+        Piece { ends, class: LineClass::Silhouette, invisibility: 0, smooth }
+    }
+
+    fn ends(pieces: &[Piece]) -> Vec<[i32; 4]> {
+        pieces.iter().map(|p| [p.ends[0].x, p.ends[0].y, p.ends[1].x, p.ends[1].y]).collect()
+    }
+
+    #[test]
+    fn spurs_are_cut_back_to_the_junction() {
+        // Both ends of the first are held; the second ends past the junction with the third.
+        let frame = |smooth| {
+            vec![
+                piece([0, -9000], [0, 9000], false),
+                piece([0, 0], [50_000, 0], smooth),
+                piece([49_500, 0], [49_500, -60_000], false),
+            ]
+        };
+        let cut = without_stubs(frame(true), 1000.0, 10.0);
+        assert_eq!(ends(&cut)[1], [0, 0, 49_500, 0]);
+        // Sharp edges end where they end; and longer ones have a reason.
+        assert_eq!(without_stubs(frame(false), 1000.0, 10.0), frame(false));
+        assert_eq!(without_stubs(frame(true), 100.0, 10.0), frame(true));
+    }
+
+    #[test]
+    fn gaps_are_closed_and_dust_goes() {
+        let far = 1_000_000;
+        let mut pieces = vec![
+            piece([0, 0], [far, 0], true),
+            piece([far + 2000, 0], [2 * far, 0], true),
+            piece([far, far], [far + 900, far], true),
+            piece([far + 950, far], [far + 990, far + 100], true),
+        ];
+        let found = without_stubs(pieces.clone(), 10_000.0, 10.0);
+        let gap = [far, 0, far + 2000, 0];
+        assert_eq!(ends(&found), [ends(&pieces)[0], ends(&pieces)[1], gap]);
+        // What holds a line is not dust for it.
+        pieces.truncate(1);
+        pieces.push(Piece { class: LineClass::Crease, ..piece([far, 0], [far + 500, 500], true) });
+        let found = without_stubs(pieces, 10_000.0, 10.0);
+        assert_eq!(ends(&found)[0], [0, 0, far, 0]);
+    }
+
+    #[test]
+    fn short_lines_in_the_open_are_left_out() {
+        let ring = |k: i32| piece([k, 0], [k + 9000, 9000], true);
+        let lines = vec![piece([-90_000, 0], [90_000, 0], false), ring(200), ring(300_000)];
+        let found = without_stubs(lines.clone(), 10_000.0, 10.0);
+        assert_eq!(found, lines[..1]);
+        assert_eq!(without_stubs(lines.clone(), 1000.0, 10.0), lines);
+    }
+}

@@ -1,0 +1,69 @@
+//! What rays from the eye see: something opaque, and what blends before it.
+
+use super::primary::ScreenHit;
+use super::{Caster, RayKind, Step};
+use crate::target::NO_ITEM;
+use crate::visibility::surface::layers::{Layer, sort_layers};
+use crate::visibility::surface::visible::{Masks, nearer};
+
+/// One thread's rays.
+pub struct Eye<'a> {
+    caster: &'a Caster<'a>,
+    masks: Masks<'a>,
+    stack: Vec<(u32, f32)>,
+    /// What blends on the way of the latest ray, far ones first.
+    layers: Vec<Layer>,
+}
+
+impl<'a> Eye<'a> {
+    pub fn new(caster: &'a Caster<'a>) -> Self {
+        let masks = Masks::new(caster.input, caster.lighting);
+        Self { caster, masks, stack: Vec::new(), layers: Vec::new() }
+    }
+
+    /// Casts a ray through a point `offset` (1/256 pixel) from a pixel's centre and gives what is
+    /// opaque; what blends before it is kept until the next one.
+    pub fn cast(
+        &mut self,
+        [x, y]: [i32; 2],
+        offset: [i32; 2],
+        steps: &mut Vec<Step>,
+    ) -> Option<ScreenHit> {
+        let Self { caster, masks, stack, layers } = self;
+        layers.clear();
+        let opaque = caster.rays.cast([x, y], offset, stack, |hit| {
+            let triangle = hit.triangle as usize;
+            if !masks.passes(triangle, hit.item, x, y) {
+                return false;
+            }
+            let blends = caster.blended.as_ref().is_some_and(|b| b.contains(triangle));
+            if blends {
+                layers.push(Layer { place: 0, item: hit.item, depth: hit.depth });
+            }
+            !blends
+        });
+        if let Some(o) = opaque {
+            layers.retain(|l| nearer((l.depth, l.item), (o.depth, o.item)));
+        }
+        sort_layers(layers);
+        if caster.listens {
+            let kind = if offset == [0; 2] { RayKind::Primary } else { RayKind::Sample };
+            let hit = self.nearest(opaque).map(|(_, item)| item);
+            steps.push(Step::Ray { x, y, kind, generation: 0, hit });
+        }
+        opaque
+    }
+
+    /// Depth and item of what the latest ray, which found `opaque`, meets first.
+    pub fn nearest(&self, opaque: Option<ScreenHit>) -> Option<(f32, u32)> {
+        let blended = self.layers.last().map(|l| (l.depth, l.item));
+        blended.or(opaque.map(|o| (o.depth, o.item)))
+    }
+
+    /// All that the latest ray, which found `opaque`, sees: first what is opaque, [`NO_ITEM`] where
+    /// nothing is, then what blends, far ones first.
+    pub fn items(&self, opaque: Option<ScreenHit>) -> Vec<u32> {
+        let opaque = opaque.map_or(NO_ITEM, |o| o.item);
+        std::iter::once(opaque).chain(self.layers.iter().map(|l| l.item)).collect()
+    }
+}

@@ -1,0 +1,84 @@
+//! Any bytes become a scene, whose hidden lines and visible regions must be sound: the bodies of the fuzz
+//! targets `lines` and `regions`, which the tests call as well.
+
+use super::surfaces::{Bytes, camera, scene};
+use durer::scene::{Projection, Scene};
+use durer::target::drawing::Drawing;
+use durer::trace::NoTrace;
+use durer::view::View;
+use durer::visibility::line::hidden_line;
+use durer::visibility::region::weiler_atherton::{Options, VisibleRegion, solve};
+
+/// Rows of pixels of the pictures.
+const HEIGHT: u32 = 60;
+
+fn seen(data: &[u8]) -> Option<(Scene, View)> {
+    let mut bytes = Bytes(data);
+    let view = View::new(camera(&mut bytes), 80, HEIGHT).ok()?;
+    Some((scene(&mut bytes), view))
+}
+
+/// The same triangles, the last first.
+fn reversed(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for mesh in &mut scene.meshes {
+        mesh.parts.clear();
+        let mut triangles = mesh.positions.as_chunks::<3>().0.to_vec();
+        triangles.reverse();
+        mesh.positions = triangles.into_flattened();
+    }
+    scene
+}
+
+fn lengths(drawing: &Drawing) -> [f64; 2] {
+    [drawing.length(|l| l.is_visible()), drawing.length(|l| !l.is_visible())]
+}
+
+/// Height of the picture where the target is, in units of the scene.
+fn height(view: &View) -> f64 {
+    let camera = view.camera();
+    match camera.projection {
+        Projection::Orthographic { height } => height,
+        Projection::Perspective { fov_y } => {
+            2.0 * libm::tan(fov_y / 2.0) * camera.eye.distance(camera.target)
+        }
+    }
+}
+
+/// Lines are finite, and the order of the triangles is of no matter but for where chains begin, which
+/// are simplified to within a twentieth of a pixel.
+///
+/// # Panics
+/// Where that is not so.
+pub fn lines(data: &[u8]) {
+    let Some((mut scene, view)) = seen(data) else { return };
+    scene.meshes.iter_mut().for_each(|mesh| mesh.parts.clear());
+    let options = hidden_line::Options::default();
+    let draw = |scene: &Scene| hidden_line::draw(scene, &view, &options, &mut NoTrace);
+    let Ok(drawing) = draw(&scene) else { return };
+    for line in &drawing.lines {
+        assert!(line.points.len() >= 2 && line.points.iter().all(|p| p.is_finite()), "{line:?}");
+    }
+    let again = draw(&reversed(&scene)).expect("the same triangles");
+    let (found, expected) = (lengths(&again), lengths(&drawing));
+    let least = 0.05 * height(&view) / f64::from(HEIGHT);
+    assert!((0..2).all(|k| (found[k] - expected[k]).abs() <= least), "{found:?} {expected:?}");
+}
+
+/// Regions are a planar map, and neither overlap nor leave gaps.
+///
+/// # Panics
+/// Where that is not so.
+pub fn regions(data: &[u8]) {
+    let Some((scene, view)) = seen(data) else { return };
+    let Ok(map) = solve(&scene, &view, &Options::default(), &mut NoTrace) else { return };
+    let [vertices, edges, faces, parts] = map.counts();
+    assert_eq!(vertices + faces, edges + 1 + parts, "Euler");
+    let area = |regions: Vec<VisibleRegion>| regions.iter().map(VisibleRegion::area).sum::<f64>();
+    let (sum, whole) = (area(map.regions(u64::from)), area(map.regions(|_| 0)));
+    // The grid of the corners is that of the picture.
+    let picture = height(&view) * height(&view);
+    assert!((sum - whole).abs() <= 1e-9 * picture, "{sum} {whole}");
+    let count = scene.triangle_count() as u32;
+    assert!(map.regions(u64::from).iter().all(|r| r.item < count && r.area() >= 0.0));
+}

@@ -1,0 +1,7 @@
+#![no_main]
+#![allow(dead_code)]
+
+#[path = "../bodies/plot.rs"]
+mod plot;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| plot::formula(data));

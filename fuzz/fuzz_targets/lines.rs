@@ -1,0 +1,9 @@
+#![no_main]
+#![allow(dead_code)]
+
+#[path = "../bodies/drawn.rs"]
+mod drawn;
+#[path = "../bodies/surfaces.rs"]
+mod surfaces;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| drawn::lines(data));
