@@ -111,9 +111,10 @@ fn the_order_of_the_frame_before_saves_moves() {
         println!(
             "{degrees} degrees a frame: looks, tests, moves of five frames, anew and reused: {sums:?}"
         );
-        // The order by depth is nearly right already, so that little can be saved: of the moves.
-        assert!(degrees > 1.0 || sums[1][2] < sums[0][2], "{degrees}: {sums:?}");
-        assert!(sums[1][1] * 100 < sums[0][1] * 105, "{degrees}: {sums:?}");
+        // The order by depth is nearly right already, so that little can be saved: moves, from one
+        // small step to the next. After larger ones the old order is no better than that by depth.
+        let saved = sums[1][2] < sums[0][2] && sums[1][1] * 100 < sums[0][1] * 105;
+        assert!(degrees > 1.0 || saved, "{degrees}: {sums:?}");
     }
 }
 
