@@ -139,8 +139,8 @@ fn closed_sphere(rings: u32) -> Mesh {
     mesh
 }
 
-/// Of one convex body all is seen that is kept and covers a pixel's centre, and nothing else but slivers
-/// at the silhouette that rounding turns to the eye.
+/// Of one convex body all is seen that is kept and covers a pixel's centre, and nothing else but single
+/// pixels at the silhouette.
 #[test]
 fn one_convex_body_needs_nothing_else() {
     let scene =
@@ -165,12 +165,16 @@ fn one_convex_body_needs_nothing_else() {
     let mut settings = options(&scene, 300, 300);
     settings.item = true;
     let planes = durer::pipeline::render(&scene, &settings).expect("picture").0;
-    let mut seen: Vec<u32> = planes.item.expect("items").into_data();
+    let items = planes.item.expect("items").into_data();
+    // Where front and back meet at the silhouette their depths are one number but for rounding, and
+    // a pixel there may show the back.
+    let (mut seen, strays): (Vec<u32>, Vec<u32>) = items
+        .into_iter()
+        .filter(|&item| item != NO_ITEM)
+        .partition(|item| kept.binary_search(item).is_ok());
+    assert!(strays.len() * 5000 <= seen.len(), "{strays:?} of {}", seen.len());
     seen.sort_unstable();
     seen.dedup();
-    seen.retain(|&item| item != NO_ITEM);
-    let turned = |item: &u32| input.triangles.iter().any(|t| t.item == *item && may_be_turned(t));
-    seen.retain(|item| kept.binary_search(item).is_ok() || !turned(item));
     assert_eq!(seen, expected);
 }
 
