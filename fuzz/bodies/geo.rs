@@ -1,6 +1,7 @@
 //! What must hold for any bytes, read as map data: the bodies of the fuzz targets `geojson`, `wkt`,
 //! `wkb` and `svg`, which the tests call as well.
 
+use super::words::text;
 use arbitrary::{Result, Unstructured};
 use durer_formats::geo::{Feature, GeoFormat, Reader, Writer};
 
@@ -31,21 +32,6 @@ fn write(format: GeoFormat, features: &[Feature]) -> Vec<u8> {
     let mut writer = Writer::new(format, Vec::new());
     features.iter().for_each(|feature| writer.write(feature).expect("memory"));
     writer.finish(&[]).expect("memory")
-}
-
-/// A text of words of the format, with bytes between where the input says so.
-fn text(bytes: &[u8], words: &[&str]) -> Result<Vec<u8>> {
-    let mut u = Unstructured::new(bytes);
-    let mut text = Vec::new();
-    while !u.is_empty() {
-        match u.arbitrary::<u8>()? {
-            0 => text.push(u.arbitrary()?),
-            1 => text.extend(u.arbitrary::<i16>()?.to_string().bytes()),
-            2 => text.extend(f64::from_bits(u.arbitrary()?).to_string().bytes()),
-            word => text.extend(words[usize::from(word) % words.len()].bytes()),
-        }
-    }
-    Ok(text)
 }
 
 /// The bytes as they are, and as words.

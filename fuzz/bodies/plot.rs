@@ -1,7 +1,7 @@
 //! What must hold for any bytes, read as a height map or as a formula: the bodies of the fuzz targets
 //! `height_map` and `formula`, which the tests call as well.
 
-use arbitrary::{Result, Unstructured};
+use super::words::text;
 use durer::math::DVec3;
 use durer::scene::{Camera, HeightField, Projection};
 use durer::trace::NoTrace;
@@ -50,45 +50,33 @@ fn draw(field: &HeightField, turn: u8) {
     }
 }
 
-/// A height map in words of the text formats.
-fn text(bytes: &[u8]) -> Result<Vec<u8>> {
-    const WORDS: [&str; 24] = [
-        " ",
-        " ",
-        "\n",
-        ",",
-        ";",
-        "\t",
-        "nan",
-        "NA",
-        "-9999",
-        "1e308",
-        "1e-320",
-        "0.5",
-        "-3",
-        "7",
-        "[",
-        "]",
-        "{\"width\":",
-        "\"height\":",
-        "\"values\":[",
-        "}",
-        "ncols ",
-        "nrows ",
-        "cellsize ",
-        "xllcorner ",
-    ];
-    let mut u = Unstructured::new(bytes);
-    let mut text = Vec::new();
-    while !u.is_empty() {
-        match u.arbitrary::<u8>()? {
-            0 => text.push(u.arbitrary()?),
-            1 => text.extend(u.arbitrary::<i16>()?.to_string().bytes()),
-            word => text.extend(WORDS[usize::from(word) % WORDS.len()].bytes()),
-        }
-    }
-    Ok(text)
-}
+/// Words of the text formats of height maps.
+const HEIGHTS: &[&str] = &[
+    " ",
+    " ",
+    "\n",
+    ",",
+    ";",
+    "\t",
+    "nan",
+    "NA",
+    "-9999",
+    "1e308",
+    "1e-320",
+    "0.5",
+    "-3",
+    "7",
+    "[",
+    "]",
+    "{\"width\":",
+    "\"height\":",
+    "\"values\":[",
+    "}",
+    "ncols ",
+    "nrows ",
+    "cellsize ",
+    "xllcorner ",
+];
 
 /// Whatever is read has the size it says, and can be drawn.
 fn read_and_draw(bytes: &[u8], name: &str, turn: u8) {
@@ -106,39 +94,26 @@ fn read_and_draw(bytes: &[u8], name: &str, turn: u8) {
 pub fn height_map(bytes: &[u8]) {
     let turn = bytes.last().copied().unwrap_or(0);
     read_and_draw(bytes, "", turn);
-    if let Ok(text) = text(bytes) {
+    if let Ok(text) = text(bytes, HEIGHTS) {
         read_and_draw(&text, "table.csv", turn);
     }
 }
 
 /// A formula in words; those that are understood give a surface that can be drawn.
 pub fn formula(bytes: &[u8]) {
-    if let Ok(text) = std::str::from_utf8(bytes) {
-        evaluate(text, 0);
+    let turn = bytes.first().copied().unwrap_or(0);
+    evaluate(&String::from_utf8_lossy(bytes), turn);
+    if let Ok(text) = text(bytes, FORMULA) {
+        evaluate(&String::from_utf8_lossy(&text), turn);
     }
-    let (Some((&turn, rest)), Ok(text)) = (bytes.split_first(), formula_text(bytes)) else {
-        return;
-    };
-    evaluate(&text, turn.wrapping_add(rest.len() as u8));
 }
 
-fn formula_text(bytes: &[u8]) -> Result<String> {
-    const WORDS: [&str; 32] = [
-        "x", "z", "r", "pi", "e", "(", ")", ")", "+", "-", "*", "/", "%", "^", "**", ",", "sin(",
-        "exp(", "ln(", "sqrt(", "atan2(", "min(", "clamp(", "j1(", "sinc(", "abs(", "1e300", ".5",
-        "2", "-1", " ", "y=",
-    ];
-    let mut u = Unstructured::new(bytes);
-    let mut text = String::new();
-    while !u.is_empty() {
-        match u.arbitrary::<u8>()? {
-            0 => text.push(u.arbitrary()?),
-            1 => text += &f64::from_bits(u.arbitrary()?).to_string(),
-            word => text += WORDS[usize::from(word) % WORDS.len()],
-        }
-    }
-    Ok(text)
-}
+/// Words of formulas.
+const FORMULA: &[&str] = &[
+    "x", "z", "r", "pi", "e", "(", ")", ")", "+", "-", "*", "/", "%", "^", "**", ",", "sin(",
+    "exp(", "ln(", "sqrt(", "atan2(", "min(", "clamp(", "j1(", "sinc(", "abs(", "1e300", ".5", "2",
+    "-1", " ", "y=",
+];
 
 fn evaluate(text: &str, turn: u8) {
     let Ok(formula) = Formula::parse(text) else { return };

@@ -3,5 +3,7 @@
 
 #[path = "../bodies/plot.rs"]
 mod plot;
+#[path = "../bodies/words.rs"]
+mod words;
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| plot::formula(data));

@@ -3,5 +3,7 @@
 
 #[path = "../bodies/geo.rs"]
 mod geo;
+#[path = "../bodies/words.rs"]
+mod words;
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| geo::svg(data));

@@ -12,6 +12,8 @@ mod geo;
 mod model;
 #[path = "../../../../fuzz/bodies/plot.rs"]
 mod plot;
+#[path = "../../../../fuzz/bodies/words.rs"]
+mod words;
 
 /// What a target does with bytes.
 type Body = fn(&[u8]);

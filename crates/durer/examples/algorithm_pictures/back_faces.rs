@@ -27,7 +27,7 @@ fn faces() -> Vec<Vec<DVec3>> {
 
 /// All edges on the left, those of the faces that are kept on the right.
 pub fn picture(camera: &Camera, [width, height]: [u32; 2]) -> durer::Result<Framebuffer> {
-    let camera = Camera { eye: DVec3::new(0.0, 2.6, 3.6), ..*camera };
+    let camera = Camera { eye: DVec3::new(0.0, 3.9, 5.4), ..*camera };
     let view = View::new(camera, width / 2, height)?;
     let faces = faces();
     let given = faces.iter().map(Vec::as_slice);

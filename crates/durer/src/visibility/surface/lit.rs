@@ -288,7 +288,7 @@ impl<'a> Lit<'a> {
 
     /// Linear RGB of up to eight pixels in a row from `x`: those with an item.
     ///
-    /// Plain materials are shaded eight at a time, others one by one; the bits are the same.
+    /// Where the material allows it they are lit eight at a time, else one by one; the bits are the same.
     #[inline(always)]
     pub fn colors_x8<S: Simd>(
         &mut self,
@@ -304,13 +304,11 @@ impl<'a> Lit<'a> {
                 continue;
             }
             let info = self.run_info(items[i]);
-            if info.plain {
-                if i == 0 && *items == [items[0]; 8] {
-                    return self.one_triangle_x8(simd, &info, items[0], [x, y], colors);
-                }
-                self.plain_x8(simd, &info, items, [x, y], &mut done, colors);
-            } else if info.together {
-                self.textured_x8(simd, &info, items, [x, y], &mut done, colors);
+            if info.plain && i == 0 && *items == [items[0]; 8] {
+                return self.one_triangle_x8(simd, &info, items[0], [x, y], colors);
+            }
+            if info.plain || info.together {
+                self.run_x8(simd, &info, items, [x, y], &mut done, colors);
             } else {
                 let color = self.color(items[i], x + i as i32, y);
                 set_lane(colors, i, color.truncate());
@@ -335,55 +333,66 @@ impl<'a> Lit<'a> {
         *colors = [color.x.into(), color.y.into(), color.z.into()];
     }
 
-    /// Shades all of eight pixels whose items belong to one plain run.
+    /// Shades all of eight pixels whose items belong to one run.
+    #[inline(always)]
+    fn run_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 8],
+        at: [i32; 2],
+        done: &mut [bool; 8],
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let mut mine = [0; 8];
+        for i in 0..8 {
+            if items[i].wrapping_sub(info.first_item) < info.count {
+                (done[i], mine[i]) = (true, u32::MAX);
+            }
+        }
+        let shaded = if info.plain {
+            self.plain_x8(simd, info, items, &mine, at)
+        } else {
+            self.textured_x8(simd, info, items, &mine, at)
+        };
+        for (to, from) in colors.iter_mut().zip(&shaded) {
+            fill_axis(*from, &mine, to);
+        }
+    }
+
+    /// Shades the chosen of eight pixels, of a plain run.
     #[inline(always)]
     fn plain_x8<S: Simd>(
         &mut self,
         simd: S,
         info: &RunInfo<'a>,
         items: &[u32; 8],
+        mine: &[u32; 8],
         [x, y]: [i32; 2],
-        done: &mut [bool; 8],
-        colors: &mut [[f32; 8]; 3],
-    ) {
+    ) -> [[f32; 8]; 3] {
         let mut gathered = Gathered::default();
-        let mut mine = [0; 8];
-        for i in 0..8 {
-            if !done[i] && items[i].wrapping_sub(info.first_item) < info.count {
-                (done[i], mine[i]) = (true, u32::MAX);
-                let t = self.triangles.get(items[i], info.run);
-                gathered.set(simd, i, t, [x + i as i32, y]);
-            }
+        for i in (0..8).filter(|&i| mine[i] != 0) {
+            let t = self.triangles.get(items[i], info.run);
+            gathered.set(simd, i, t, [x + i as i32, y]);
         }
-        let shaded = self.shade_gathered(simd, info, &gathered);
-        for (to, from) in colors.iter_mut().zip(&shaded) {
-            fill_axis(*from, &mine, to);
-        }
+        self.shade_gathered(simd, info, &gathered)
     }
 
-    /// Shades all of eight pixels whose items belong to one run that is lit together.
+    /// Shades the chosen of eight pixels, of a run that is lit together.
     #[inline(always)]
     fn textured_x8<S: Simd>(
         &mut self,
         simd: S,
         info: &RunInfo<'a>,
         items: &[u32; 8],
+        mine: &[u32; 8],
         [x, y]: [i32; 2],
-        done: &mut [bool; 8],
-        colors: &mut [[f32; 8]; 3],
-    ) {
+    ) -> [[f32; 8]; 3] {
         let mut samples = Samples::default();
-        let mut mine = [0; 8];
-        for i in 0..8 {
-            if !done[i] && items[i].wrapping_sub(info.first_item) < info.count {
-                (done[i], mine[i]) = (true, u32::MAX);
-                samples.set(i, &self.sample(items[i], x + i as i32, y));
-            }
+        for i in (0..8).filter(|&i| mine[i] != 0) {
+            samples.set(i, &self.sample(items[i], x + i as i32, y));
         }
-        let shaded = samples.shade(simd, self.shared.lights, info.shading);
-        for (to, from) in colors.iter_mut().zip(&shaded) {
-            fill_axis(*from, &mine, to);
-        }
+        samples.shade(simd, self.shared.lights, info.shading)
     }
 
     /// What the textures say of an item at a pixel's centre.

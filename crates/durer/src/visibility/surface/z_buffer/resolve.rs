@@ -231,7 +231,7 @@ fn add_mixed<S: Simd>(
         let (pixel, at) = ((index + i) as u32, [x + i as i32, y]);
         mixed.begin(pixel);
         if let [plane] = planes
-            && let Some(items) = <&[u32; 4]>::try_from(plane.items(index + i)).ok()
+            && let Ok(items) = <&[u32; 4]>::try_from(plane.items(index + i))
         {
             add_shares(simd, items, mixed, lit, behind, pixel, at);
         } else {
