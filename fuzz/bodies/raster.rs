@@ -8,7 +8,7 @@ use durer::raster::coverage::{self, FillRule, Overlap};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
 use durer::raster::line::{self, LineRasterizer};
 use durer::raster::paint::{Canvas, Gradient, MaskKind, Options, Paint, Shape, Spread};
-use durer::raster::polygon;
+use durer::raster::polygon::{self, PolygonRasterizer};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, boundary_fill, flood_fill};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
@@ -86,20 +86,17 @@ fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
     let options = coverage::Options { rule, ..coverage::Options::default() };
     let reversed = coverage::fill(&back, size.0, size.1, &options, &mut NoTrace).expect("small");
     assert_eq!(masks[0].data(), reversed.data(), "{rule:?} {size:?} {contours:?}");
-    let mut last = (0, 0);
-    let options = polygon::Options { rule };
-    polygon::fill(
-        contours,
-        size.0,
-        size.1,
-        &options,
-        |s| {
-            assert!(last <= (s.y, s.x0) && s.x0 < s.x1, "{s:?} after {last:?}: {contours:?}");
-            assert!(s.y < size.1 && s.x1 <= size.0, "{s:?} in {size:?}: {contours:?}");
-            last = (s.y, s.x1);
-        },
-        &mut NoTrace,
-    );
+    let (mut last, mut spans) = ((0, 0), Vec::new());
+    let (options, edge) = (polygon::Options { rule }, (size.0 as i32, size.1 as i32));
+    PolygonRasterizer::EdgeTable.fill(contours, size.0, size.1, &options, |s| {
+        assert!(last <= (s.y, s.x0) && s.x0 < s.x1, "{s:?} after {last:?}: {contours:?}");
+        assert!(s.y < edge.1 && s.x1 <= edge.0, "{s:?} in {size:?}: {contours:?}");
+        last = (s.y, s.x1);
+        spans.push(s);
+    });
+    let mut other = Vec::new();
+    PolygonRasterizer::OrderedEdgeList.fill(contours, size.0, size.1, &options, |s| other.push(s));
+    assert_eq!(spans, other, "{rule:?} {size:?} {contours:?}");
 }
 
 /// The outline, of finite points, unless the style is wrong.

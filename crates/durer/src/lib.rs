@@ -92,11 +92,11 @@
 //!
 //! | shape | ways |
 //! |---|---|
-//! | line, one pixel wide | [equation](raster::line::equation), [DDA](raster::line::dda), [Bresenham](raster::line::bresenham) |
+//! | line, one pixel wide | [equation](raster::line::equation), [DDA](raster::line::dda), [Bresenham](raster::line::bresenham), [many of them by tiles](raster::line::tiled) |
 //! | smooth line | [Wu, Gupta–Sproull](raster::line::anti_aliased) |
 //! | wide line, dashes | [outline of the stroke](raster::line::wide) |
 //! | triangle | [edge functions](raster::triangle::edge_function), [edge walking](raster::triangle::edge_walking), [tiles](raster::triangle::tiles) |
-//! | polygon | [edge table and active edge table](raster::polygon), [triangulation](raster::triangulate) |
+//! | polygon | [edge table and active edge table](raster::polygon::edge_table), [ordered edge list](raster::polygon::ordered_edge_list), [triangulation](raster::triangulate) |
 //! | path, anti-aliased | [exact area coverage](raster::coverage) |
 //! | region around a pixel | [seed fills](raster::seed_fill) |
 //! | layers of all these | [a canvas](raster::paint) |

@@ -1,4 +1,4 @@
-//! Anti-aliased fills: durer, vello_cpu, tiny-skia.
+//! Fills, anti-aliased and aliased: durer, vello_cpu, tiny-skia.
 
 use crate::medians;
 use crate::scenes::{self, Scene};
@@ -23,8 +23,8 @@ fn all() -> Vec<Box<dyn Fn() -> Scene>> {
     ]
 }
 
-fn durer(scene: &Scene, overlap: Overlap, target: &mut Pixels<[u8; 4]>) {
-    let options = Options { overlap, ..Options::default() };
+fn durer(scene: &Scene, overlap: Overlap, anti_alias: bool, target: &mut Pixels<[u8; 4]>) {
+    let options = Options { overlap, anti_alias, ..Options::default() };
     let mut canvas = Canvas::new(scene.size, scene.size, options).unwrap();
     canvas.clear([255; 4]);
     for s in &scene.shapes {
@@ -51,12 +51,14 @@ fn bez(scene: &Scene) -> Vec<vello_cpu::kurbo::BezPath> {
 fn vello(
     scene: &Scene,
     paths: &[vello_cpu::kurbo::BezPath],
+    threshold: Option<u8>,
     context: &mut vello_cpu::RenderContext,
     resources: &mut vello_cpu::Resources,
     pixmap: &mut vello_cpu::Pixmap,
 ) {
     use vello_cpu::peniko::{Fill, color::AlphaColor};
     context.reset();
+    context.set_aliasing_threshold(threshold);
     context.set_paint(AlphaColor::from_rgba8(255, 255, 255, 255));
     context.fill_rect(&vello_cpu::kurbo::Rect::new(0.0, 0.0, scene.size.into(), scene.size.into()));
     for (s, p) in scene.shapes.iter().zip(paths) {
@@ -128,15 +130,17 @@ pub fn anti_aliased(filter: &str) {
         let m = medians(
             rounds,
             &mut [
-                ("exact", Box::new(|| one.install(|| durer(&scene, Overlap::Exact, t0)))),
+                ("exact", Box::new(|| one.install(|| durer(&scene, Overlap::Exact, true, t0)))),
                 (
                     "accumulated",
-                    Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, t1))),
+                    Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, true, t1))),
                 ),
-                ("two", Box::new(|| two.install(|| durer(&scene, Overlap::Exact, t2)))),
+                ("two", Box::new(|| two.install(|| durer(&scene, Overlap::Exact, true, t2)))),
                 (
                     "vello",
-                    Box::new(|| vello(&scene, &bez, &mut context, &mut resources, &mut pixmap)),
+                    Box::new(|| {
+                        vello(&scene, &bez, None, &mut context, &mut resources, &mut pixmap)
+                    }),
                 ),
                 (
                     "tiny-skia",
@@ -180,5 +184,56 @@ pub fn anti_aliased(filter: &str) {
             )
             .unwrap();
         }
+    }
+}
+
+/// Fills by pixels' centres. vello_cpu decides by half-covered pixels, the others by centres; differences are counted.
+pub fn aliased(filter: &str) {
+    println!(
+        "| aliased, ms | durer | vello_cpu | tiny-skia | best / durer | pixels unlike tiny-skia's |"
+    );
+    println!("|---|---|---|---|---|---|");
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for make in all() {
+        let scene = make();
+        if !scene.name.contains(filter) {
+            continue;
+        }
+        let side = scene.size;
+        let mut target = Pixels::new(side, side, [255; 4]);
+        let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
+        let settings = vello_cpu::RenderSettings { num_threads: 0, ..Default::default() };
+        let mut context = vello_cpu::RenderContext::new_with(side as u16, side as u16, settings);
+        let mut resources = vello_cpu::Resources::new();
+        let mut pixmap = vello_cpu::Pixmap::new(side as u16, side as u16);
+        let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
+        let rounds = if scene.name.starts_with("spikes") { 3 } else { 9 };
+        let m = medians(
+            rounds,
+            &mut [
+                (
+                    "durer",
+                    Box::new(|| one.install(|| durer(&scene, Overlap::Exact, false, &mut target))),
+                ),
+                (
+                    "vello",
+                    Box::new(|| {
+                        vello(&scene, &bez, Some(127), &mut context, &mut resources, &mut pixmap);
+                    }),
+                ),
+                ("tiny-skia", Box::new(|| skia(&scene, &skia_paths, false, &mut skia_map))),
+            ],
+        );
+        let pixels = target.data().as_flattened().as_chunks::<4>().0;
+        let unlike = pixels.iter().zip(skia_map.data().as_chunks::<4>().0).filter(|(a, b)| a != b);
+        println!(
+            "| {} | {:.2} | {:.2} | {:.2} | {:.2} | {} |",
+            scene.name,
+            m[0],
+            m[1],
+            m[2],
+            m[1].min(m[2]) / m[0],
+            unlike.count()
+        );
     }
 }

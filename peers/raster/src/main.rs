@@ -32,8 +32,12 @@ fn main() {
     let filter = args.get(2).cloned().unwrap_or_default();
     match args.get(1).map(String::as_str) {
         Some("fill") => fills::anti_aliased(&filter),
+        Some("aliased") => fills::aliased(&filter),
         Some("lines") => lines::aliased(),
+        Some("hairlines") => lines::hairlines(),
         Some("flood") => lines::floods(),
-        _ => eprintln!("usage: peers-raster fill [scene] | lines | flood"),
+        _ => eprintln!(
+            "usage: peers-raster fill [scene] | aliased [scene] | lines | hairlines | flood"
+        ),
     }
 }

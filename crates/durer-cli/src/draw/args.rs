@@ -106,7 +106,7 @@ pub struct FontArgs {
 /// `--aa`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Smoothing {
-    /// Pixels are painted or not, by half of their area
+    /// Pixels are painted or not, by their centres
     None,
     /// Pixels are painted as much as they are covered
     Coverage,

@@ -5,8 +5,8 @@
 
 use crate::curve::Contours;
 use crate::raster::coverage::FillRule;
-use crate::raster::polygon::{self, fill};
-use crate::trace::NoTrace;
+use crate::raster::polygon::{self, PolygonRasterizer};
+use crate::raster::span::Span;
 use crate::{Error, Result};
 
 /// Which pixels may be drawn to.
@@ -52,10 +52,10 @@ impl PixelMask {
     ) -> Result<Self> {
         let mut mask = Self::empty(width, height)?;
         let options = polygon::Options { rule };
-        let set = |span: polygon::Span| {
-            (span.x0..span.x1).for_each(|x| mask.set(x, span.y, true));
+        let set = |span: Span| {
+            (span.x0..span.x1).for_each(|x| mask.set(x as u32, span.y as u32, true));
         };
-        fill(contours, width, height, &options, set, &mut NoTrace);
+        PolygonRasterizer::EdgeTable.fill(contours, width, height, &options, set);
         Ok(mask)
     }
 

@@ -2,6 +2,8 @@
 //!
 //! Pixel (i, j) covers [i, i + 1) × [j, j + 1) with y growing downwards; its sample is the centre.
 
+pub(crate) mod bands;
+pub(crate) mod clipped;
 pub mod coverage;
 pub mod fixed;
 pub mod interpolate;

@@ -3,7 +3,9 @@
 use crate::raster_coverage::Random;
 use durer::math::IVec2;
 use durer::raster::line::anti_aliased::{self, SmoothLine};
-use durer::raster::line::{LineRasterizer, Options, Step};
+use durer::raster::line::tiled::{self, Line};
+use durer::raster::line::{LineRasterizer, Options, Step, bresenham};
+use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
 
 fn pixels(method: LineRasterizer, a: IVec2, b: IVec2, options: &Options) -> Vec<IVec2> {
@@ -117,5 +119,37 @@ fn smooth_lines_carry_the_lines_weight() {
             };
             assert!((sum - expected).abs() <= 0.04 * expected + 0.01, "{method}: {sum} {expected}");
         }
+    }
+}
+
+#[test]
+fn tiled_lines_are_bresenhams_in_their_order() {
+    let mut random = Random(11);
+    for round in 0..40 {
+        let (width, height) = [(300, 200), (128, 128), (1, 400), (700, 3)][round % 4];
+        let (low, high) = [(-50.0, 350.0), (0.0, 127.0), (-1e5, 1e5), (-2e9, 2e9)][round / 4 % 4];
+        // Few lines and many in one tile, short ones, points, and ties at 45 degrees and half way.
+        let count = [5, 60, 900][round % 3];
+        let mut lines: Vec<Line<u16>> = Vec::new();
+        for value in 1..=count {
+            let mut corner = || {
+                let p = random.point(low, high);
+                IVec2::new(p.x as i32, p.y as i32)
+            };
+            let (from, far) = (corner(), corner());
+            let step = IVec2::new(i32::from(value) % 9 - 4, i32::from(value) % 5 - 2);
+            let to = if value % 3 == 0 { from.saturating_add(step * 4) } else { far };
+            lines.push(Line { from, to, value });
+        }
+        let mut expected = Pixels::new(width, height, 0);
+        let corner = IVec2::new(width as i32 - 1, height as i32 - 1);
+        let options = Options { window: Some((IVec2::ZERO, corner)) };
+        for Line { from, to, value } in &lines {
+            let plot = |p: IVec2| expected.set(p.x as u32, p.y as u32, *value);
+            bresenham::draw(*from, *to, &options, plot, &mut NoTrace);
+        }
+        let mut found = Pixels::new(width, height, 0);
+        tiled::draw(&lines, &mut found);
+        assert!(found == expected, "round {round}");
     }
 }

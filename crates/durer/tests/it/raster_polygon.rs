@@ -4,14 +4,32 @@ use crate::raster_coverage::Random;
 use durer::curve::{Contours, Path, flatten};
 use durer::math::DVec2;
 use durer::raster::coverage::FillRule;
-use durer::raster::polygon::{Options, Span, Step, fill};
+use durer::raster::polygon::{Options, PolygonRasterizer, edge_table, ordered_edge_list};
+use durer::raster::span::Span;
 use durer::raster::triangulate::triangulate;
-use durer::trace::{NoTrace, Recorder};
+use durer::trace::Recorder;
 
+fn spans(
+    method: PolygonRasterizer,
+    contours: &Contours,
+    (width, height): (u32, u32),
+    rule: FillRule,
+) -> Vec<Span> {
+    let mut spans = Vec::new();
+    method.fill(contours, width, height, &Options { rule }, |s| spans.push(s));
+    spans
+}
+
+/// How often each pixel is covered; all methods say the same.
 fn covered(contours: &Contours, side: u32, rule: FillRule) -> Vec<u32> {
+    let found = spans(PolygonRasterizer::EdgeTable, contours, (side, side), rule);
+    for method in PolygonRasterizer::ALL {
+        assert_eq!(spans(*method, contours, (side, side), rule), found, "{method} {contours:?}");
+    }
     let mut counts = vec![0; (side * side) as usize];
-    let count = |s: Span| (s.x0..s.x1).for_each(|x| counts[(s.y * side + x) as usize] += 1);
-    fill(contours, side, side, &Options { rule }, count, &mut NoTrace);
+    for s in found {
+        (s.x0..s.x1).for_each(|x| counts[s.y as usize * side as usize + x as usize] += 1);
+    }
     counts
 }
 
@@ -94,20 +112,90 @@ fn triangulated_polygons_light_each_pixel_once() {
 #[test]
 fn the_steps_of_a_polygon_rebuild_it() {
     let circle = flatten(&Path::circle(DVec2::splat(16.0), 11.3), 0.05);
-    let mut recorder: Recorder<Step> = Recorder::default();
-    let mut spans = Vec::new();
-    fill(&circle, 32, 32, &Options::default(), |s| spans.push(s), &mut recorder);
-    let replayed: Vec<Span> = recorder
-        .steps()
-        .iter()
-        .filter_map(|s| if let Step::Span(span) = s { Some(*span) } else { None })
-        .collect();
-    assert_eq!(replayed, spans);
-    let area: u32 = spans.iter().map(|s| s.x1 - s.x0).sum();
+    let found = spans(PolygonRasterizer::EdgeTable, &circle, (32, 32), FillRule::NonZero);
+    let (mut table, mut list) = (Recorder::default(), Recorder::default());
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    let options = Options::default();
+    edge_table::fill(&circle, 32, 32, &options, |s| a.push(s), &mut table);
+    ordered_edge_list::fill(&circle, 32, 32, &options, |s| b.push(s), &mut list);
+    let replayed = table.steps().iter().filter_map(|s| match s {
+        edge_table::Step::Span(span) => Some(*span),
+        _ => None,
+    });
+    assert!(a == found && b == found && replayed.eq(found.iter().copied()));
+    let replayed = list.steps().iter().filter_map(|s| match s {
+        ordered_edge_list::Step::Span(span) => Some(*span),
+        ordered_edge_list::Step::Crossing { .. } => None,
+    });
+    assert!(replayed.eq(found.iter().copied()));
+    // Of crossings alone: each winds around what is right of it.
+    let mut winding = [[0; 32]; 32];
+    for step in list.steps() {
+        if let ordered_edge_list::Step::Crossing { y, x, winding: change } = step {
+            (*x..32).for_each(|x| winding[*y as usize][x as usize] += change);
+        }
+    }
+    let inside = winding.iter().flatten().map(|w| u32::from(*w != 0));
+    assert!(inside.eq(covered(&circle, 32, FillRule::NonZero)));
+    let area: i32 = found.iter().map(|s| s.x1 - s.x0).sum();
     // Pixel centres within the circle, counted one by one; none is nearer to it than the chords.
     let across = |i: i32| f64::from(i % 32 - 16) + 0.5;
     let inside = (0..1024).filter(|i| across(*i).hypot(f64::from(i / 32 - 16) + 0.5) <= 11.3);
     assert_eq!(area as usize, inside.count());
+}
+
+#[test]
+fn both_ways_fill_the_same_pixels() {
+    let mut random = Random(7);
+    for round in 0..120_u32 {
+        // Small and large, with few edges and with many, near the target and far from it.
+        let (width, height) = [(33, 70), (129, 64), (300, 40)][round as usize % 3];
+        let count = [3, 8, 70, 400][round as usize / 3 % 4];
+        let (low, high) =
+            [(-20.0, 320.0), (-3e4, 6e4), (-2e5, 1e5), (0.0, 70.0)][round as usize / 12 % 4];
+        let on_grid = round % 5 == 0;
+        let corner = |_| {
+            let p = random.point(low, high);
+            if on_grid { (p * 2.0).round() / 2.0 } else { p }
+        };
+        let contours = Contours::polygon((0..count).map(corner).collect::<Vec<_>>());
+        for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+            let [a, b] = [PolygonRasterizer::EdgeTable, PolygonRasterizer::OrderedEdgeList]
+                .map(|method| spans(method, &contours, (width, height), rule));
+            assert_eq!(a, b, "round {round} {rule:?}");
+        }
+    }
+}
+
+#[test]
+fn high_edges_are_exact_in_every_row() {
+    // Nearly vertical edges through pixel centres, as high as edges can be.
+    let mut random = Random(8);
+    for round in 0..40 {
+        let height = [32_767, 9000, 300][round % 3];
+        let (x, drift) = (5.0 + (random.next() * 20.0).round() / 2.0, f64::from(round as u32));
+        let points =
+            [(x, 0.0), (x + drift, f64::from(height)), (x - 3.0, 60_000.0), (x - 4.5, -3e4)];
+        let contours = Contours::polygon(points.map(|(x, y)| DVec2::new(x, y)));
+        let [a, b] = [PolygonRasterizer::EdgeTable, PolygonRasterizer::OrderedEdgeList]
+            .map(|method| spans(method, &contours, (64, height), FillRule::NonZero));
+        assert!(a == b && a.len() as u32 == height, "round {round}");
+    }
+}
+
+#[test]
+fn far_vertices_leave_edges_where_they_are() {
+    // A half-plane whose border has slope 1/2 and passes through (10, 10), from ever farther away.
+    for far in [1e3, 1e5, 1e6, 1e9] {
+        let at = |t: f64| DVec2::new(10.1 + 2.0 * t, 10.1 + t);
+        let corners = [at(-far), at(far), DVec2::new(-far, 3.0 * far)];
+        let found = covered(&Contours::polygon(corners), 20, FillRule::NonZero);
+        for (i, covered) in found.iter().enumerate() {
+            let (x, y) = ((i % 20) as f64 + 0.5, (i / 20) as f64 + 0.5);
+            let below = y - 10.1 - (x - 10.1) / 2.0;
+            assert_eq!(*covered, u32::from(below > 0.0), "{far}: {x} {y}");
+        }
+    }
 }
 
 #[test]

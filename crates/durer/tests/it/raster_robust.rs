@@ -9,8 +9,9 @@ use durer::raster::line::anti_aliased::{self, SmoothLine};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
 use durer::raster::line::{LineRasterizer, Options as LineOptions};
 use durer::raster::paint::{Canvas, Options, Paint};
-use durer::raster::polygon;
+use durer::raster::polygon::{self, PolygonRasterizer};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, boundary_fill, flood_fill};
+use durer::raster::span::Span;
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 
@@ -81,7 +82,9 @@ fn empty_targets_take_everything() {
         let face = Face { contours: contours.clone(), color: [1; 4] };
         assert_eq!(fill_partition(&[face], &mut target), Ok(0));
         let options = polygon::Options::default();
-        polygon::fill(&contours, width, height, &options, |s| panic!("{s:?}"), &mut NoTrace);
+        for method in PolygonRasterizer::ALL {
+            method.fill(&contours, width, height, &options, |s| panic!("{method} {s:?}"));
+        }
         let mut gray = Pixels::new(width, height, 0_u8);
         for connectivity in [Connectivity::Four, Connectivity::Eight] {
             let options = seed_fill::Options { connectivity };
@@ -143,7 +146,11 @@ fn a_million_vertices_are_filled_aliased_and_stroked() {
     let mut area = 0;
     let contours = Contours::polygon(points.iter().copied());
     let options = polygon::Options::default();
-    polygon::fill(&contours, 256, 256, &options, |s| area += s.x1 - s.x0, &mut NoTrace);
+    PolygonRasterizer::EdgeTable.fill(&contours, 256, 256, &options, |s| area += s.x1 - s.x0);
+    let mut other = 0;
+    let count = |s: Span| other += s.x1 - s.x0;
+    PolygonRasterizer::OrderedEdgeList.fill(&contours, 256, 256, &options, count);
+    assert_eq!(area, other);
     assert!(area > 40_000, "{area}");
     let mut canvas = Canvas::new(256, 256, Options::default()).unwrap();
     canvas.stroke(&Path::polyline(points), &Stroke::default(), &BLACK, 1.0).unwrap();

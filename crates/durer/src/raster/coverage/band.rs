@@ -4,29 +4,16 @@ use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::FillRule;
-use super::cells::{BAND_ROWS, Cells, Marks};
+use super::cells::{Cells, Marks};
 use super::edge::{BITS, Edge, EdgeBuilder, ONE};
 use super::resolve::Resolver;
 use super::sweep::{Row, Sink, alpha, sweep};
 use crate::curve::Contours;
 use crate::math::DVec2;
+use crate::raster::bands::{BAND_ROWS, BandIndex};
 
-/// Paths with fewer edges are gone through as a whole in every band.
-const FEW_EDGES: usize = 48;
 /// Paths that are not wider have cells of their own, few enough for the first-level cache.
 const NARROW: u32 = 112;
-/// No stretch of edges.
-const NONE: u32 = u32::MAX;
-
-/// Edges that follow each other in a path and all touch one band.
-#[derive(Debug, Clone, Copy)]
-struct Stretch {
-    /// First edge and one past the last.
-    edges: (u32, u32),
-    /// The band's next stretch.
-    next: u32,
-}
-
 /// The edges of one path and which of them each band needs.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PathEdges {
@@ -37,10 +24,7 @@ pub(crate) struct PathEdges {
     columns: (i32, i32),
     /// Windings cannot differ by more than one anywhere.
     convex: bool,
-    /// The stretches of all bands; empty for paths of few edges.
-    stretches: Vec<Stretch>,
-    /// Each band's first stretch, from the first band touched on.
-    first: Vec<u32>,
+    index: BandIndex,
 }
 
 impl PathEdges {
@@ -57,37 +41,8 @@ impl PathEdges {
         }
         path.columns = (path.columns.0 >> BITS, path.columns.1 >> BITS);
         path.convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
-        if path.edges.len() > FEW_EDGES {
-            path.sort_into_bands();
-        }
+        path.index = BandIndex::new(path.rows, path.edges.iter().map(Edge::rows));
         path
-    }
-
-    fn sort_into_bands(&mut self) {
-        let band = |row: i32| (row / BAND_ROWS) as usize;
-        let base = band(self.rows.0);
-        let count = band((self.rows.1 - 1).max(self.rows.0)) - base + 1;
-        self.first = vec![NONE; count];
-        let mut last = vec![NONE; count];
-        for (i, edge) in self.edges.iter().enumerate() {
-            let i = i as u32;
-            let (top, bottom) = edge.rows();
-            let (top, bottom) = (band(top) - base, band((bottom - 1).max(top)) - base);
-            let bands = self.first.iter_mut().zip(&mut last);
-            for (first, last) in bands.take(bottom + 1).skip(top) {
-                let new = self.stretches.len() as u32;
-                match self.stretches.get_mut(*last as usize) {
-                    Some(stretch) if stretch.edges.1 == i => {
-                        stretch.edges.1 = i + 1;
-                        continue;
-                    }
-                    Some(stretch) => stretch.next = new,
-                    None => *first = new,
-                }
-                *last = new;
-                self.stretches.push(Stretch { edges: (i, i + 1), next: NONE });
-            }
-        }
     }
 
     /// Whether the path touches no row of the band that starts at row `top`.
@@ -100,17 +55,9 @@ impl PathEdges {
     #[inline(always)]
     fn for_each(&self, top: i32, first: usize, mut f: impl FnMut(Edge)) {
         let first = (first as i32) << BITS;
-        if self.first.is_empty() {
-            self.edges.iter().for_each(|e| f(e.moved(first)));
-            return;
-        }
-        let band = (top / BAND_ROWS - self.rows.0 / BAND_ROWS).max(0) as usize;
-        let mut at = self.first.get(band).copied().unwrap_or(NONE);
-        while let Some(stretch) = self.stretches.get(at as usize) {
-            let (start, end) = stretch.edges;
-            let edges = self.edges.get(start as usize..end as usize);
-            edges.unwrap_or_default().iter().for_each(|e| f(e.moved(first)));
-            at = stretch.next;
+        for stretch in self.index.stretches(top) {
+            let edges = self.edges.get(stretch).unwrap_or_default();
+            edges.iter().for_each(|e| f(e.moved(first)));
         }
     }
 }

@@ -7,9 +7,8 @@
 //! can windings differ by more than one, and the sum alone not decide.
 
 use super::edge::{BITS, Edge, ONE};
+use crate::raster::bands::BAND_ROWS;
 
-/// Rows of a band: small enough for the cells to stay in the second-level cache.
-pub(crate) const BAND_ROWS: i32 = 32;
 /// Cells to the right of the last pixel that edges on the border may write to.
 const SPILL: usize = 64;
 

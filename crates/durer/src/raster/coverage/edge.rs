@@ -5,6 +5,7 @@
 
 use crate::curve::Contours;
 use crate::math::DVec2;
+use crate::raster::clipped::pieces;
 
 /// Bits below the pixel: fine enough that snapping moves no area by more than 2⁻¹⁷ of a pixel.
 pub(crate) const BITS: u32 = 16;
@@ -12,8 +13,6 @@ pub(crate) const BITS: u32 = 16;
 pub(crate) const ONE: i32 = 1 << BITS;
 /// Sides of a target in pixels: coordinates are 16.16.
 pub(crate) const MAX_SIDE: u32 = 32_767;
-/// Farther coordinates are moved here first, so that products stay finite.
-const FARTHEST: f64 = 1e15;
 
 /// The edge goes upwards in the path (horizontal: to the left).
 const REVERSED: u32 = 1;
@@ -177,46 +176,15 @@ impl<'a> EdgeBuilder<'a> {
         }
     }
 
-    /// The part of a line that matters: within the rows, and left of the right border; what is
-    /// left of the left border is moved onto it, for it winds around everything in its rows.
+    /// The part of a line that matters: within the rows, and left of the right border.
     fn clipped(&mut self, a: DVec2, b: DVec2) {
-        let far = DVec2::splat(FARTHEST);
-        let (a, b) = (a.clamp(-far, far), b.clamp(-far, far));
-        let reversed = (b.y, b.x) < (a.y, a.x);
-        let (top, bottom) = if reversed { (b, a) } else { (a, b) };
-        if bottom.y < 0.0 || top.y > self.height || top.x.min(bottom.x) > self.width {
+        let size = DVec2::new(self.width, self.height);
+        if a.x.min(b.x) > self.width {
             return;
         }
-        // Cut at the first and last row, then at the left and right border.
-        let at_y = |y: f64| {
-            let t = (y - top.y) / (bottom.y - top.y);
-            DVec2::new(top.x + (bottom.x - top.x) * t, y)
-        };
-        let start = if top.y < 0.0 { at_y(0.0) } else { top };
-        let end = if bottom.y > self.height { at_y(self.height) } else { bottom };
-        let at_x = |x: f64| {
-            let y = top.y + (bottom.y - top.y) * ((x - top.x) / (bottom.x - top.x));
-            DVec2::new(x, y.clamp(start.y, end.y))
-        };
-        let mut cuts = [start, start, end, end];
-        let crosses = |x: f64| (start.x < x) != (end.x < x) && start.x != x && end.x != x;
-        let (left, right) =
-            (crosses(0.0).then(|| at_x(0.0)), crosses(self.width).then(|| at_x(self.width)));
-        let (near, far) = if start.x <= end.x { (left, right) } else { (right, left) };
-        cuts[1] = near.unwrap_or(start);
-        cuts[2] = far.unwrap_or(end);
-        if near.is_none() && far.is_some() {
-            cuts[1] = start;
-        }
-        let mut pieces = [(cuts[0], cuts[1]), (cuts[1], cuts[2]), (cuts[2], cuts[3])];
-        if reversed {
-            pieces.reverse();
-            pieces.iter_mut().for_each(|p| std::mem::swap(&mut p.0, &mut p.1));
-        }
-        for (p, q) in pieces {
-            if p != q && (p.x.min(q.x) < self.width) {
-                let bound = |p: DVec2| p.clamp(DVec2::ZERO, DVec2::new(self.width, self.height));
-                self.edge(snap(bound(p)), snap(bound(q)));
+        for (p, q) in pieces(a, b, DVec2::ZERO, size).into_iter().flatten() {
+            if p != q && p.x.min(q.x) < self.width {
+                self.edge(snap(p), snap(q));
             }
         }
     }

@@ -28,11 +28,11 @@ use fearless_simd::{Level, dispatch, u32x8};
 
 use crate::curve::Contours;
 use crate::info::{Class, Info};
+use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 use band::{BandFiller, PathEdges};
-use cells::BAND_ROWS;
 use edge::MAX_SIDE;
 use sweep::Sink;
 

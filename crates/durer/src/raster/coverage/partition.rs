@@ -1,10 +1,10 @@
 //! Faces that share edges, in one pass and without seams.
 
 use super::band::{BandFiller, PathEdges, coverage_of_area};
-use super::cells::BAND_ROWS;
 use super::check_size;
 use crate::Result;
 use crate::curve::Contours;
+use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
 
 /// One face of a partition: a simple polygon, perhaps with holes, of one colour.

@@ -7,8 +7,9 @@
 //! carried along: it is the integer that makes the two agree.
 
 use super::FillRule;
-use super::cells::{BAND_ROWS, Cells, Marks};
+use super::cells::{Cells, Marks};
 use super::edge::{BITS, Edge, ONE};
+use crate::raster::bands::BAND_ROWS;
 
 /// Pixels crossed by more edges than this keep the integral's answer: what they show is noise, and
 /// the cost grows with the third power.

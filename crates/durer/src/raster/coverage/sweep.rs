@@ -13,11 +13,10 @@ use super::resolve::Resolver;
 
 /// What is done with the coverage of a row, from left to right.
 pub(crate) trait Sink<S: Simd> {
-    /// Eight pixels from `x` on, a multiple of 8, each with its coverage 0 … 255. At the end of the row
-    /// some of them may lie beyond it.
+    /// Eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them may lie
+    /// beyond it.
     fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>);
-    /// Pixels that all have the same coverage 1 … 255; the first is a multiple of 8, and so is the
-    /// length but at the end of the row.
+    /// Pixels that all have the same coverage 1 … 255.
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
 }
 

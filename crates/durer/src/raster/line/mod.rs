@@ -7,6 +7,7 @@ pub mod anti_aliased;
 pub mod bresenham;
 pub mod dda;
 pub mod equation;
+pub mod tiled;
 pub mod wide;
 
 use crate::info::family;

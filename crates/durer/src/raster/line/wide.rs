@@ -91,6 +91,9 @@ pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
         return Err(Error::parameter("dashes", "given", "finite lengths of at least 0"));
     }
     let stroke = &Stroke { width: stroke.width.min(FARTHEST), ..stroke.clone() };
+    if let Some(rectangle) = straight(path, stroke) {
+        return Ok(rectangle);
+    }
     let source = to_kurbo(path);
     if stroke.width == 0.0 || source.elements().is_empty() {
         return Ok(Path::new());
@@ -100,6 +103,24 @@ pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
     let tolerance = tolerance.max(1e-3);
     let source = dashed(source, stroke, &mut style, tolerance);
     Ok(from_kurbo(&kurbo::stroke(source, &style, &StrokeOpts::default(), tolerance)))
+}
+
+/// The rectangle around a single straight line with butt ends, which needs no offsets of curves.
+fn straight(path: &Path, stroke: &Stroke) -> Option<Path> {
+    let &[PathElement::MoveTo(a), PathElement::LineTo(b)] = path.elements() else { return None };
+    let near = |p: DVec2| p.abs().max_element() <= FARTHEST;
+    if stroke.cap != Cap::Butt || !stroke.dashes.is_empty() || !near(a) || !near(b) {
+        return None;
+    }
+    let outline = super::anti_aliased::outline(a, b, stroke.width);
+    let mut rectangle = Path::new();
+    for (i, p) in outline.points().iter().enumerate() {
+        rectangle.push(if i == 0 { PathElement::MoveTo(*p) } else { PathElement::LineTo(*p) });
+    }
+    if !outline.points().is_empty() {
+        rectangle.push(PathElement::Close);
+    }
+    Some(rectangle)
 }
 
 fn style(stroke: &Stroke) -> kurbo::Stroke {

@@ -7,11 +7,11 @@ use fearless_simd::{Level, dispatch, u32x8};
 
 use super::color::Space;
 use super::command::{Prepared, sort_into_bands};
+use super::outline::{Filler, Outline};
 use super::source::Source;
 use super::{Canvas, Color, MaskKind};
+use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::Overlap;
-use crate::raster::coverage::band::{BandFiller, PathEdges};
-use crate::raster::coverage::cells::BAND_ROWS;
 use crate::raster::coverage::sweep::Sink;
 use crate::target::Pixels;
 
@@ -51,9 +51,8 @@ pub(super) fn render<P: Space>(
 
 /// Buffers of one thread.
 struct Painter<P> {
-    filler: BandFiller,
+    filler: Filler,
     width: usize,
-    exact: bool,
     background: Option<Color>,
     /// A layer for each open group.
     layers: Vec<Vec<P>>,
@@ -70,9 +69,8 @@ impl<P: Space> Painter<P> {
     fn new(canvas: &Canvas) -> Self {
         let width = canvas.width as usize;
         Self {
-            filler: BandFiller::new(canvas.width),
+            filler: Filler::new(canvas.width, canvas.options.overlap == Overlap::Exact),
             width,
-            exact: canvas.options.overlap == Overlap::Exact,
             background: canvas.background,
             layers: Vec::new(),
             clips: Vec::new(),
@@ -125,12 +123,12 @@ impl<P: Space> Painter<P> {
     {
         for command in commands {
             match command {
-                Prepared::Fill { path, rule, source, smooth } => {
-                    let at = (top, *smooth, &mut *base);
-                    dispatch!(level, simd => self.fill(simd, path, *rule, source, at));
+                Prepared::Fill { outline, rule, source } => {
+                    let at = (top, &mut *base);
+                    dispatch!(level, simd => self.fill(simd, outline, *rule, source, at));
                 }
-                Prepared::PushClip { path, rule, smooth } => {
-                    dispatch!(level, simd => self.push_clip(simd, path, *rule, (top, *smooth)));
+                Prepared::PushClip { outline, rule } => {
+                    dispatch!(level, simd => self.push_clip(simd, outline, *rule, top));
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
                 Prepared::PushGroup => self.push_group(base.len()),
@@ -144,39 +142,33 @@ impl<P: Space> Painter<P> {
     fn fill<S: Simd>(
         &mut self,
         simd: S,
-        path: &PathEdges,
+        outline: &Outline,
         rule: super::FillRule,
         source: &Source<P>,
-        (top, smooth, base): (i32, bool, &mut [P]),
+        (top, base): (i32, &mut [P]),
     ) {
-        let Self { filler, layers, clips, floors, .. } = self;
-        let (width, exact) = (self.width, self.exact);
+        let Self { filler, layers, clips, floors, width, .. } = self;
+        let width = *width;
         let pixels = layers.last_mut().map_or(base, |l| l.as_mut_slice());
         let clip = clip_in_force(clips, floors).map(Vec::as_slice);
-        match (source.color(), clip, smooth) {
-            (Some(color), None, true) => {
+        match (source.color(), clip) {
+            (Some(color), None) => {
                 let mut sink = Plain { pixels, width, color };
-                BandFiller::fill(simd, filler, path, top, rule, exact, &mut sink);
+                Filler::fill(simd, filler, outline, top, rule, &mut sink);
             }
             _ => {
-                let mut sink = Painted { pixels, width, source, clip, smooth, top };
-                BandFiller::fill(simd, filler, path, top, rule, exact, &mut sink);
+                let mut sink = Painted { pixels, width, source, clip, top };
+                Filler::fill(simd, filler, outline, top, rule, &mut sink);
             }
         }
     }
 
-    fn push_clip<S: Simd>(
-        &mut self,
-        simd: S,
-        path: &PathEdges,
-        rule: super::FillRule,
-        (top, smooth): (i32, bool),
-    ) {
+    fn push_clip<S: Simd>(&mut self, simd: S, outline: &Outline, rule: super::FillRule, top: i32) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
         let (width, below) = (self.width, clip_in_force(&self.clips, &self.floors));
-        if !path.misses(top) {
-            let mut sink = Clip { clip: &mut clip, width, below: below.map(Vec::as_slice), smooth };
-            BandFiller::fill(simd, &mut self.filler, path, top, rule, self.exact, &mut sink);
+        if !outline.misses(top) {
+            let mut sink = Clip { clip: &mut clip, width, below: below.map(Vec::as_slice) };
+            Filler::fill(simd, &mut self.filler, outline, top, rule, &mut sink);
         }
         self.clips.push(clip);
     }
@@ -257,19 +249,18 @@ impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
             }
             return;
         }
-        for x in x.step_by(8) {
-            self.eight(simd, row, x, u32x8::splat(simd, u32::from(coverage)));
+        for first in x.clone().step_by(8) {
+            self.eight(simd, row, first, part_covered(simd, coverage, x.end - first));
         }
     }
 }
 
-/// Any paint over the pixels of a band, perhaps within a clip, perhaps with hard edges.
+/// Any paint over the pixels of a band, perhaps within a clip.
 struct Painted<'a, P> {
     pixels: &'a mut [P],
     width: usize,
     source: &'a Source<P>,
     clip: Option<&'a [u8]>,
-    smooth: bool,
     top: i32,
 }
 
@@ -279,9 +270,6 @@ impl<S: Simd, P: Space> Sink<S> for Painted<'_, P> {
         let start = row as usize * self.width;
         let (first, end) = (start + x, start + self.width);
         let mut coverage = coverage;
-        if !self.smooth {
-            coverage = (coverage >> 7) * 255;
-        }
         if let Some(clip) = self.clip {
             let mut within = [0; 8];
             let clip = clip.get(first..end).unwrap_or_default();
@@ -302,10 +290,21 @@ impl<S: Simd, P: Space> Sink<S> for Painted<'_, P> {
 
     #[inline(always)]
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8) {
-        for x in x.step_by(8) {
-            self.eight(simd, row, x, u32x8::splat(simd, u32::from(coverage)));
+        for first in x.clone().step_by(8) {
+            self.eight(simd, row, first, part_covered(simd, coverage, x.end - first));
         }
     }
+}
+
+/// Eight times the same coverage, or as often as there are pixels left.
+#[inline(always)]
+fn part_covered<S: Simd>(simd: S, coverage: u8, left: usize) -> u32x8<S> {
+    let all = u32x8::splat(simd, u32::from(coverage));
+    if left >= 8 {
+        return all;
+    }
+    let lanes = u32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    lanes.simd_lt(u32x8::splat(simd, left as u32)).select(all, u32x8::splat(simd, 0))
 }
 
 // No closures here: what they hold would not be compiled for the SIMD level.
@@ -340,13 +339,11 @@ struct Clip<'a> {
     clip: &'a mut [u8],
     width: usize,
     below: Option<&'a [u8]>,
-    smooth: bool,
 }
 
 impl Clip<'_> {
     fn put(&mut self, row: i32, x: usize, coverage: u8) {
         let at = row as usize * self.width + x;
-        let coverage = if self.smooth { coverage } else { (coverage >> 7) * 255 };
         let below = self.below.map_or(255, |b| b[at]);
         self.clip[at] = multiplied(u32::from(coverage), below) as u8;
     }

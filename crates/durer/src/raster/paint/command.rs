@@ -1,10 +1,10 @@
 //! What a canvas has noted, in order.
 
 use super::color::Space;
+use super::outline::Outline;
 use super::source::Source;
 use super::{FillRule, MaskKind, Paint};
 use crate::math::DAffine2;
-use crate::raster::coverage::band::PathEdges;
 
 /// What can be open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,42 +31,24 @@ impl Open {
 /// One thing to do.
 #[derive(Debug)]
 pub(super) enum Command {
-    Fill {
-        path: PathEdges,
-        rule: FillRule,
-        paint: Paint,
-        opacity: f64,
-        transform: DAffine2,
-        smooth: bool,
-    },
-    PushClip {
-        path: PathEdges,
-        rule: FillRule,
-        smooth: bool,
-    },
+    Fill { outline: Outline, rule: FillRule, paint: Paint, opacity: f64, transform: DAffine2 },
+    PushClip { outline: Outline, rule: FillRule },
     PopClip,
     PushGroup,
-    PopGroup {
-        opacity: f64,
-    },
+    PopGroup { opacity: f64 },
     BeginMask,
-    EndMask {
-        kind: MaskKind,
-    },
+    EndMask { kind: MaskKind },
 }
 
 impl Command {
     pub fn prepared<P: Space>(&self) -> Prepared<'_, P> {
         match self {
-            Self::Fill { path, rule, paint, opacity, transform, smooth } => Prepared::Fill {
-                path,
+            Self::Fill { outline, rule, paint, opacity, transform } => Prepared::Fill {
+                outline,
                 rule: *rule,
                 source: Source::new(paint, *transform, *opacity),
-                smooth: *smooth,
             },
-            Self::PushClip { path, rule, smooth } => {
-                Prepared::PushClip { path, rule: *rule, smooth: *smooth }
-            }
+            Self::PushClip { outline, rule } => Prepared::PushClip { outline, rule: *rule },
             Self::PopClip => Prepared::PopClip,
             Self::PushGroup => Prepared::PushGroup,
             Self::PopGroup { opacity } => {
@@ -80,8 +62,8 @@ impl Command {
 
 /// A command with its paint made ready for one colour space.
 pub(super) enum Prepared<'a, P> {
-    Fill { path: &'a PathEdges, rule: FillRule, source: Source<P>, smooth: bool },
-    PushClip { path: &'a PathEdges, rule: FillRule, smooth: bool },
+    Fill { outline: &'a Outline, rule: FillRule, source: Source<P> },
+    PushClip { outline: &'a Outline, rule: FillRule },
     PopClip,
     PushGroup,
     PopGroup { opacity: u8 },
@@ -101,9 +83,10 @@ pub(super) fn sort_into_bands<P>(
     for (i, command) in commands.iter().enumerate() {
         let i = i as u32;
         match command {
-            Prepared::Fill { path, .. } => {
-                let last = ((path.rows.1 - 1) / band_rows) as usize + 1;
-                let range = (path.rows.0 / band_rows) as usize..last.min(count);
+            Prepared::Fill { outline, .. } => {
+                let rows = outline.rows();
+                let last = ((rows.1 - 1) / band_rows) as usize + 1;
+                let range = (rows.0 / band_rows) as usize..last.min(count);
                 let concerned = bands.get_mut(range).into_iter().flatten();
                 concerned.for_each(|band| band.commands.push(i));
             }

@@ -7,21 +7,22 @@
 mod bands;
 mod color;
 mod command;
+mod outline;
 mod source;
 
 pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
 
 use fearless_simd::Level;
 
-use super::coverage::band::PathEdges;
 use super::coverage::{FillRule, Overlap, check_size};
-use super::line::wide::{Stroke, outline};
+use super::line::wide::{self, Stroke};
 use crate::curve::{Contours, Path, flatten};
 use crate::math::DAffine2;
 use crate::target::Pixels;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
 use command::{Command, Open, Prepared};
+use outline::Outline;
 
 /// What of a picture becomes the coverage of a mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -53,7 +54,8 @@ pub struct Options {
     /// Largest distance between a curve and its chords in pixels. 0.025 is at most 6/255 of coverage
     /// where a curve bends most; the number of chords grows with its inverse square root.
     pub tolerance: f64,
-    /// Whether edges are smoothed; otherwise a pixel is painted when at least half of it is covered.
+    /// Whether edges are smoothed; otherwise a pixel is painted when its centre is inside
+    /// ([`super::polygon`]).
     /// [`Canvas::set_anti_alias`] changes it for what follows.
     pub anti_alias: bool,
 }
@@ -154,7 +156,7 @@ impl Canvas {
     /// Strokes a path: its outline is made in the path's space, so that a transform shapes the pen too.
     ///
     /// # Errors
-    /// What [`outline`] finds wrong with the style.
+    /// What [`wide::outline`] finds wrong with the style.
     pub fn stroke(
         &mut self,
         path: &Path,
@@ -164,7 +166,7 @@ impl Canvas {
     ) -> Result<()> {
         let scale = self.transform.matrix2.determinant().abs().sqrt();
         let tolerance = self.options.tolerance / scale.max(1e-9);
-        self.fill(&outline(path, stroke, tolerance)?, FillRule::NonZero, paint, opacity);
+        self.fill(&wide::outline(path, stroke, tolerance)?, FillRule::NonZero, paint, opacity);
         Ok(())
     }
 
@@ -176,18 +178,18 @@ impl Canvas {
         paint: &Paint,
         opacity: f64,
     ) {
-        let path = PathEdges::new(contours, self.width, self.height);
-        if path.rows.0 < path.rows.1 {
+        let outline = Outline::new(contours, self.width, self.height, self.anti_alias);
+        if outline.rows().0 < outline.rows().1 {
             let (paint, transform) = (paint.clone(), self.transform);
-            let smooth = self.anti_alias;
-            self.commands.push(Command::Fill { path, rule, paint, opacity, transform, smooth });
+            self.commands.push(Command::Fill { outline, rule, paint, opacity, transform });
         }
     }
 
     /// Restricts what follows to the inside of a path, within the clip paths already in force.
     pub fn push_clip(&mut self, path: &Path, rule: FillRule) {
-        let path = PathEdges::new(&self.flattened(path), self.width, self.height);
-        self.commands.push(Command::PushClip { path, rule, smooth: self.anti_alias });
+        let contours = self.flattened(path);
+        let outline = Outline::new(&contours, self.width, self.height, self.anti_alias);
+        self.commands.push(Command::PushClip { outline, rule });
         self.open.push(Open::Clip);
     }
 

@@ -142,7 +142,7 @@ impl SnappedTriangle {
 }
 
 fn outside_guard_band(pixels: f64) -> Error {
-    Error::parameter("screen coordinate", pixels, "within ± 4194304 pixels")
+    Error::parameter("screen coordinate", pixels, "within ± 131072 pixels")
 }
 
 /// The edge function E(p) = (b − a) × (p − a) of one directed edge, on the grid.

@@ -5,13 +5,15 @@
 //! Cost: O(e log e + crossings + spans); an edge costs one division when it starts and none per row.
 //! Limits: vertices are snapped to 1/256 of a pixel.
 //!
-//! A pixel belongs to the polygon if its centre does; a centre on the border belongs to a left and an
-//! upper edge (y down), not to a right or lower one, so faces that share edges light each pixel once.
+//! The plain way, and the one that [`super::ordered_edge_list`] is checked against.
 
-use super::coverage::FillRule;
-use super::fixed::{HALF_PIXEL, SUBPIXELS, first_center, snap};
+pub use super::Options;
+use super::{is_inside, snapped_edges};
 use crate::curve::Contours;
 use crate::info::{Class, Info};
+use crate::raster::coverage::FillRule;
+use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
+use crate::raster::span::Span;
 use crate::trace::Tracer;
 
 /// The facts.
@@ -25,24 +27,6 @@ pub const INFO: Info = Info {
     cost: "O(e log e + c): e edges, c crossings of edges with rows",
     limits: "vertices are snapped to 1/256 of a pixel",
 };
-
-/// How a polygon is filled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Options {
-    /// Which winding numbers are inside.
-    pub rule: FillRule,
-}
-
-/// Pixels of one row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Span {
-    /// Row, from the top.
-    pub y: u32,
-    /// First pixel.
-    pub x0: u32,
-    /// One past the last pixel.
-    pub x1: u32,
-}
 
 /// One step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,7 +109,7 @@ impl Edge {
 ///
 /// ```
 /// use durer::curve::{Path, flatten};
-/// use durer::raster::polygon::{Options, fill};
+/// use durer::raster::polygon::edge_table::{Options, fill};
 /// use durer::trace::NoTrace;
 ///
 /// let square = flatten(&Path::rectangle(0.5, 0.5, 2.0, 2.0), 0.1);
@@ -151,7 +135,7 @@ pub fn fill(
             active.push(edge);
         }
         active.sort_by_key(|e| e.x);
-        row(&active, y as u32, width, options.rule, |span| {
+        row(&active, y, width, options.rule, |span| {
             t.step(|| Step::Span(span));
             emit(span);
         });
@@ -167,34 +151,26 @@ pub fn fill(
 
 fn edge_table(contours: &Contours, height: u32) -> Vec<Edge> {
     let mut table = Vec::new();
-    for (points, _) in contours.iter() {
-        let finite = || points.iter().filter(|p| p.is_finite()).map(|p| (snap(p.x), snap(p.y)));
-        for (a, b) in finite().zip(finite().skip(1).chain(finite().take(1))) {
-            table.extend(Edge::new(a, b, 0).filter(|e| i64::from(e.rows.0) < i64::from(height)));
-        }
-    }
+    snapped_edges(contours, |a, b| {
+        table.extend(Edge::new(a, b, 0).filter(|e| i64::from(e.rows.0) < i64::from(height)));
+    });
     table
 }
 
-/// The spans of one row from its edges in order of x.
-fn row(active: &[Edge], y: u32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
-    let (mut winding, mut start) = (0, 0);
+/// The spans of one row from its edges in order of x; those that touch are one.
+fn row(active: &[Edge], y: i32, width: u32, rule: FillRule, mut emit: impl FnMut(Span)) {
+    let width = i64::from(width.min(i32::MAX as u32));
+    let (mut winding, mut span) = (0, Span { y, x0: 0, x1: 0 });
     for edge in active {
         let before = is_inside(winding, rule);
         winding += edge.winding;
-        let after = is_inside(winding, rule);
-        let x = edge.x.clamp(0, i64::from(width)) as u32;
-        if !before && after {
-            start = x;
-        } else if before && !after && start < x {
-            emit(Span { y, x0: start, x1: x });
+        let x = edge.x.clamp(0, width) as i32;
+        if before {
+            span.x1 = x;
+        } else if x > span.x1 {
+            Span::emit_unless_empty(y, span.x0, span.x1, &mut emit);
+            span = Span { y, x0: x, x1: x };
         }
     }
-}
-
-fn is_inside(winding: i32, rule: FillRule) -> bool {
-    match rule {
-        FillRule::NonZero => winding != 0,
-        FillRule::EvenOdd => winding & 1 != 0,
-    }
+    Span::emit_unless_empty(y, span.x0, span.x1, &mut emit);
 }

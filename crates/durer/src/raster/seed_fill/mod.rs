@@ -3,13 +3,18 @@
 //! A flood fill takes the pixels that are like the seed, a boundary fill those that are not like a
 //! boundary. The naive form keeps a stack of pixels; the span form takes whole runs of a row and looks for
 //! runs in the rows above and below (A. R. Smith, *Tint fill*, SIGGRAPH 1979; P. Heckbert, *A seed fill
-//! algorithm*, Graphics Gems, 1990). Both fill the same set; neither recurses.
+//! algorithm*, Graphics Gems, 1990), or, where runs are short, takes 64 pixels of a row at a time. Both fill the
+//! same set; neither recurses.
 //!
 //! Class: image space. Cost: O(n) for n filled pixels; the naive form touches each up to eight times.
+
+mod region;
+mod words;
 
 use crate::info::{Class, Info, family};
 use crate::target::Pixels;
 use crate::trace::Tracer;
+use region::{Region, paint};
 
 /// Which pixels are neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -157,6 +162,7 @@ pub fn fill_where<P: Copy>(
     let eight = options.connectivity == Connectivity::Eight;
     let found = match method {
         SeedFill::Naive => naive(&mut region, seed, eight, t),
+        SeedFill::Spans if region.is_broken() => words::fill(&mut region, seed, eight, t),
         SeedFill::Spans => spans(&mut region, seed, eight, t),
     };
     let width = image.width().max(1) as usize;
@@ -164,119 +170,6 @@ pub fn fill_where<P: Copy>(
         paint(row, &words, value);
     }
     found
-}
-
-/// One bit per pixel: whether it may still be filled.
-struct Region {
-    width: usize,
-    height: usize,
-    words: usize,
-    open: Vec<u64>,
-    before: Vec<u64>,
-}
-
-impl Region {
-    fn new<P: Copy>(image: &Pixels<P>, inside: impl Fn(P) -> bool) -> Self {
-        let (width, height) = (image.width() as usize, image.height() as usize);
-        let words = width.div_ceil(64);
-        let mut open = Vec::with_capacity(words * height);
-        for y in 0..image.height() {
-            let chunks = image.row(y).chunks(64);
-            open.extend(chunks.map(|chunk| bits(chunk, &inside)));
-        }
-        Self { width, height, words, before: open.clone(), open }
-    }
-
-    fn is_open(&self, x: i64, y: i64) -> bool {
-        let inside = x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height;
-        inside && self.open[y as usize * self.words + x as usize / 64] >> (x as usize % 64) & 1 != 0
-    }
-
-    /// Per row the words of what has been filled.
-    fn filled(&self) -> impl Iterator<Item = Vec<u64>> {
-        let words = self.words.max(1);
-        let pairs = self.before.chunks(words).zip(self.open.chunks(words));
-        pairs.map(|(before, after)| before.iter().zip(after).map(|(b, a)| b & !a).collect())
-    }
-
-    fn row(&self, y: usize) -> &[u64] {
-        &self.open[y * self.words..(y + 1) * self.words]
-    }
-
-    /// The first open pixel of a row in `x..end`.
-    fn next_open(&self, y: usize, x: usize, end: usize) -> Option<usize> {
-        let found = next_bit(self.row(y), x, |w| w)?;
-        (found < end).then_some(found)
-    }
-
-    /// Closes the whole run of open pixels around x; returns it.
-    fn take_run(&mut self, y: usize, x: usize) -> (usize, usize) {
-        let row = self.row(y);
-        let end = next_bit(row, x, |w| !w).unwrap_or(self.width).min(self.width);
-        let start = previous_closed(row, x).map_or(0, |p| p + 1);
-        let base = y * self.words;
-        let mut at = start;
-        while at < end {
-            let stop = end.min((at | 63) + 1);
-            self.open[base + at / 64] &= !((u64::MAX >> (64 - (stop - at))) << (at % 64));
-            at = stop;
-        }
-        (start, end)
-    }
-}
-
-/// One bit for each of at most 64 pixels.
-#[inline(always)]
-fn bits<P: Copy>(pixels: &[P], inside: impl Fn(P) -> bool) -> u64 {
-    // Bytes first, for those are compared many at a time.
-    let mut flags = [0_u8; 64];
-    for (flag, pixel) in flags.iter_mut().zip(pixels) {
-        *flag = u8::from(inside(*pixel));
-    }
-    let eights = flags.as_chunks::<8>().0.iter().enumerate();
-    // The product brings the lowest bits of eight bytes side by side into the highest byte.
-    eights.fold(0, |word, (i, eight)| {
-        let eight = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-        word | (eight << (8 * i))
-    })
-}
-
-/// The first bit from `x` on that is set after `map`.
-fn next_bit(row: &[u64], x: usize, map: impl Fn(u64) -> u64) -> Option<usize> {
-    let first = map(*row.get(x / 64)?) & (u64::MAX << (x % 64));
-    if first != 0 {
-        return Some(x / 64 * 64 + first.trailing_zeros() as usize);
-    }
-    let rest = row.iter().enumerate().skip(x / 64 + 1);
-    let mut rest = rest.map(|(i, w)| (i, map(*w))).filter(|(_, w)| *w != 0);
-    rest.next().map(|(i, w)| i * 64 + w.trailing_zeros() as usize)
-}
-
-/// The last closed pixel before x.
-fn previous_closed(row: &[u64], x: usize) -> Option<usize> {
-    let last = !row.get(x / 64)? & !(u64::MAX << (x % 64));
-    if last != 0 {
-        return Some(x / 64 * 64 + 63 - last.leading_zeros() as usize);
-    }
-    let mut rest = row[..x / 64].iter().enumerate().rev().filter(|(_, w)| **w != u64::MAX);
-    rest.next().map(|(i, w)| i * 64 + 63 - (!w).leading_zeros() as usize)
-}
-
-/// Writes the value to the pixels whose bits are set.
-fn paint<P: Copy>(row: &mut [P], words: &[u64], value: P) {
-    for (pixels, word) in row.chunks_mut(64).zip(words) {
-        if *word == u64::MAX {
-            pixels.fill(value);
-            continue;
-        }
-        let mut bits = *word;
-        while bits != 0 {
-            if let Some(pixel) = pixels.get_mut(bits.trailing_zeros() as usize) {
-                *pixel = value;
-            }
-            bits &= bits - 1;
-        }
-    }
 }
 
 const NEIGHBOURS: [(i64, i64); 8] =
