@@ -22,7 +22,9 @@ pub struct RowEdges([Option<RowEdge>; 3]);
 impl RowEdges {
     #[inline(always)]
     pub fn new(t: &ScreenTriangle, slopes: &Slopes, y: i32) -> Self {
-        Self([0, 1, 2].map(|i| RowEdge::new(t, slopes, i, y)))
+        let edge = |i| RowEdge::new(t, slopes, i, y);
+        // Not by `map`, which would be a call.
+        Self([edge(0), edge(1), edge(2)])
     }
 
     /// The columns among x0 … x1 − 1 that the triangle may touch, as first and end.

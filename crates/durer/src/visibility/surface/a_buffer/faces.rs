@@ -11,9 +11,10 @@ use crate::visibility::surface::setup::ScreenTriangle;
 /// hides it. The picture does not depend on that order, only the work.
 pub struct Faces<'a> {
     input: &'a SurfaceInput<'a>,
-    /// First row, then depth; and the triangle.
-    waiting: Vec<(u64, u32)>,
-    next: usize,
+    /// Depth and index of each triangle, by first row.
+    waiting: Vec<u64>,
+    /// Where each row's begin; one more than there are rows.
+    starts: Vec<u32>,
     active: Vec<Active>,
     /// The active ones of the row before, while the next row's are put together.
     before: Vec<Active>,
@@ -40,19 +41,31 @@ const NOWHERE: u32 = u32::MAX;
 
 impl<'a> Faces<'a> {
     pub fn new(input: &'a SurfaceInput<'a>, height: u32) -> Self {
-        let mut waiting = Vec::with_capacity(input.triangles.len());
-        for (index, t) in input.triangles.iter().enumerate() {
+        let first_row = |t: &ScreenTriangle| {
             let [first, last] = touched(&t.y);
-            if last >= 0 && i64::from(first) < i64::from(height) {
-                let key = (first.max(0) as u64) << 32 | u64::from(order(t.depth_min));
-                waiting.push((key, index as u32));
+            let seen = last >= 0 && i64::from(first) < i64::from(height);
+            seen.then_some(first.max(0) as usize)
+        };
+        // Counting sort.
+        let mut starts = vec![0; height as usize + 2];
+        for row in input.triangles.iter().filter_map(first_row) {
+            starts[row + 2] += 1;
+        }
+        for row in 2..starts.len() {
+            starts[row] += starts[row - 1];
+        }
+        let mut waiting = vec![0; starts.last().map_or(0, |&n| n as usize)];
+        for (index, t) in input.triangles.iter().enumerate() {
+            if let Some(row) = first_row(t) {
+                let place = &mut starts[row + 1];
+                waiting[*place as usize] = u64::from(order(t.depth_min)) << 32 | index as u64;
+                *place += 1;
             }
         }
-        waiting.sort_unstable();
         Self {
             input,
             waiting,
-            next: 0,
+            starts,
             active: Vec::new(),
             before: Vec::new(),
             places: Vec::new(),
@@ -62,13 +75,13 @@ impl<'a> Faces<'a> {
 
     /// Goes on to a row; rows come in order.
     pub fn advance(&mut self, y: i32) {
-        let Self { input, waiting, next, active, before, free, .. } = self;
+        let Self { input, waiting, starts, active, before, free, .. } = self;
         std::mem::swap(active, before);
         active.clear();
-        let all = &waiting[*next..];
-        let new = &all[..all.partition_point(|(key, _)| (key >> 32) as i64 <= i64::from(y))];
-        *next += new.len();
-        let mut new = new.iter().map(|&(_, index)| Active::new(input, index)).peekable();
+        let [first, end] = [0, 1].map(|i| starts[y as usize + i] as usize);
+        let new = &mut waiting[first..end];
+        new.sort_unstable();
+        let mut new = new.iter().map(|&key| Active::new(input, key as u32)).peekable();
         for old in before.iter() {
             if old.last_row < y {
                 free.extend((old.place != NOWHERE).then_some(old.place));
