@@ -1,190 +1,25 @@
 //! Materials with their textures, ready for shading, and the one door to all shading models.
 
 use super::formula::{self, Inputs};
-use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::lookup::TexCoords;
 use super::metallic_roughness::Substance;
-use super::mip::MipChain;
 use super::normal::{face_viewer, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::plain::Points;
 use super::sample::Sample;
-use super::texture::{PreparedTexture, Usage};
+use super::slot::{Chains, Slot, Texel, Texels, sampled_x8};
+use super::surface::Surface;
+use super::texture::Usage;
 use super::{Shading, tone};
-use crate::math::{Vec2, Vec3, Vec4};
-use crate::scene::{AlphaMode, Material, MipFilter, Scene, ShadingModel, TextureRef};
+use crate::math::{Vec3, Vec4};
+use crate::scene::{AlphaMode, Material, Scene, ShadingModel};
 use fearless_simd::{Simd, f32x8};
-use std::sync::Arc;
-
-/// Texture coordinates and how they change over the screen.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct TexCoord {
-    /// (0, 0) is the upper left corner of the image.
-    pub uv: Vec2,
-    /// Change of `uv` from one pixel to the next along x.
-    pub ddx: Vec2,
-    /// Change of `uv` from one pixel to the next along y.
-    pub ddy: Vec2,
-}
-
-/// A visible point. World axes, positions relative to [`PreparedLights::origin`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Surface<'a> {
-    /// Where it is. Only read where there are point or spot lights.
-    pub position: Vec3,
-    /// Towards the eye, any length: `−position` in perspective, one direction for parallel lines.
-    pub view: Vec3,
-    /// The interpolated normal, any length. Zero where the mesh has none: the face's is taken.
-    pub normal: Vec3,
-    /// Unit normal of the face's plane, on either side: it is turned to the viewer.
-    pub geometric_normal: Vec3,
-    /// Tangent, w = ±1 the sign of the bitangent; without one a normal map's frame is taken from
-    /// the derivatives.
-    pub tangent: Option<Vec4>,
-    /// Change of `position` from one pixel to the next along x; only for normal maps.
-    pub position_dx: Vec3,
-    /// Change of `position` from one pixel to the next along y; only for normal maps.
-    pub position_dy: Vec3,
-    /// Set by set, as many as the mesh has; sets beyond count as (0, 0).
-    pub tex_coords: &'a [TexCoord],
-    /// Vertex colour, linear with straight alpha; multiplies the base colour.
-    pub color: Vec4,
-    /// For flat and Gouraud shading: from [`super::shade_face`], or interpolated from
-    /// [`super::shade_vertex`]. Without it both light the point itself.
-    pub lit: Option<Reflected>,
-}
-
-impl Default for Surface<'_> {
-    /// A white point that faces the eye, without textures.
-    fn default() -> Self {
-        Self {
-            position: Vec3::ZERO,
-            view: Vec3::Z,
-            normal: Vec3::ZERO,
-            geometric_normal: Vec3::Z,
-            tangent: None,
-            position_dx: Vec3::ZERO,
-            position_dy: Vec3::ZERO,
-            tex_coords: &[],
-            color: Vec4::ONE,
-            lit: None,
-        }
-    }
-}
-
-/// A texture in its place.
-#[derive(Debug, Clone)]
-struct Slot<'a> {
-    texture: PreparedTexture<'a>,
-    set: usize,
-    /// Columns of the affine map from the mesh's coordinates to the texture's.
-    columns: [Vec2; 3],
-}
-
-impl Slot<'_> {
-    #[inline]
-    fn coordinates(&self, surface: &Surface<'_>) -> TexCoord {
-        let at = surface.tex_coords.get(self.set).copied().unwrap_or_default();
-        let [x, y, offset] = self.columns;
-        let turned = |d: Vec2| x * d.x + y * d.y;
-        TexCoord { uv: turned(at.uv) + offset, ddx: turned(at.ddx), ddy: turned(at.ddy) }
-    }
-
-    #[inline]
-    fn sample(&self, surface: &Surface<'_>) -> Vec4 {
-        let at = self.coordinates(surface);
-        self.texture.sample(at.uv, at.ddx, at.ddy)
-    }
-
-    /// [`Self::sample`] of eight points; `at` is of the slot's own set.
-    #[inline(always)]
-    fn sample_x8<S: Simd>(&self, simd: S, at: &TexCoords<f32x8<S>>) -> [f32x8<S>; 4] {
-        let [x, y, offset] = self.columns;
-        let (u, v) = ([x.x, y.x], [x.y, y.y]);
-        let at = TexCoords {
-            uv: [sum(at.uv, u) + offset.x, sum(at.uv, v) + offset.y],
-            ddx: [sum(at.ddx, u), sum(at.ddx, v)],
-            ddy: [sum(at.ddy, u), sum(at.ddy, v)],
-        };
-        self.texture.sample_x8(simd, &at)
-    }
-}
-
-/// Red, green, blue and alpha of a texture.
-#[derive(Debug, Clone, Copy)]
-struct Texel<L>([L; 4]);
-
-impl<L: Lane> Texel<L> {
-    #[inline(always)]
-    fn color(&self) -> Vec3Lane<L> {
-        let [r, g, b, _] = self.0;
-        Vec3Lane::new(r, g, b)
-    }
-}
-
-/// A weighted sum of two coordinates.
-#[inline(always)]
-fn sum<S: Simd>([a, b]: [f32x8<S>; 2], [of_a, of_b]: [f32; 2]) -> f32x8<S> {
-    a * of_a + b * of_b
-}
-
-/// What a material's textures say of a point, but for its base colour.
-struct Texels<L> {
-    emissive: Option<Texel<L>>,
-    occlusion: Option<Texel<L>>,
-    metallic_roughness: Option<Texel<L>>,
-    specular: Option<Texel<L>>,
-}
-
-/// [`Slot::sample_x8`], where there is a slot.
-#[inline(always)]
-fn sampled_x8<S: Simd>(
-    simd: S,
-    slot: &Option<Slot<'_>>,
-    at: &TexCoords<f32x8<S>>,
-) -> Option<Texel<f32x8<S>>> {
-    match slot {
-        Some(slot) => Some(Texel(slot.sample_x8(simd, at))),
-        None => None,
-    }
-}
 
 /// Whether a formula takes Phong's inputs.
 fn by_phong(shading: Shading) -> bool {
     !matches!(shading, Shading::MetallicRoughness | Shading::Unlit)
-}
-
-/// The mip chains made so far: one per image and use, with all levels or without, however many
-/// materials share it.
-struct Chains<'a> {
-    scene: &'a Scene,
-    made: Vec<((usize, Usage, bool), Arc<MipChain<'a>>)>,
-}
-
-impl<'a> Chains<'a> {
-    /// A slot for a texture; none where it refers to nothing.
-    fn slot(&mut self, reference: Option<TextureRef>, usage: Usage) -> Option<Slot<'a>> {
-        let reference = reference?;
-        let texture = self.scene.textures.get(reference.texture)?;
-        let image = self.scene.images.get(texture.image)?;
-        let levels = texture.sampler.mip != MipFilter::None;
-        let wanted = (texture.image, usage, levels);
-        let chain = if let Some((_, chain)) = self.made.iter().find(|(made, _)| *made == wanted) {
-            Arc::clone(chain)
-        } else {
-            let chain = Arc::new(MipChain::new(image, usage, levels));
-            self.made.push((wanted, Arc::clone(&chain)));
-            chain
-        };
-        let columns = reference.transform.to_cols_array_2d().map(|c| {
-            let [x, y, _] = c;
-            Vec2::new(x as f32, y as f32)
-        });
-        let texture = PreparedTexture::from_chain(chain, texture.sampler);
-        Some(Slot { texture, set: reference.tex_coord as usize, columns })
-    }
 }
 
 /// All materials of a scene, ready for shading. Borrows the scene's images.
@@ -199,7 +34,7 @@ impl<'a> PreparedMaterials<'a> {
     ///
     /// Cost: O(texels) time, a third of the images in memory.
     pub fn new(scene: &'a Scene) -> Self {
-        let mut chains = Chains { scene, made: Vec::new() };
+        let mut chains = Chains::new(scene);
         let mut prepare = |m: &Material| PreparedMaterial::new(m, &mut chains);
         let materials = scene.materials.iter().map(&mut prepare).collect();
         let default = prepare(&Material::default());
