@@ -218,34 +218,23 @@ struct Walk<'a, 'b, C> {
 impl<C: Coord> Walk<'_, '_, C> {
     fn run(mut self) -> Walked<C> {
         let graph = self.graph;
-        let first_node = self.patch.nodes.start as u32;
         // In waves, not in depth: what a wave touches, the next one finds in the cache.
         let (mut wave, mut next) = (Vec::new(), Vec::new());
         for root in self.patch.nodes.clone() {
+            let known = self.part_of[root - self.patch.nodes.start] != NONE;
             let root = root as u32;
-            if self.part_of[(root - first_node) as usize] != NONE || graph.around(root).is_empty() {
+            if known || graph.around(root).is_empty() {
                 continue;
             }
             let name = self.walked.parts.len() as u32;
             let (outside, offset) = (Winding::default(), Winding::default());
             let first = graph.nodes[root as usize];
             self.walked.parts.push(Part { first, node: root, outside, parent: name, offset });
-            self.part_of[(root - first_node) as usize] = name;
-            wave.push((root, outside));
+            self.part_of[root as usize - self.patch.nodes.start] = name;
+            self.go_on(graph.around(root), Winding::default(), &mut wave);
             while !wave.is_empty() {
-                for (node, below) in wave.drain(..) {
-                    self.turn(node, below);
-                    for &half in graph.around(node) {
-                        let end = graph.start(half.reversed());
-                        if !self.patch.has_node(end) {
-                            continue;
-                        }
-                        let part = &mut self.part_of[(end - first_node) as usize];
-                        if *part == NONE {
-                            *part = name;
-                            next.push((end, self.below(end, half.reversed())));
-                        }
-                    }
+                for half in wave.drain(..) {
+                    self.turn(half, &mut next);
                 }
                 std::mem::swap(&mut wave, &mut next);
             }
@@ -253,31 +242,63 @@ impl<C: Coord> Walk<'_, '_, C> {
         self.walked
     }
 
-    /// Goes around a node counter-clockwise, from straight down, and sets the windings of its edges.
-    fn turn(&mut self, node: u32, below: Winding) {
-        let graph = self.graph;
-        let name = self.walked.parts.len() - 1;
+    /// Goes around the node that a half-edge leaves, whose edge's windings are known.
+    #[inline(always)]
+    fn turn(&mut self, known: Half, next: &mut Vec<Half>) {
+        let (graph, e) = (self.graph, known.edge());
+        let node = graph.start(known);
+        let around = graph.around(node);
+        let at = around.iter().position(|&half| half == known).unwrap_or(0);
+        let right = self.right[e - self.patch.edges.start];
+        let left = right.plus(graph.edges[e].step);
+        let after = if known.is_back() { right } else { left };
+        if !known.is_back() {
+            self.first_within(e, right, left);
+        }
+        let below = self.go_on(&around[at + 1..], after, next);
         let point = graph.nodes[node as usize];
-        let part = &mut self.walked.parts[name];
-        if point < part.first {
+        if let Some(part) = self.walked.parts.last_mut()
+            && point < part.first
+        {
             (part.first, part.node, part.outside) = (point, node, below);
         }
-        let mut winding = below;
-        for &half in graph.around(node) {
-            let (e, step) = (half.edge(), graph.edges[half.edge()].step);
-            if half.is_back() {
-                winding = winding.minus(step);
-                if self.patch.has_edge(e) {
-                    self.right[e - self.patch.edges.start] = winding;
-                } else {
-                    self.walked.links.push((e as u32, name as u32, winding));
+        self.go_on(&around[..at], below, next);
+    }
+
+    /// Goes on counter-clockwise around a node, sets the windings of the edges there, and takes
+    /// their other ends for the next wave. Gives the winding behind the last one.
+    #[inline(always)]
+    fn go_on(&mut self, around: &[Half], before: Winding, next: &mut Vec<Half>) -> Winding {
+        let graph = self.graph;
+        let name = self.walked.parts.len() as u32 - 1;
+        let mut winding = before;
+        for &half in around {
+            let e = half.edge();
+            let edge = &graph.edges[e];
+            let end = if half.is_back() {
+                winding = winding.minus(edge.step);
+                if !self.patch.has_edge(e) {
+                    self.walked.links.push((e as u32, name, winding));
+                    continue;
                 }
-            } else {
                 self.right[e - self.patch.edges.start] = winding;
-                self.first_within(e, winding, winding.plus(step));
-                winding = winding.plus(step);
+                edge.low
+            } else {
+                let right = winding;
+                self.right[e - self.patch.edges.start] = right;
+                winding = winding.plus(edge.step);
+                self.first_within(e, right, winding);
+                edge.high
+            };
+            let place = (end as usize).wrapping_sub(self.patch.nodes.start);
+            if let Some(part) = self.part_of.get_mut(place)
+                && *part == NONE
+            {
+                *part = name;
+                next.push(half.reversed());
             }
         }
+        winding
     }
 
     /// Looks for the part's smallest point among an edge's inner nodes.
@@ -295,19 +316,5 @@ impl<C: Coord> Walk<'_, '_, C> {
             let outside = if turn > C::Wide::default() { right } else { left };
             (part.first, part.node, part.outside) = (first, inner[k], outside);
         }
-    }
-
-    /// The winding straight below a node, from the known windings beside one of its half-edges,
-    /// whose edge is one of the patch.
-    fn below(&self, node: u32, known: Half) -> Winding {
-        let graph = self.graph;
-        let right = self.right[known.edge() - self.patch.edges.start];
-        let left = right.plus(graph.edges[known.edge()].step);
-        let mut winding = if known.is_back() { left } else { right };
-        for &half in graph.around(node).iter().take_while(|&&half| half != known) {
-            let step = graph.edges[half.edge()].step;
-            winding = if half.is_back() { winding.plus(step) } else { winding.minus(step) };
-        }
-        winding
     }
 }
