@@ -35,8 +35,9 @@ pub(super) struct MipChain<'a> {
 const WHITE: &[[u8; 4]] = &[[255; 4]];
 
 impl<'a> MipChain<'a> {
-    /// Filters all levels. An image without pixels, or with fewer than it claims, becomes white.
-    pub fn new(image: &'a Image, usage: Usage) -> Self {
+    /// Filters all levels, if they are wanted. An image without pixels, or with fewer than it claims,
+    /// becomes white.
+    pub fn new(image: &'a Image, usage: Usage, levels: bool) -> Self {
         let pixels = u64::from(image.width) * u64::from(image.height);
         let readable = pixels > 0 && image.data.len() as u64 >= pixels;
         let base = if readable {
@@ -48,7 +49,9 @@ impl<'a> MipChain<'a> {
         let opaque = || base.texels.iter().all(|t| t[3] == 255);
         let usage = if usage == Usage::ColorWithAlpha && opaque() { Usage::Color } else { usage };
         let mut chain = Self { base, sizes: Vec::new(), texels: Vec::new(), usage };
-        chain.fill();
+        if levels {
+            chain.fill();
+        }
         chain
     }
 
@@ -154,10 +157,10 @@ mod tests {
     fn a_checker_board_becomes_grey_of_half_its_light() {
         let checker =
             image(64, 64, |x, y| if (x + y) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] });
-        let color = MipChain::new(&checker, Usage::Color);
+        let color = MipChain::new(&checker, Usage::Color, true);
         assert_eq!(color.last(), 6);
         assert_eq!(color.level(6).texels, [[188, 188, 188, 255]]);
-        let data = MipChain::new(&checker, Usage::Data);
+        let data = MipChain::new(&checker, Usage::Data, true);
         assert_eq!(data.level(6).texels, [[128, 128, 128, 255]]);
     }
 
@@ -168,7 +171,7 @@ mod tests {
                 let v = (x * 7919 + y * 104_729 + x * y * 31) % 251;
                 [v as u8, 255 - v as u8, (v / 2) as u8, 255]
             });
-            let chain = MipChain::new(&noise, Usage::Data);
+            let chain = MipChain::new(&noise, Usage::Data, true);
             let mean = |c: usize| {
                 let sum: u32 = noise.data.iter().map(|t| u32::from(t[c])).sum();
                 sum as f32 / noise.data.len() as f32
@@ -185,13 +188,13 @@ mod tests {
     #[test]
     fn transparent_texels_do_not_bleed() {
         let leaf = image(8, 8, |x, _| if x % 2 == 0 { [0, 200, 0, 255] } else { [255, 0, 255, 0] });
-        let chain = MipChain::new(&leaf, Usage::ColorWithAlpha);
+        let chain = MipChain::new(&leaf, Usage::ColorWithAlpha, true);
         for number in 1..=chain.last() {
             for texel in &chain.level(number).texels[..1] {
                 assert_eq!(*texel, [0, 200, 0, 128]);
             }
         }
-        let ignored = MipChain::new(&leaf, Usage::Color);
+        let ignored = MipChain::new(&leaf, Usage::Color, true);
         assert_eq!(ignored.level(3).texels[0], [188, 146, 188, 128]);
     }
 
@@ -199,7 +202,7 @@ mod tests {
     fn images_that_could_not_be_read_are_white() {
         let short = Image { width: 100, height: 100, data: vec![[0; 4]; 5], ..Image::default() };
         for broken in [&Image::default(), &short] {
-            let chain = MipChain::new(broken, Usage::Data);
+            let chain = MipChain::new(broken, Usage::Data, true);
             assert_eq!(chain.level(0).texels, [[255; 4]]);
             assert_eq!(chain.last(), 0);
         }

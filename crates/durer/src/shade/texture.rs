@@ -37,22 +37,23 @@ impl Usage {
 /// Texels stay 8-bit and are decoded when they are fetched. The image is borrowed.
 #[derive(Debug, Clone)]
 pub struct PreparedTexture<'a> {
-    chain: Arc<MipChain<'a>>,
-    sampler: Sampler,
-    size: Vec2,
+    pub(super) chain: Arc<MipChain<'a>>,
+    pub(super) sampler: Sampler,
+    pub(super) size: Vec2,
 }
 
 /// Parts of a texel's width at which bilinear weights are taken; fine enough for dark gradients in
 /// linear light, coarse enough that a texel's centre is hit exactly in images up to 2048 wide.
-const SUBTEXEL_BITS: u32 = 12;
-const SUBTEXEL: f32 = (1 << SUBTEXEL_BITS) as f32;
+pub(super) const SUBTEXEL_BITS: u32 = 12;
+pub(super) const SUBTEXEL: f32 = (1 << SUBTEXEL_BITS) as f32;
 
 impl<'a> PreparedTexture<'a> {
     /// Filters the image's mip chain. An image of size zero samples white.
     ///
     /// Cost: O(texels) time, a third of the image in memory.
     pub fn new(image: &'a Image, sampler: Sampler, usage: Usage) -> Self {
-        Self::from_chain(Arc::new(MipChain::new(image, usage)), sampler)
+        let levels = sampler.mip != MipFilter::None;
+        Self::from_chain(Arc::new(MipChain::new(image, usage, levels)), sampler)
     }
 
     pub(super) fn from_chain(chain: Arc<MipChain<'a>>, sampler: Sampler) -> Self {
@@ -67,7 +68,9 @@ impl<'a> PreparedTexture<'a> {
     /// Cost: one fetch for nearest, four for bilinear, eight between two levels.
     #[inline]
     pub fn sample(&self, uv: Vec2, ddx: Vec2, ddy: Vec2) -> Vec4 {
-        let sum = match self.detail(ddx, ddy) {
+        let (x, y) = (ddx * self.size, ddy * self.size);
+        let footprint2 = x.length_squared().max(y.length_squared());
+        let sum = match self.detail(footprint2) {
             Detail::Magnified => self.filtered(0, uv, self.sampler.mag),
             Detail::Level(level) => self.filtered(level, uv, self.sampler.min),
             Detail::Between(level, t) => {
@@ -79,11 +82,9 @@ impl<'a> PreparedTexture<'a> {
         self.straight(sum)
     }
 
-    /// Which levels, after the screen derivatives.
+    /// Which levels, after the square of the longer screen derivative in texels.
     #[inline(always)]
-    fn detail(&self, ddx: Vec2, ddy: Vec2) -> Detail {
-        let (x, y) = (ddx * self.size, ddy * self.size);
-        let footprint2 = x.length_squared().max(y.length_squared());
+    pub(super) fn detail(&self, footprint2: f32) -> Detail {
         // Also where a derivative is NaN: both comparisons of `max` let the other one win.
         if footprint2.is_nan() || footprint2 <= 1.0 {
             return Detail::Magnified;
@@ -127,16 +128,11 @@ impl<'a> PreparedTexture<'a> {
     #[inline(always)]
     fn fetch(&self, level: Level<'_>, x: u32, y: u32) -> Vec4 {
         let index = y as usize * level.width as usize + x as usize;
-        let texel = self.chain.usage.decode(level.texels.get(index).copied().unwrap_or([255; 4]));
-        if self.chain.usage == Usage::ColorWithAlpha {
-            super::color::premultiply(texel)
-        } else {
-            texel
-        }
+        self.texel(level.texels, index)
     }
 
     #[inline(always)]
-    fn straight(&self, sum: Vec4) -> Vec4 {
+    pub(super) fn straight(&self, sum: Vec4) -> Vec4 {
         if self.chain.usage == Usage::ColorWithAlpha {
             super::color::unpremultiply(sum)
         } else {
@@ -146,7 +142,7 @@ impl<'a> PreparedTexture<'a> {
 }
 
 /// The choice of levels.
-enum Detail {
+pub(super) enum Detail {
     /// Texels are larger than pixels.
     Magnified,
     /// One level.
@@ -337,8 +333,7 @@ mod tests {
         let s = sampler(Filter::Nearest, MipFilter::Nearest, Wrap::Repeat);
         let texture = PreparedTexture::new(&image, s, Usage::Data);
         for level in 0..8 {
-            let step = Vec2::new((1 << level) as f32 / 256.0, 0.0);
-            let chosen = match texture.detail(Vec2::ZERO, step) {
+            let chosen = match texture.detail((1 << (2 * level)) as f32) {
                 Detail::Magnified => 0,
                 Detail::Level(l) | Detail::Between(l, _) => l,
             };

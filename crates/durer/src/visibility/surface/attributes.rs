@@ -88,6 +88,13 @@ impl VisibleTriangle {
         [0, 1, 2].map(|i| constant[i] + (dx[i] * x + dy[i] * y))
     }
 
+    /// The edge functions, by constant and changes along x and y, and where a pixel's centre lies for
+    /// them: what [`Self::weights`] and [`Self::weights_beside`] start from.
+    #[inline(always)]
+    pub fn edge_functions(&self, x: i32, y: i32) -> (&[[f32; 4]; 3], [f32; 2]) {
+        (&self.edges, [(x - self.origin[0]) as f32, (y - self.origin[1]) as f32])
+    }
+
     /// Perspective-correct barycentric coordinates at a pixel's centre moved by `shift` pixels; kept
     /// within the triangle where the point lies outside, as it may at edges.
     #[inline(always)]

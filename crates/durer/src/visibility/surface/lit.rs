@@ -13,6 +13,7 @@ use crate::view::View;
 use crate::visibility::surface::attributes::{Triangles, VisibleTriangle, Weights, blend, run_of};
 use crate::visibility::surface::gather::{Gathered, points};
 use crate::visibility::surface::setup::Run;
+use crate::visibility::surface::textured::GatheredCoords;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
@@ -53,6 +54,8 @@ struct RunInfo<'a> {
     plain: bool,
     /// Whether eight pixels can be lit at a time, after their textures were looked up one by one.
     together: bool,
+    /// The texture coordinates by which eight pixels can also be looked up at a time.
+    looked_up: Option<&'a [Vec2]>,
 }
 
 /// From where a point of an item is seen.
@@ -116,6 +119,12 @@ impl<'a> Lit<'a> {
         };
         let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
         let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
+        let together = !plain && material.is_lit_together(shading);
+        let looked_up = material
+            .looked_up_together(shading)
+            .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
+            .and_then(|set| mesh.tex_coords.get(set))
+            .map(Vec::as_slice);
         let info = RunInfo {
             run: index,
             first_item: run.first_item,
@@ -124,7 +133,8 @@ impl<'a> Lit<'a> {
             material,
             shading,
             plain,
-            together: !plain && material.is_lit_together(shading),
+            together,
+            looked_up,
         };
         self.latest = Some(info);
         info
@@ -352,6 +362,8 @@ impl<'a> Lit<'a> {
         }
         let shaded = if info.plain {
             self.plain_x8(simd, info, items, &mine, at)
+        } else if let Some(coords) = info.looked_up {
+            self.looked_up_x8(simd, (info, coords), items, &mine, at)
         } else {
             self.textured_x8(simd, info, items, &mine, at)
         };
@@ -376,6 +388,29 @@ impl<'a> Lit<'a> {
             gathered.set(simd, i, t, [x + i as i32, y]);
         }
         self.shade_gathered(simd, info, &gathered)
+    }
+
+    /// Shades the chosen of eight pixels, of a run whose textures are looked up together.
+    #[inline(always)]
+    fn looked_up_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        (info, coords): (&RunInfo<'a>, &[Vec2]),
+        items: &[u32; 8],
+        mine: &[u32; 8],
+        [x, y]: [i32; 2],
+    ) -> [[f32; 8]; 3] {
+        let (mut points, mut at) = (Gathered::default(), GatheredCoords::default());
+        for i in (0..8).filter(|&i| mine[i] != 0) {
+            let t = self.triangles.get(items[i], info.run);
+            let pixel = [x + i as i32, y];
+            points.set(simd, i, t, pixel);
+            at.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
+        }
+        let points = points.points(simd, self.parallel_view);
+        let at = at.coordinates(simd);
+        let color = info.material.shade_x8(simd, &points, &at, self.shared.lights, info.shading);
+        [color.x.into(), color.y.into(), color.z.into()]
     }
 
     /// Shades the chosen of eight pixels, of a run that is lit together.

@@ -19,6 +19,7 @@ pub mod scan_line_z;
 pub mod setup;
 pub mod shadow_map;
 pub mod spanning_scan_line;
+pub(crate) mod textured;
 pub(crate) mod visible;
 pub mod warnock;
 pub mod z_buffer;

@@ -15,33 +15,41 @@ pub struct Areas {
     first: i32,
 }
 
-impl Areas {
-    /// The first column of the pixels x0 … x1 − 1 of row y that a triangle touches, and the areas
-    /// from there on, 0 … 1.
-    pub fn of(
-        &mut self,
-        t: &ScreenTriangle,
-        slopes: &Slopes,
-        y: i32,
-        [x0, x1]: [i32; 2],
-    ) -> (i32, &[f32]) {
-        let edges = [0, 1, 2].map(|i| RowEdge::new(t, slopes, i, y));
+/// The parts of a triangle's edges in one row.
+#[derive(Debug, Clone, Copy)]
+pub struct RowEdges([Option<RowEdge>; 3]);
+
+impl RowEdges {
+    #[inline(always)]
+    pub fn new(t: &ScreenTriangle, slopes: &Slopes, y: i32) -> Self {
+        let edge = |i| RowEdge::new(t, slopes, i, y);
+        // Not by `map`, which would be a call.
+        Self([edge(0), edge(1), edge(2)])
+    }
+
+    /// The columns among x0 … x1 − 1 that the triangle may touch, as first and end.
+    #[inline(always)]
+    pub fn columns(&self, [x0, x1]: [i32; 2]) -> [i32; 2] {
         let (mut lo, mut hi) = (f32::INFINITY, f32::NEG_INFINITY);
-        for edge in edges.iter().flatten() {
+        for edge in self.0.iter().flatten() {
             lo = lo.min(edge.left);
             hi = hi.max(edge.right);
         }
-        self.changes.clear();
         // Where lo is negative, rounding towards zero is as good: x0 is not.
-        let (first, end) = ((lo as i32).max(x0), (hi as i32).saturating_add(1).min(x1));
-        if first >= end {
-            return (x0, &[]);
-        }
+        [(lo as i32).max(x0), (hi as i32).saturating_add(1).min(x1)]
+    }
+}
+
+impl Areas {
+    /// The areas that a triangle covers of pixels first … end − 1, 0 … 1.
+    #[inline(always)]
+    pub fn of(&mut self, edges: &RowEdges, [first, end]: [i32; 2]) -> &[f32] {
+        self.changes.clear();
         self.first = first;
         let count = (end - first) as usize;
         let (from, end) = (first as f32, end as f32);
         self.changes.resize(count + 1, 0.0);
-        for edge in edges.iter().flatten() {
+        for edge in edges.0.iter().flatten() {
             self.add(edge, from, end);
         }
         let mut sum = 0.0;
@@ -49,10 +57,11 @@ impl Areas {
             sum += *area;
             *area = sum.clamp(0.0, 1.0);
         }
-        (self.first, &self.changes[..count])
+        &self.changes[..count]
     }
 
     /// Adds an edge's share; what lies left of `from` covers all pixels, what lies right of `end` none.
+    #[inline(always)]
     fn add(&mut self, edge: &RowEdge, from: f32, end: f32) {
         let (left, right) = (edge.left.clamp(from, end), edge.right.clamp(from, end));
         let width = edge.right - edge.left;
@@ -77,7 +86,7 @@ impl Areas {
     }
 
     /// Adds a piece of an edge within one pixel, of this signed height.
-    #[inline]
+    #[inline(always)]
     fn add_piece(&mut self, x0: f32, x1: f32, height: f32) {
         let column = x0 as i32;
         let pixel = (column - self.first).max(0) as usize;
@@ -120,6 +129,7 @@ struct RowEdge {
 
 impl RowEdge {
     /// Edge `i` of a triangle in row `y`; `None` where it is horizontal or elsewhere.
+    #[inline(always)]
     fn new(t: &ScreenTriangle, slopes: &Slopes, i: usize, y: i32) -> Option<Self> {
         let [a, b] = upper_and_lower(t, i);
         let (top, bottom) = (y * SUBPIXELS, (y + 1) * SUBPIXELS);

@@ -37,6 +37,7 @@ pub struct Direction {
 
 impl Direction {
     /// The direction of a function that grows by `a` per pixel to the right and `b` downwards.
+    #[inline(always)]
     pub fn new(a: f32, b: f32) -> Self {
         let length = a.abs() + b.abs();
         if length == 0.0 || !length.is_finite() {
@@ -67,6 +68,7 @@ impl MaskTable {
     }
 
     /// The mask with all bits.
+    #[inline(always)]
     pub fn full(&self) -> u64 {
         u64::MAX >> (64 - self.side * self.side)
     }
@@ -76,19 +78,15 @@ impl MaskTable {
     #[inline(always)]
     pub fn half_plane(&self, direction: &Direction, center: f32) -> u64 {
         let e = center * direction.scale;
-        if e >= 0.5 {
-            return self.full();
-        }
-        if e <= -0.5 {
-            return 0;
-        }
         let canonical = if direction.opposite { -e } else { e };
-        let step = ((canonical + 0.5) * DISTANCES as f32) as usize;
-        let mask = self.masks[direction.start as usize + step.min(DISTANCES - 1)];
+        // The first mask has no bits and the last has all of them, so what is beyond is right too.
+        let step = ((canonical + 0.5) * DISTANCES as f32).clamp(0.0, (DISTANCES - 1) as f32);
+        let mask = self.masks[direction.start as usize + step as usize];
         if direction.opposite { !mask & self.full() } else { mask }
     }
 
     /// The centres of the sub-pixels, from the pixel's, bit by bit.
+    #[inline(always)]
     pub fn centers(&self) -> &[[f32; 2]] {
         &self.centers
     }
@@ -142,6 +140,16 @@ mod tests {
                 let one = table.half_plane(&Direction::new(a, b), e);
                 let other = table.half_plane(&Direction::new(-a, -b), -e);
                 assert_eq!((one & other, one | other), (0, table.full()), "{a} {b} {e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_outermost_masks_are_empty_and_full() {
+        for mask in [Mask::M16, Mask::M64] {
+            let table = MaskTable::new(mask);
+            for masks in table.masks.chunks(DISTANCES) {
+                assert_eq!((masks[0], masks[DISTANCES - 1]), (0, table.full()));
             }
         }
     }

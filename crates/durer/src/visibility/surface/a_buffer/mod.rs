@@ -18,13 +18,13 @@
 //! bytes: a row with more is made in parts, down to one pixel, whose list is never cut off.
 
 mod coverage;
+mod faces;
 mod fragment;
 mod mask;
 mod resolve;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
-use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
@@ -37,9 +37,11 @@ use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::mixed::Mixed;
 use crate::visibility::surface::nearest::{DepthRow, Masked};
 use crate::visibility::surface::picture::{self, Picture};
-use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
-use fearless_simd::dispatch;
-use fragment::{Face, Fragment, Pool};
+use crate::visibility::surface::setup::Coverage;
+use faces::Faces;
+use fearless_simd::{Simd, dispatch};
+use fearless_simd_macros::simd;
+use fragment::{Fragment, Pool};
 use mask::MaskTable;
 use resolve::{Pixel, Place};
 
@@ -179,47 +181,6 @@ pub fn render(
     }
 }
 
-/// The triangles that touch a row, not only at pixels' centres.
-struct Faces<'a> {
-    input: &'a SurfaceInput<'a>,
-    /// First row in the upper half, index of the triangle in the lower; those next come first.
-    waiting: Vec<u64>,
-    next: usize,
-    active: Vec<Face>,
-}
-
-impl<'a> Faces<'a> {
-    fn new(input: &'a SurfaceInput<'a>, height: u32) -> Self {
-        let mut waiting = Vec::with_capacity(input.triangles.len());
-        for (index, t) in input.triangles.iter().enumerate() {
-            let [first, last] = touched_rows(t);
-            if last >= 0 && i64::from(first) < i64::from(height) {
-                waiting.push((first.max(0) as u64) << 32 | index as u64);
-            }
-        }
-        waiting.sort_unstable();
-        Self { input, waiting, next: 0, active: Vec::new() }
-    }
-
-    fn advance(&mut self, y: i32) {
-        self.active.retain(|face| face.last_row >= y);
-        while let Some(&key) = self.waiting.get(self.next)
-            && (key >> 32) as i64 <= i64::from(y)
-        {
-            self.next += 1;
-            let t = &self.input.triangles[key as u32 as usize];
-            let coverage = self.input.run_of(t.item).coverage;
-            self.active.push(Face::new(t, key as u32, coverage, touched_rows(t)[1]));
-        }
-    }
-}
-
-/// First and last row of pixels with some of a triangle in it.
-fn touched_rows(t: &ScreenTriangle) -> [i32; 2] {
-    let [a, b, c] = t.y;
-    [a.min(b).min(c) >> SUBPIXEL_BITS, (a.max(b).max(c) - 1) >> SUBPIXEL_BITS]
-}
-
 /// What is at the centres of the pixels, for the planes besides colour.
 struct Centers<'a> {
     masked: Masked<'a>,
@@ -268,9 +229,10 @@ impl Rows<'_> {
         let mut parts = vec![[0, self.input.view.width() as i32]];
         while let Some([x0, x1]) = parts.pop() {
             t.step(|| Step::Row { y, x0, x1 });
-            if self.collect(y, [x0, x1], &mut picture.lit, t) {
-                self.resolve(y, [x0, x1], behind, &mut picture.lit, t);
-            } else {
+            let (level, lit) = (self.level, &mut picture.lit);
+            let done = dispatch!(level, simd =>
+                part_of_row(simd, self, y, [x0, x1], behind, lit, t));
+            if !done {
                 let middle = x0 + (x1 - x0) / 2;
                 parts.extend([[middle, x1], [x0, middle]]);
             }
@@ -279,6 +241,7 @@ impl Rows<'_> {
     }
 
     /// Collects the fragments of a part of a row; says whether there was room.
+    #[inline(always)]
     fn collect(
         &mut self,
         y: i32,
@@ -286,10 +249,13 @@ impl Rows<'_> {
         lit: &mut Lit<'_>,
         t: &mut impl Tracer<Step>,
     ) -> bool {
-        let Self { input, faces, pool, .. } = self;
+        let Self { faces, pool, .. } = self;
         pool.clear(columns);
-        faces.active.iter().all(|face| {
-            let triangle = &input.triangles[face.triangle as usize];
+        for number in 0..faces.count() {
+            if pool.rejects(faces.active(number), columns) {
+                continue;
+            }
+            let (triangle, face) = faces.get(number);
             let item = triangle.item;
             let masked = face.coverage == Coverage::Masked;
             let passes = |x| !masked || lit.passes_mask(item, x, y);
@@ -297,13 +263,18 @@ impl Rows<'_> {
                 let (mask, area, depths) = (f.mask, f.area, [f.z_min, f.z_max]);
                 t.step(|| Step::Fragment { x, item, mask, area, depths });
             };
-            pool.add(triangle, face, y, columns, passes, added)
-        })
+            if !pool.add(triangle, face, y, columns, passes, added) {
+                return false;
+            }
+        }
+        true
     }
 
     /// Adds up the colours of a part of a row.
-    fn resolve(
+    #[inline(always)]
+    fn resolve<S: Simd>(
         &mut self,
+        simd: S,
         y: i32,
         [x0, x1]: [i32; 2],
         behind: Vec4,
@@ -311,20 +282,22 @@ impl Rows<'_> {
         t: &mut impl Tracer<Step>,
     ) {
         let Self { input, table, pool, mixed, pixel, .. } = self;
-        let level = self.level;
         for x in x0..x1 {
             let place = Place { triangles: &input.triangles, table, x, y };
-            pixel.begin(pool.of_pixel(x), table.full(), self.in_pieces);
             mixed.sums[x as usize] = Vec4::ZERO;
-            if pixel.is_blended() {
-                mixed.sums[x as usize] = blended(pixel, &place, lit, t);
+            if pool.is_empty(x) {
+                pixel.background = 1.0;
             } else {
-                pixel.resolve_opaque(&place);
-                for (f, &share) in pixel.fragments.iter().zip(&pixel.shares) {
-                    if share > 0.0 {
-                        t.step(|| Step::Share { x, item: f.item, share });
-                        dispatch!(level, simd =>
-                            mixed.add(simd, lit, f.item, x as u32, share, [x, y]));
+                pixel.begin(pool.of_pixel(x), pool.hidden_from(x), table.full(), self.in_pieces);
+                if pixel.is_blended() {
+                    mixed.sums[x as usize] = blended(pixel, &place, lit, t);
+                } else {
+                    pixel.resolve_opaque(&place);
+                    for (f, &share) in pixel.fragments.iter().zip(&pixel.shares) {
+                        if share > 0.0 {
+                            t.step(|| Step::Share { x, item: f.item, share });
+                            mixed.add(simd, lit, f.item, x as u32, share, [x, y]);
+                        }
                     }
                 }
             }
@@ -333,8 +306,26 @@ impl Rows<'_> {
                 mixed.sums[x as usize] += behind * pixel.background;
             }
         }
-        dispatch!(level, simd => mixed.flush(simd, lit));
+        mixed.flush(simd, lit);
     }
+}
+
+/// Makes a part of a row; says whether there was room for its fragments.
+#[simd]
+fn part_of_row<S: Simd, T: Tracer<Step>>(
+    simd: S,
+    rows: &mut Rows<'_>,
+    y: i32,
+    columns: [i32; 2],
+    behind: Vec4,
+    lit: &mut Lit<'_>,
+    t: &mut T,
+) -> bool {
+    let done = rows.collect(y, columns, lit, t);
+    if done {
+        rows.resolve(simd, y, columns, behind, lit, t);
+    }
+    done
 }
 
 /// The colour of a pixel with blended fragments, premultiplied, without the background's share.

@@ -3,6 +3,7 @@
 use super::fragment::{Fragment, plane_depth};
 use super::mask::{Direction, MaskTable};
 use crate::visibility::surface::setup::ScreenTriangle;
+use std::cmp::Ordering;
 
 /// What the fragments of one pixel share in its colour.
 #[derive(Debug, Default)]
@@ -13,6 +14,8 @@ pub struct Pixel {
     pub shares: Vec<f32>,
     /// The sub-pixels at which each is seen.
     visible: Vec<u64>,
+    /// Largest depth and mask of opaque fragments, while it is found what they hide.
+    covers: Vec<(f32, u64)>,
     /// What the background shares.
     pub background: f32,
 }
@@ -27,60 +30,68 @@ pub struct Place<'a> {
 }
 
 impl Pixel {
-    /// Takes the fragments of a pixel: pieces of one face become one fragment, the rest is sorted
-    /// front to back, and what lies wholly behind opaque fragments that cover all is dropped.
-    /// `in_pieces` says whether there are such pieces at all.
+    /// Takes the fragments of a pixel: what lies wholly behind opaque fragments that cover all is
+    /// dropped, pieces of one face become one fragment, the rest is sorted front to back.
+    /// Nothing behind `hidden_from` is seen; `in_pieces` says whether there are such pieces at all.
+    #[inline(always)]
     pub fn begin<'f>(
         &mut self,
         fragments: impl Iterator<Item = &'f Fragment>,
+        hidden_from: f32,
         full: u64,
         in_pieces: bool,
     ) {
-        self.fragments.clear();
-        self.fragments.extend(fragments);
-        if self.fragments.len() > 1 {
-            if in_pieces {
-                self.fragments.sort_unstable_by_key(|f| (f.item, f.triangle));
-                self.fragments.dedup_by(|next, kept| next.item == kept.item && merge(kept, next));
-            }
-            self.fragments.sort_unstable_by(|a, b| {
-                let depths = a.z_min.total_cmp(&b.z_min).then(a.z_max.total_cmp(&b.z_max));
-                // Of equally far ones the order must not come from the order of the input.
-                depths
-                    .then(a.area.total_cmp(&b.area))
-                    .then(a.mask.cmp(&b.mask))
-                    .then(a.item.cmp(&b.item))
-            });
-            self.drop_hidden(full);
-        }
         self.shares.clear();
         self.visible.clear();
+        self.fragments.clear();
+        self.fragments.extend(fragments.filter(|f| f.z_min <= hidden_from));
+        // They came front to back for the most part, and sorting likes that.
+        self.fragments.reverse();
+        if self.fragments.len() < 2 {
+            return;
+        }
+        if hidden_from.is_finite() {
+            let hidden_from = self.nearest_cover(full);
+            self.fragments.retain(|f| f.z_min <= hidden_from);
+        }
+        if in_pieces {
+            self.fragments.sort_unstable_by_key(|f| (f.item, f.triangle));
+            self.fragments.dedup_by(|next, kept| next.item == kept.item && merge(kept, next));
+        }
+        sort(&mut self.fragments);
     }
 
-    fn drop_hidden(&mut self, full: u64) {
-        let (mut covered, mut farthest) = (0, f32::NEG_INFINITY);
-        let mut end = self.fragments.len();
-        for (i, f) in self.fragments.iter().enumerate() {
-            if covered == full && f.z_min > farthest {
-                end = i;
-                break;
-            }
-            // Fragments without a sub-pixel hide nothing.
-            if !f.blended && covered != full && f.mask != 0 {
-                covered |= f.mask;
-                farthest = farthest.max(f.z_max);
-            }
-        }
-        self.fragments.truncate(end);
+    /// The smallest depth up to which opaque fragments cover all of the pixel: unlike that by which
+    /// the pool leaves fragments out, it does not depend on the order in which they came.
+    #[inline(always)]
+    fn nearest_cover(&mut self, full: u64) -> f32 {
+        let opaque = self.fragments.iter().filter(|f| !f.blended && f.mask != 0);
+        self.covers.clear();
+        self.covers.extend(opaque.map(|f| (f.z_max, f.mask)));
+        self.covers.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut covered = 0;
+        let mut covers = self.covers.iter();
+        let last = covers.find(|(_, mask)| {
+            covered |= mask;
+            covered == full
+        });
+        last.map_or(f32::INFINITY, |&(depth, _)| depth)
     }
 
     /// Whether something can be seen through.
+    #[inline(always)]
     pub fn is_blended(&self) -> bool {
         self.fragments.iter().any(|f| f.blended)
     }
 
     /// Opaque fragments: by their exact areas, as far as their sub-pixels are seen.
+    #[inline(always)]
     pub fn resolve_opaque(&mut self, place: &Place<'_>) {
+        if let [only] = self.fragments[..] {
+            self.shares.push(only.area);
+            self.background = 1.0 - only.area;
+            return;
+        }
         let mut left = 1.0f32;
         let mut covered = 0;
         for i in 0..self.fragments.len() {
@@ -108,6 +119,7 @@ impl Pixel {
 
     /// Where the masks leave no background, it gets no more than the areas leave; what small
     /// fragments lost to neighbours goes to all that is seen.
+    #[inline(always)]
     fn give_to_all(&mut self, left: f32) -> f32 {
         let areas: f32 = self.fragments.iter().map(|f| f.area).sum();
         let background = (1.0 - areas).clamp(0.0, left);
@@ -121,6 +133,7 @@ impl Pixel {
 
     /// Where the masks leave no background, what the areas leave belongs to fragments that go on
     /// behind others.
+    #[inline(always)]
     fn give_to_half_hidden(&mut self, mut left: f32) -> f32 {
         for ((f, share), &visible) in self.fragments.iter().zip(&mut self.shares).zip(&self.visible)
         {
@@ -160,6 +173,36 @@ impl Pixel {
     }
 }
 
+/// Sorts fragments front to back: mostly they are few and nearly so.
+#[inline(always)]
+fn sort(fragments: &mut [Fragment]) {
+    if fragments.len() > FEW {
+        fragments.sort_unstable_by(order);
+        return;
+    }
+    for i in 1..fragments.len() {
+        let mut at = i;
+        while at > 0 && is_nearer(&fragments[at], &fragments[at - 1]) {
+            fragments.swap(at, at - 1);
+            at -= 1;
+        }
+    }
+}
+
+/// Up to as many fragments are sorted by insertion.
+const FEW: usize = 16;
+
+#[inline(always)]
+fn is_nearer(a: &Fragment, b: &Fragment) -> bool {
+    if a.z_min == b.z_min { order(a, b).is_lt() } else { a.z_min < b.z_min }
+}
+
+fn order(a: &Fragment, b: &Fragment) -> Ordering {
+    let depths = a.z_min.total_cmp(&b.z_min).then(a.z_max.total_cmp(&b.z_max));
+    // Of equally far ones the order must not come from the order of the input.
+    depths.then(a.area.total_cmp(&b.area)).then(a.mask.cmp(&b.mask)).then(a.item.cmp(&b.item))
+}
+
 /// The depth of a fragment at a sub-pixel.
 fn depth_at(f: &Fragment, [u, v]: [f32; 2], place: &Place<'_>) -> f32 {
     let t = &place.triangles[f.triangle as usize];
@@ -185,6 +228,7 @@ fn merge(kept: &mut Fragment, piece: &Fragment) -> bool {
 ///
 /// Where their depths overlap, the difference of the planes is itself a linear function on the pixel,
 /// and its mask is looked up like an edge's.
+#[inline(always)]
 fn in_front(a: &Fragment, b: &Fragment, place: &Place<'_>) -> u64 {
     let full = place.table.full();
     if a.z_max < b.z_min {
