@@ -401,26 +401,39 @@ impl Job<'_> {
         sources: &[Source],
         t: &mut impl Tracer<Step>,
     ) -> Output {
-        let mut shapes = rings.room();
+        let shapes = self.shapes(rings, noding);
         let mut origins = Vec::new();
-        let origin = |n: u32| self.origin(n, noding, segments, sources);
-        let mut start = 0;
-        for &end in &rings.polygon_ends {
-            let polygon = &rings.order[start..end as usize];
-            start = end as usize;
-            for (k, &ring) in polygon.iter().enumerate() {
-                let nodes = rings.ring(ring);
-                let points =
-                    || nodes.iter().map(|&n| self.lattice.unsnap(noding.nodes[n as usize]));
-                shapes.push_ring(points());
-                if self.options.origins {
-                    origins.extend(nodes.iter().map(|&n| origin(n)));
-                }
-                t.step(|| Step::Ring { points: points().collect(), hole: k > 0 });
+        if self.options.origins {
+            let nodes = rings.order.iter().flat_map(|&ring| rings.ring(ring));
+            origins.extend(nodes.map(|&n| self.origin(n, noding, segments, sources)));
+        }
+        for polygon in shapes.polygons() {
+            for (k, ring) in polygon.rings().enumerate() {
+                t.step(|| Step::Ring { points: ring.to_vec(), hole: k > 0 });
             }
-            shapes.end_polygon();
         }
         Output { shapes, origins, cell: self.lattice.cell() }
+    }
+
+    #[inline(never)]
+    fn shapes<C: Coord>(&self, rings: &Rings, noding: &Noding<C>) -> Shapes {
+        /// How many rings one task handles.
+        const TASK: usize = if cfg!(test) { 2 } else { 1 << 12 };
+        let ends = parallel::ends(rings.order.iter().map(|&ring| rings.ring(ring).len()));
+        let mut points = vec![DVec2::ZERO; ends.last().copied().unwrap_or(0) as usize];
+        let tasks: Vec<&[u32]> = rings.order.chunks(TASK).collect();
+        let task_ends: Vec<u32> =
+            ends.chunks(TASK).filter_map(|some| some.last().copied()).collect();
+        let tasks = parallel::cut(&mut points, &task_ends).into_iter().zip(tasks).collect();
+        parallel::map(tasks, |(points, order): (&mut [DVec2], &[u32])| {
+            let nodes = order.iter().flat_map(|&ring| rings.ring(ring));
+            for (point, &node) in points.iter_mut().zip(nodes) {
+                *point = self.lattice.unsnap(noding.nodes[node as usize]);
+            }
+        });
+        let ring_ends = ends.into_iter().map(|end| end as usize).collect();
+        let polygon_ends = rings.polygon_ends.iter().map(|&end| end as usize).collect();
+        Shapes::from_parts(points, ring_ends, polygon_ends)
     }
 
     fn origin<C: Coord>(

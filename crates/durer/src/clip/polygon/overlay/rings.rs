@@ -4,7 +4,6 @@ use super::arrangement::{Arrangement, Half, NONE, Patch, Winding};
 use super::lattice::{Coord, Point, cross};
 use super::parallel;
 use super::search::Search;
-use crate::clip::polygon::Shapes;
 
 /// Which way an edge bounds the result, whose inside is on its left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,11 +26,6 @@ pub struct Rings {
 }
 
 impl Rings {
-    /// Shapes with room for all these rings.
-    pub fn room(&self) -> Shapes {
-        Shapes::with_capacity(self.nodes.len(), self.ring_ends.len(), self.polygon_ends.len())
-    }
-
     /// The nodes of a ring.
     pub fn ring(&self, index: u32) -> &[u32] {
         let index = index as usize;
