@@ -1,6 +1,5 @@
 //! Materials with their textures, ready for shading, and the one door to all shading models.
 
-use super::Shading;
 use super::formula::{self, Inputs};
 use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
@@ -13,6 +12,7 @@ use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::plain::Points;
 use super::sample::Sample;
 use super::texture::{PreparedTexture, Usage};
+use super::{Shading, tone};
 use crate::math::{Vec2, Vec3, Vec4};
 use crate::scene::{AlphaMode, Material, MipFilter, Scene, ShadingModel, TextureRef};
 use fearless_simd::{Simd, f32x8};
@@ -103,15 +103,57 @@ impl Slot<'_> {
     fn sample_x8<S: Simd>(&self, simd: S, at: &TexCoords<f32x8<S>>) -> [f32x8<S>; 4] {
         let [x, y, offset] = self.columns;
         let (u, v) = ([x.x, y.x], [x.y, y.y]);
-        let turned = |d: [f32x8<S>; 2]| [d[0] * u[0] + d[1] * u[1], d[0] * v[0] + d[1] * v[1]];
-        let [s, t] = turned(at.uv);
         let at = TexCoords {
-            uv: [s + offset.x, t + offset.y],
-            ddx: turned(at.ddx),
-            ddy: turned(at.ddy),
+            uv: [sum(at.uv, u) + offset.x, sum(at.uv, v) + offset.y],
+            ddx: [sum(at.ddx, u), sum(at.ddx, v)],
+            ddy: [sum(at.ddy, u), sum(at.ddy, v)],
         };
         self.texture.sample_x8(simd, &at)
     }
+}
+
+/// Red, green, blue and alpha of a texture.
+#[derive(Debug, Clone, Copy)]
+struct Texel<L>([L; 4]);
+
+impl<L: Lane> Texel<L> {
+    #[inline(always)]
+    fn color(&self) -> Vec3Lane<L> {
+        let [r, g, b, _] = self.0;
+        Vec3Lane::new(r, g, b)
+    }
+}
+
+/// A weighted sum of two coordinates.
+#[inline(always)]
+fn sum<S: Simd>([a, b]: [f32x8<S>; 2], [of_a, of_b]: [f32; 2]) -> f32x8<S> {
+    a * of_a + b * of_b
+}
+
+/// What a material's textures say of a point, but for its base colour.
+struct Texels<L> {
+    emissive: Option<Texel<L>>,
+    occlusion: Option<Texel<L>>,
+    metallic_roughness: Option<Texel<L>>,
+    specular: Option<Texel<L>>,
+}
+
+/// [`Slot::sample_x8`], where there is a slot.
+#[inline(always)]
+fn sampled_x8<S: Simd>(
+    simd: S,
+    slot: &Option<Slot<'_>>,
+    at: &TexCoords<f32x8<S>>,
+) -> Option<Texel<f32x8<S>>> {
+    match slot {
+        Some(slot) => Some(Texel(slot.sample_x8(simd, at))),
+        None => None,
+    }
+}
+
+/// Whether a formula takes Phong's inputs.
+fn by_phong(shading: Shading) -> bool {
+    !matches!(shading, Shading::MetallicRoughness | Shading::Unlit)
 }
 
 /// The mip chains made so far: one per image and use, with all levels or without, however many
@@ -259,15 +301,22 @@ impl<'a> PreparedMaterial<'a> {
         lights: &PreparedLights,
         shading: Shading,
     ) -> Vec3Lane<f32x8<S>> {
-        let frame = face_viewer(points.view, points.geometric_normal, points.normal);
         let like = points.position.x;
-        let sample = |slot: &Slot<'_>| slot.sample_x8(simd, at);
         let mut base = Vec3Lane::splat(like, self.base_color.truncate());
-        if let Some(slot) = &self.base_color_slot {
-            let [r, g, b, _] = sample(slot);
-            base = base.times(Vec3Lane::new(r, g, b));
+        if let Some(texel) = sampled_x8(simd, &self.base_color_slot, at) {
+            base = base.times(texel.color());
         }
-        let inputs = self.inputs(like, base, sample, shading);
+        if shading == Shading::Unlit {
+            return tone::display(base);
+        }
+        let frame = face_viewer(points.view, points.geometric_normal, points.normal);
+        let texels = Texels {
+            emissive: sampled_x8(simd, &self.emissive_slot, at),
+            occlusion: sampled_x8(simd, &self.occlusion_slot, at),
+            metallic_roughness: sampled_x8(simd, &self.metallic_roughness_slot, at),
+            specular: sampled_x8(simd, &self.specular_slot, at),
+        };
+        let inputs = self.inputs(like, base, &texels, shading);
         formula::display(&frame, points.position, &inputs, None, lights, shading)
     }
 
@@ -343,38 +392,31 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// The inputs of all formulas, with the textures that `sample` looks up.
+    /// The inputs of all formulas, with what the textures say.
     #[inline(always)]
     fn inputs<L: Lane>(
         &self,
         like: L,
         base: Vec3Lane<L>,
-        sample: impl Fn(&Slot<'a>) -> [L; 4],
+        texels: &Texels<L>,
         shading: Shading,
     ) -> Inputs<L> {
-        let color = |factor: Vec3, slot: &Slot<'a>| {
-            let [r, g, b, _] = sample(slot);
-            Vec3Lane::splat(like, factor).times(Vec3Lane::new(r, g, b))
-        };
         let mut inputs = self.constant_inputs(like);
         inputs.substance.base = base;
-        if let Some(slot) = &self.emissive_slot {
-            inputs.emission = color(self.emissive, slot);
+        if let Some(texel) = &texels.emissive {
+            inputs.emission = Vec3Lane::splat(like, self.emissive).times(texel.color());
         }
-        if let Some(slot) = &self.occlusion_slot {
-            let dark = sample(slot)[0].one_minus();
-            inputs.substance.occlusion = (dark * self.occlusion_strength).one_minus();
+        if let Some(Texel([light, ..])) = texels.occlusion {
+            inputs.substance.occlusion = (light.one_minus() * self.occlusion_strength).one_minus();
         }
-        if let Some(slot) = &self.metallic_roughness_slot {
-            let [_, rough, metal, _] = sample(slot);
+        if let Some(Texel([_, rough, metal, _])) = texels.metallic_roughness {
             inputs.substance.roughness = inputs.substance.roughness * rough;
             inputs.substance.metallic = inputs.substance.metallic * metal;
         }
-        let phong = !matches!(shading, Shading::MetallicRoughness | Shading::Unlit);
-        if phong && self.model != ShadingModel::MetallicRoughness {
+        if by_phong(shading) && self.model != ShadingModel::MetallicRoughness {
             inputs.diffuse = base;
-            if let Some(slot) = &self.specular_slot {
-                inputs.specular = color(self.specular, slot);
+            if let Some(texel) = &texels.specular {
+                inputs.specular = Vec3Lane::splat(like, self.specular).times(texel.color());
             }
         }
         inputs
@@ -423,10 +465,17 @@ impl<'a> PreparedMaterial<'a> {
             frame.normal = if kept { bent } else { -bent }.into();
         }
         let base = base.truncate();
-        let sample = |slot: &Slot<'_>| slot.sample(surface).to_array();
-        let mut inputs = self.inputs(1.0, base.into(), sample, shading);
-        let phong = !matches!(shading, Shading::MetallicRoughness | Shading::Unlit);
-        if phong && self.model == ShadingModel::MetallicRoughness {
+        let texel = |slot: &Option<Slot<'_>>| {
+            slot.as_ref().map(|slot| Texel(slot.sample(surface).to_array()))
+        };
+        let texels = Texels {
+            emissive: texel(&self.emissive_slot),
+            occlusion: texel(&self.occlusion_slot),
+            metallic_roughness: texel(&self.metallic_roughness_slot),
+            specular: texel(&self.specular_slot),
+        };
+        let mut inputs = self.inputs(1.0, base.into(), &texels, shading);
+        if by_phong(shading) && self.model == ShadingModel::MetallicRoughness {
             self.phong_inputs(surface, base, &mut inputs);
         }
         Sample { frame, position: surface.position.into(), inputs }
