@@ -67,12 +67,15 @@ fn any_raster(u: &mut Unstructured<'_>) -> Result<()> {
     let size = (u.int_in_range(0..=40)?, u.int_in_range(0..=20)?);
     any_lines(u)?;
     let (path, stroke) = (path(u, kind)?, stroke(u, kind)?);
-    let outline = any_stroke(&path, &stroke);
+    let outline = any_stroke(&path, &stroke).filter(|outline| outline.elements().len() <= LONG);
     for path in [Some(&path), outline.as_ref()].into_iter().flatten() {
         any_fill(&flatten(path, 0.1), rule, size);
     }
-    any_painting(u, kind, &path, &stroke, rule, size)
+    any_painting(u, kind, &path, outline.map(|_| &stroke), rule, size)
 }
+
+/// Outlines of more elements, of fine dashes along lines that go far, take seconds and show nothing new.
+const LONG: usize = 2_000;
 
 fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
     let masks = [Overlap::Exact, Overlap::Accumulated].map(|overlap| {
@@ -145,7 +148,7 @@ fn any_painting(
     u: &mut Unstructured<'_>,
     kind: u8,
     path: &Path,
-    stroke: &Stroke,
+    stroke: Option<&Stroke>,
     rule: FillRule,
     size: (u32, u32),
 ) -> Result<()> {
@@ -174,7 +177,7 @@ fn any_painting(
                 point(u, kind)?,
                 point(u, kind)?,
             )),
-            6 => drop(canvas.stroke(path, stroke, &paint, opacity)),
+            6 => drop(stroke.map(|stroke| canvas.stroke(path, stroke, &paint, opacity))),
             _ => canvas.fill(path, rule, &paint, opacity),
         }
     }

@@ -5,7 +5,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use durer::paper::{self, Page, Pens, Scale};
 use durer::pipeline::{DrawStyle, line_classes};
-use durer::visibility::line::ClassSet;
+use durer::visibility::line::{ClassSet, edge_lines};
 use durer::visibility::region;
 
 /// Exact drawings: lines and areas, as vectors or painted.
@@ -48,6 +48,16 @@ pub struct DrawingArgs {
     /// Which neighbouring areas become one [default: shade; face for .geojson]
     #[arg(long, value_name = "HOW")]
     pub merge: Option<Merge>,
+    /// Whether areas end at their borders or reach under what covers them [default: trapped for .svg, .pdf
+    /// and .png without --hatch shade, else disjoint]
+    #[arg(long, value_name = "HOW")]
+    pub fill: Option<Fill>,
+    /// Draw outlines of round parts where the normals turn away, not along the edges between facets
+    #[arg(long)]
+    pub smooth: bool,
+    /// Where lines are drawn in which faces penetrate each other
+    #[arg(long, value_name = "WHERE", default_value = "bodies")]
+    pub intersections: Intersections,
     /// Put lines in an order with short ways for a pen
     #[arg(long)]
     pub pen_order: bool,
@@ -88,6 +98,9 @@ pub const NAMES: &[&str] = &[
     "pen",
     "hatch",
     "merge",
+    "fill",
+    "smooth",
+    "intersections",
     "pen_order",
     "page",
     "margin",
@@ -157,6 +170,24 @@ pub enum Merge {
     Part,
 }
 
+/// `--fill`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Fill {
+    /// Neighbours share their borders and nothing overlaps: for cutters and plotters
+    Disjoint,
+    /// Areas reach a little under those painted after them: viewers show no cracks
+    Trapped,
+}
+
+/// `--intersections`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Intersections {
+    /// Between bodies: what is modelled in one piece is taken to be sound
+    Bodies,
+    /// Within bodies too
+    All,
+}
+
 /// `--unit`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Unit {
@@ -209,6 +240,15 @@ impl From<Hidden> for paper::Hidden {
             Hidden::Drop => Self::Drop,
             Hidden::Dashed => Self::Dashed,
             Hidden::Layer => Self::Layer,
+        }
+    }
+}
+
+impl From<Intersections> for edge_lines::Intersections {
+    fn from(which: Intersections) -> Self {
+        match which {
+            Intersections::Bodies => Self::BetweenBodies,
+            Intersections::All => Self::All,
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::fit;
 use crate::output::{self, Kind, Target};
 use crate::report::{CameraReport, PictureReport};
 use crate::values::Size;
-use args::{Hatch, Hidden, Merge, NAMES, Unit};
+use args::{Fill, Hatch, Hidden, Merge, NAMES, Unit};
 use durer::math::{DVec3, Vec4};
 use durer::paper::{self, Frame, LaidOut, Page, Scale, TitleBlock, Views};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
@@ -85,6 +85,11 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
         }
     }
     background(args, kind)?;
+    if args.drawing.fill == Some(Fill::Trapped) && hatch(args, kind) == Hatch::Shade {
+        let message = "--fill trapped: hatching is drawn on areas that do not overlap; use --fill \
+                       disjoint, or --hatch none";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     if args.drawing.sheet.is_none() {
         return Ok(());
     }
@@ -169,11 +174,7 @@ pub fn render(
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut laid = lay_out(args, kind, subject, frame, &drawings)?;
-    let hatch = args.drawing.hatch.unwrap_or(match kind {
-        Kind::Drawing(DrawingFormat::Hpgl) => Hatch::Shade,
-        _ => Hatch::None,
-    });
-    if hatch == Hatch::Shade && style.has_regions() {
+    if hatch(args, kind) == Hatch::Shade && style.has_regions() {
         // The paper's scale says how far apart lines are in the model.
         let spacing = HATCH_SPACING / (laid.scale * unit(args, subject).millimetres());
         drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
@@ -186,6 +187,13 @@ pub fn render(
     write(args, kind, target, &laid, &drawings, &mut report, start)?;
     report.files = vec![target.to_string()];
     Ok(report)
+}
+
+fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
+    args.drawing.hatch.unwrap_or(match kind {
+        Kind::Drawing(DrawingFormat::Hpgl) => Hatch::Shade,
+        _ => Hatch::None,
+    })
 }
 
 fn write(
@@ -243,6 +251,8 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             crease: drawing.crease.to_radians(),
             // Programs get all there is; on paper hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
+            intersections: drawing.intersections.into(),
+            smooth: drawing.smooth,
             pen_order: drawing.pen_order,
             stubs: drawing.stubs.unwrap_or(if geojson { 0.0 } else { STUBS }) / 100.0,
             ..default
@@ -250,7 +260,10 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         lighting,
         cull: args.look.cull.into(),
         merge: merge.into(),
-        trapped: viewed && drawing.hatch != Some(Hatch::Shade),
+        trapped: match drawing.fill {
+            Some(fill) => fill == Fill::Trapped,
+            None => viewed && drawing.hatch != Some(Hatch::Shade),
+        },
         cap_material: None,
     }
 }

@@ -101,6 +101,9 @@ fn options_that_do_not_fit_say_what_does() {
         ("-o a.svg --lines edges", "silhouette"),
         ("-o a.svg --stubs 60", "below 50"),
         ("-o a.png --stubs 1", "give --style"),
+        ("-o a.png --fill disjoint", "give --style"),
+        ("-o a.hpgl --style regions --fill trapped", "use --fill disjoint"),
+        ("-o a.svg --style regions --hatch shade --fill trapped", "--hatch none"),
     ];
     for (options, part) in cases {
         folder.run(&format!("render cube.obj {options}")).fails(2, part);
@@ -155,4 +158,53 @@ fn stubs_are_cut_back_on_paper_and_kept_for_programs() {
     let (paper, mesh) = (polylines("-o t.svg"), polylines("-o t.svg --stubs 0"));
     assert!(paper * 10 < mesh * 8, "{paper} of {mesh}");
     assert_eq!(polylines("-o t.geojson"), mesh);
+}
+
+#[test]
+fn areas_are_disjoint_or_trapped_as_asked() {
+    let folder = Folder::with_models();
+    let area = |options: &str| -> f64 {
+        folder.must(&format!("render cube.obj -o a.geojson --style regions {options}"));
+        let drawing: serde_json::Value = serde_json::from_slice(&folder.read("a.geojson")).unwrap();
+        let ring = |ring: &serde_json::Value| -> f64 {
+            let points: Vec<[f64; 2]> = serde_json::from_value(ring.clone()).unwrap();
+            points.windows(2).map(|w| w[0][0] * w[1][1] - w[0][1] * w[1][0]).sum::<f64>() / 2.0
+        };
+        let features = drawing["features"].as_array().unwrap().iter();
+        let polygons = features.filter(|f| f["geometry"]["type"] == "Polygon");
+        polygons
+            .map(|f| f["geometry"]["coordinates"].as_array().unwrap().iter().map(ring).sum::<f64>())
+            .sum()
+    };
+    // A cube of side 2 along its diagonal is a regular hexagon.
+    let hexagon = 4.0 * 3.0f64.sqrt();
+    assert!((area("") / hexagon - 1.0).abs() < 1e-6, "{}", area(""));
+    assert_eq!(area("--fill disjoint"), area(""));
+    assert!(area("--fill trapped") > hexagon * 1.0001);
+    folder.must("render cube.obj -o a.svg --style regions");
+    folder.must("render cube.obj -o b.svg --style regions --fill trapped");
+    folder.must("render cube.obj -o c.svg --style regions --fill disjoint");
+    assert_eq!(folder.read("a.svg"), folder.read("b.svg"));
+    assert_ne!(folder.read("a.svg"), folder.read("c.svg"));
+}
+
+#[test]
+fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
+    let folder = folder();
+    // One piece of surface that goes through itself.
+    let crossing = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 1 -2\nv 3 1 -2\nv 2 1 2\n\
+                    f 1 2 3\nf 1 3 4\nf 3 5 4\nf 4 5 6\n";
+    fs::write(folder.path("crossing.obj"), crossing).unwrap();
+    let length = |model: &str, class: &str, options: &str| -> f64 {
+        let ended =
+            folder.must(&format!("render {model} -o a.svg {options} --hidden dashed --json"));
+        let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];
+        let lines = drawing["lines"].as_array().unwrap().iter().filter(|l| l["class"] == class);
+        lines.map(|l| l["visible"]["length"].as_f64().unwrap()).sum()
+    };
+    assert_eq!(length("crossing.obj", "intersection", ""), 0.0);
+    assert!(length("crossing.obj", "intersection", "--intersections all") > 0.1);
+    let (sharp, smooth) =
+        (length("teapot.obj", "silhouette", ""), length("teapot.obj", "silhouette", "--smooth"));
+    assert!(smooth > 0.5 * sharp && smooth != sharp, "{smooth} {sharp}");
 }

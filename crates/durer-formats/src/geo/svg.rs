@@ -4,10 +4,12 @@ use super::{Feature, Geometry, Points, number};
 use durer::math::{DVec2, Rect};
 use std::io::{self, Write};
 
-/// How geometries look; lines keep their width at any size of the picture.
-const STYLE: &str = "path{stroke:#224;stroke-width:1;vector-effect:non-scaling-stroke;\
-stroke-linejoin:round;stroke-linecap:round}.area{fill:#9bc;fill-rule:evenodd}.line{fill:none}\
-.points{fill:none;stroke-width:4}";
+/// How geometries look, but for the width of lines.
+const STYLE: &str = "path{stroke:#224;stroke-linejoin:round;stroke-linecap:round}\
+.area{fill:#9bc;fill-rule:evenodd}.line{fill:none}.points{fill:none}";
+
+/// The width of lines and of points, in pixels.
+const WIDTHS: [(&str, f64); 2] = [("path", 1.0), (".points", 4.0)];
 
 /// The longer side of the picture, in pixels.
 const SIDE: f64 = 1000.0;
@@ -27,7 +29,14 @@ pub fn write(out: &mut impl Write, features: &[Feature]) -> io::Result<()> {
         out.write_all(if i > 0 { b" " } else { b"" })?;
         number::write(out, value)?;
     }
-    writeln!(out, "\">\n<style>{STYLE}</style>\n<g transform=\"scale(1 -1)\">")?;
+    write!(out, "\">\n<style>{STYLE}")?;
+    // In units of the coordinates: not every viewer knows strokes that do not scale.
+    for (what, width) in WIDTHS {
+        write!(out, "{what}{{stroke-width:")?;
+        number::write(out, width / scale)?;
+        write!(out, "}}")?;
+    }
+    writeln!(out, "</style>\n<g transform=\"scale(1 -1)\">")?;
     for feature in features {
         if let Some(geometry) = &feature.geometry {
             write_feature(out, feature, geometry)?;

@@ -246,6 +246,18 @@ fn shapes_of_svg_are_read_and_written() {
     assert!(read_all(b"<svg><g", "").expect_err("cut").to_string().contains("line 1"));
 }
 
+#[test]
+fn lines_of_svg_are_a_pixel_wide_for_any_viewer() {
+    let line = r#"{"type":"LineString","coordinates":[[0,0],[9.8,4.9]]}"#;
+    let all = read_all(line.as_bytes(), "").expect("read").0;
+    let text = String::from_utf8(written(GeoFormat::Svg, &all)).expect("text");
+    // 1000 pixels for 9.8 units and a margin of a hundredth on each side.
+    let width = text.split("path{stroke-width:").nth(1).and_then(|rest| rest.split('}').next());
+    let width: f64 = width.and_then(|w| w.parse().ok()).expect("a width");
+    assert!((width - 9.8 * 1.02 / 1000.0).abs() < 1e-12, "{width}");
+    assert!(!text.contains("vector-effect"), "viewers that do not know it draw degrees wide");
+}
+
 /// The points of the one shape of a document, y up.
 fn svg_points(shape: &str) -> Vec<DVec2> {
     let text = format!("<svg>{shape}</svg>");

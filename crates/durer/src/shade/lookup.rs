@@ -7,7 +7,7 @@ use super::color::premultiply;
 use super::lane::Lane;
 use super::mip::Level;
 use super::texture::{Detail, PreparedTexture, SUBTEXEL, SUBTEXEL_BITS, Usage};
-use crate::math::Vec4;
+use crate::math::{Vec2, Vec4};
 use crate::scene::{Filter, MipFilter, Wrap};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, i32x8};
@@ -59,11 +59,8 @@ impl PreparedTexture<'_> {
     /// From the levels that suit each point.
     #[inline(always)]
     fn between_levels<S: Simd>(&self, simd: S, at: &TexCoords<f32x8<S>>, colors: &mut [Vec4; 8]) {
-        let squared = |d: [f32x8<S>; 2]| {
-            let (x, y) = (d[0] * self.size.x, d[1] * self.size.y);
-            <[f32; 8]>::from(x * x + y * y)
-        };
-        let (across, down) = (squared(at.ddx), squared(at.ddy));
+        let across = squared_length(at.ddx, self.size);
+        let down = squared_length(at.ddy, self.size);
         let mut levels = [self.chain.level(0); 8];
         let mut next = levels;
         let mut weights = [0.0; 8];
@@ -128,6 +125,13 @@ impl PreparedTexture<'_> {
     }
 }
 
+/// Of a change of coordinates, in texels.
+#[inline(always)]
+fn squared_length<S: Simd>(d: [f32x8<S>; 2], size: Vec2) -> [f32; 8] {
+    let (x, y) = (d[0] * size.x, d[1] * size.y);
+    (x * x + y * y).into()
+}
+
 /// The two texels around each coordinate and the weight of the second.
 #[inline(always)]
 fn linear_x8<S: Simd>(
@@ -173,7 +177,6 @@ fn inside_x8<S: Simd>(simd: S, i: i32x8<S>, size: i32x8<S>, wrap: Wrap) -> i32x8
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Vec2;
     use crate::scene::{Image, Sampler};
     use crate::shade::lane::levels;
     use fearless_simd::dispatch;

@@ -1,148 +1,25 @@
 //! Materials with their textures, ready for shading, and the one door to all shading models.
 
-use super::Shading;
 use super::formula::{self, Inputs};
-use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::lookup::TexCoords;
 use super::metallic_roughness::Substance;
-use super::mip::MipChain;
 use super::normal::{face_viewer, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::plain::Points;
 use super::sample::Sample;
-use super::texture::{PreparedTexture, Usage};
-use crate::math::{Vec2, Vec3, Vec4};
-use crate::scene::{AlphaMode, Material, MipFilter, Scene, ShadingModel, TextureRef};
+use super::slot::{Chains, Slot, Texel, Texels, sampled_x8};
+use super::surface::Surface;
+use super::texture::Usage;
+use super::{Shading, tone};
+use crate::math::{Vec3, Vec4};
+use crate::scene::{AlphaMode, Material, Scene, ShadingModel};
 use fearless_simd::{Simd, f32x8};
-use std::sync::Arc;
 
-/// Texture coordinates and how they change over the screen.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct TexCoord {
-    /// (0, 0) is the upper left corner of the image.
-    pub uv: Vec2,
-    /// Change of `uv` from one pixel to the next along x.
-    pub ddx: Vec2,
-    /// Change of `uv` from one pixel to the next along y.
-    pub ddy: Vec2,
-}
-
-/// A visible point. World axes, positions relative to [`PreparedLights::origin`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Surface<'a> {
-    /// Where it is. Only read where there are point or spot lights.
-    pub position: Vec3,
-    /// Towards the eye, any length: `−position` in perspective, one direction for parallel lines.
-    pub view: Vec3,
-    /// The interpolated normal, any length. Zero where the mesh has none: the face's is taken.
-    pub normal: Vec3,
-    /// Unit normal of the face's plane, on either side: it is turned to the viewer.
-    pub geometric_normal: Vec3,
-    /// Tangent, w = ±1 the sign of the bitangent; without one a normal map's frame is taken from
-    /// the derivatives.
-    pub tangent: Option<Vec4>,
-    /// Change of `position` from one pixel to the next along x; only for normal maps.
-    pub position_dx: Vec3,
-    /// Change of `position` from one pixel to the next along y; only for normal maps.
-    pub position_dy: Vec3,
-    /// Set by set, as many as the mesh has; sets beyond count as (0, 0).
-    pub tex_coords: &'a [TexCoord],
-    /// Vertex colour, linear with straight alpha; multiplies the base colour.
-    pub color: Vec4,
-    /// For flat and Gouraud shading: from [`super::shade_face`], or interpolated from
-    /// [`super::shade_vertex`]. Without it both light the point itself.
-    pub lit: Option<Reflected>,
-}
-
-impl Default for Surface<'_> {
-    /// A white point that faces the eye, without textures.
-    fn default() -> Self {
-        Self {
-            position: Vec3::ZERO,
-            view: Vec3::Z,
-            normal: Vec3::ZERO,
-            geometric_normal: Vec3::Z,
-            tangent: None,
-            position_dx: Vec3::ZERO,
-            position_dy: Vec3::ZERO,
-            tex_coords: &[],
-            color: Vec4::ONE,
-            lit: None,
-        }
-    }
-}
-
-/// A texture in its place.
-#[derive(Debug, Clone)]
-struct Slot<'a> {
-    texture: PreparedTexture<'a>,
-    set: usize,
-    /// Columns of the affine map from the mesh's coordinates to the texture's.
-    columns: [Vec2; 3],
-}
-
-impl Slot<'_> {
-    #[inline]
-    fn coordinates(&self, surface: &Surface<'_>) -> TexCoord {
-        let at = surface.tex_coords.get(self.set).copied().unwrap_or_default();
-        let [x, y, offset] = self.columns;
-        let turned = |d: Vec2| x * d.x + y * d.y;
-        TexCoord { uv: turned(at.uv) + offset, ddx: turned(at.ddx), ddy: turned(at.ddy) }
-    }
-
-    #[inline]
-    fn sample(&self, surface: &Surface<'_>) -> Vec4 {
-        let at = self.coordinates(surface);
-        self.texture.sample(at.uv, at.ddx, at.ddy)
-    }
-
-    /// [`Self::sample`] of eight points; `at` is of the slot's own set.
-    #[inline(always)]
-    fn sample_x8<S: Simd>(&self, simd: S, at: &TexCoords<f32x8<S>>) -> [f32x8<S>; 4] {
-        let [x, y, offset] = self.columns;
-        let (u, v) = ([x.x, y.x], [x.y, y.y]);
-        let turned = |d: [f32x8<S>; 2]| [d[0] * u[0] + d[1] * u[1], d[0] * v[0] + d[1] * v[1]];
-        let [s, t] = turned(at.uv);
-        let at = TexCoords {
-            uv: [s + offset.x, t + offset.y],
-            ddx: turned(at.ddx),
-            ddy: turned(at.ddy),
-        };
-        self.texture.sample_x8(simd, &at)
-    }
-}
-
-/// The mip chains made so far: one per image and use, with all levels or without, however many
-/// materials share it.
-struct Chains<'a> {
-    scene: &'a Scene,
-    made: Vec<((usize, Usage, bool), Arc<MipChain<'a>>)>,
-}
-
-impl<'a> Chains<'a> {
-    /// A slot for a texture; none where it refers to nothing.
-    fn slot(&mut self, reference: Option<TextureRef>, usage: Usage) -> Option<Slot<'a>> {
-        let reference = reference?;
-        let texture = self.scene.textures.get(reference.texture)?;
-        let image = self.scene.images.get(texture.image)?;
-        let levels = texture.sampler.mip != MipFilter::None;
-        let wanted = (texture.image, usage, levels);
-        let chain = if let Some((_, chain)) = self.made.iter().find(|(made, _)| *made == wanted) {
-            Arc::clone(chain)
-        } else {
-            let chain = Arc::new(MipChain::new(image, usage, levels));
-            self.made.push((wanted, Arc::clone(&chain)));
-            chain
-        };
-        let columns = reference.transform.to_cols_array_2d().map(|c| {
-            let [x, y, _] = c;
-            Vec2::new(x as f32, y as f32)
-        });
-        let texture = PreparedTexture::from_chain(chain, texture.sampler);
-        Some(Slot { texture, set: reference.tex_coord as usize, columns })
-    }
+/// Whether a formula takes Phong's inputs.
+fn by_phong(shading: Shading) -> bool {
+    !matches!(shading, Shading::MetallicRoughness | Shading::Unlit)
 }
 
 /// All materials of a scene, ready for shading. Borrows the scene's images.
@@ -157,7 +34,7 @@ impl<'a> PreparedMaterials<'a> {
     ///
     /// Cost: O(texels) time, a third of the images in memory.
     pub fn new(scene: &'a Scene) -> Self {
-        let mut chains = Chains { scene, made: Vec::new() };
+        let mut chains = Chains::new(scene);
         let mut prepare = |m: &Material| PreparedMaterial::new(m, &mut chains);
         let materials = scene.materials.iter().map(&mut prepare).collect();
         let default = prepare(&Material::default());
@@ -259,15 +136,22 @@ impl<'a> PreparedMaterial<'a> {
         lights: &PreparedLights,
         shading: Shading,
     ) -> Vec3Lane<f32x8<S>> {
-        let frame = face_viewer(points.view, points.geometric_normal, points.normal);
         let like = points.position.x;
-        let sample = |slot: &Slot<'_>| slot.sample_x8(simd, at);
         let mut base = Vec3Lane::splat(like, self.base_color.truncate());
-        if let Some(slot) = &self.base_color_slot {
-            let [r, g, b, _] = sample(slot);
-            base = base.times(Vec3Lane::new(r, g, b));
+        if let Some(texel) = sampled_x8(simd, &self.base_color_slot, at) {
+            base = base.times(texel.color());
         }
-        let inputs = self.inputs(like, base, sample, shading);
+        if shading == Shading::Unlit {
+            return tone::display(base);
+        }
+        let frame = face_viewer(points.view, points.geometric_normal, points.normal);
+        let texels = Texels {
+            emissive: sampled_x8(simd, &self.emissive_slot, at),
+            occlusion: sampled_x8(simd, &self.occlusion_slot, at),
+            metallic_roughness: sampled_x8(simd, &self.metallic_roughness_slot, at),
+            specular: sampled_x8(simd, &self.specular_slot, at),
+        };
+        let inputs = self.inputs(like, base, &texels, shading);
         formula::display(&frame, points.position, &inputs, None, lights, shading)
     }
 
@@ -343,38 +227,31 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// The inputs of all formulas, with the textures that `sample` looks up.
+    /// The inputs of all formulas, with what the textures say.
     #[inline(always)]
     fn inputs<L: Lane>(
         &self,
         like: L,
         base: Vec3Lane<L>,
-        sample: impl Fn(&Slot<'a>) -> [L; 4],
+        texels: &Texels<L>,
         shading: Shading,
     ) -> Inputs<L> {
-        let color = |factor: Vec3, slot: &Slot<'a>| {
-            let [r, g, b, _] = sample(slot);
-            Vec3Lane::splat(like, factor).times(Vec3Lane::new(r, g, b))
-        };
         let mut inputs = self.constant_inputs(like);
         inputs.substance.base = base;
-        if let Some(slot) = &self.emissive_slot {
-            inputs.emission = color(self.emissive, slot);
+        if let Some(texel) = &texels.emissive {
+            inputs.emission = Vec3Lane::splat(like, self.emissive).times(texel.color());
         }
-        if let Some(slot) = &self.occlusion_slot {
-            let dark = sample(slot)[0].one_minus();
-            inputs.substance.occlusion = (dark * self.occlusion_strength).one_minus();
+        if let Some(Texel([light, ..])) = texels.occlusion {
+            inputs.substance.occlusion = (light.one_minus() * self.occlusion_strength).one_minus();
         }
-        if let Some(slot) = &self.metallic_roughness_slot {
-            let [_, rough, metal, _] = sample(slot);
+        if let Some(Texel([_, rough, metal, _])) = texels.metallic_roughness {
             inputs.substance.roughness = inputs.substance.roughness * rough;
             inputs.substance.metallic = inputs.substance.metallic * metal;
         }
-        let phong = !matches!(shading, Shading::MetallicRoughness | Shading::Unlit);
-        if phong && self.model != ShadingModel::MetallicRoughness {
+        if by_phong(shading) && self.model != ShadingModel::MetallicRoughness {
             inputs.diffuse = base;
-            if let Some(slot) = &self.specular_slot {
-                inputs.specular = color(self.specular, slot);
+            if let Some(texel) = &texels.specular {
+                inputs.specular = Vec3Lane::splat(like, self.specular).times(texel.color());
             }
         }
         inputs
@@ -423,10 +300,17 @@ impl<'a> PreparedMaterial<'a> {
             frame.normal = if kept { bent } else { -bent }.into();
         }
         let base = base.truncate();
-        let sample = |slot: &Slot<'_>| slot.sample(surface).to_array();
-        let mut inputs = self.inputs(1.0, base.into(), sample, shading);
-        let phong = !matches!(shading, Shading::MetallicRoughness | Shading::Unlit);
-        if phong && self.model == ShadingModel::MetallicRoughness {
+        let texel = |slot: &Option<Slot<'_>>| {
+            slot.as_ref().map(|slot| Texel(slot.sample(surface).to_array()))
+        };
+        let texels = Texels {
+            emissive: texel(&self.emissive_slot),
+            occlusion: texel(&self.occlusion_slot),
+            metallic_roughness: texel(&self.metallic_roughness_slot),
+            specular: texel(&self.specular_slot),
+        };
+        let mut inputs = self.inputs(1.0, base.into(), &texels, shading);
+        if by_phong(shading) && self.model == ShadingModel::MetallicRoughness {
             self.phong_inputs(surface, base, &mut inputs);
         }
         Sample { frame, position: surface.position.into(), inputs }

@@ -23,6 +23,8 @@ pub mod phong;
 mod plain;
 mod sample;
 pub mod shadow;
+mod slot;
+mod surface;
 pub mod texture;
 mod tone;
 pub mod unlit;
@@ -31,9 +33,10 @@ pub use flat::shade_face;
 pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub use lookup::TexCoords;
-pub use material::{PreparedMaterial, PreparedMaterials, Surface, TexCoord, shade};
+pub use material::{PreparedMaterial, PreparedMaterials, shade};
 pub use plain::{Points, shade_points};
 pub use sample::{Sample, Samples};
+pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;
 
 crate::info::family! {

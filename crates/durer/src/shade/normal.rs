@@ -1,7 +1,7 @@
 //! The normal that a surface is lit with: turned to the viewer, and perturbed by a normal map.
 
 use super::lane::{Lane, Vec3Lane};
-use super::material::{Surface, TexCoord};
+use super::surface::{Surface, TexCoord};
 use crate::math::{Vec2, Vec3};
 
 /// The unit vectors of a surface point, all on the viewer's side.

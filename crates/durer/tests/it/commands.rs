@@ -343,9 +343,10 @@ fn indices_are_interpolated_in_perspective() {
         // The ray through the pixel's centre meets the floor at this distance.
         let depth = 0.5 / ((f64::from(row) + 0.5) / 20.0 - 1.0);
         if (1.0..9.0).contains(&depth) {
-            let expected = (10.0 * depth).round();
+            let expected = 10.0 * depth;
             let found = f64::from(plane.get(20, row).expect("pixel"));
-            assert!((found - expected).abs() <= 1.0, "{row}: {found} {expected}");
+            // Rounded to the nearest, and the corners to 1/256 of a pixel.
+            assert!((found - expected).abs() <= 0.51, "{row}: {found} {expected}");
             seen += 1;
         }
     }

@@ -127,6 +127,47 @@ fn all_methods_agree_with_the_z_buffer_on_random_scenes() {
     }
 }
 
+/// Faces in one plane that the eye looks at straight: all depths are equal, and where they overlap the
+/// lowest item must win, whatever its size and whenever it is come upon.
+#[test]
+fn of_equally_deep_faces_the_lowest_item_is_seen() {
+    let eye = DVec3::Z * 2.0;
+    let projection = Projection::Orthographic { height: 2.0 };
+    let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::Y, projection, near: 1.0, far: 3.0 };
+    let view = View::new(camera, 48, 40).expect("view");
+    for seed in 0..6 {
+        let mut numbers = scenes::Numbers(seed);
+        let mut positions = Vec::new();
+        for _ in 0..30 {
+            let center = numbers.point(1.0).with_z(0.0);
+            let half = 0.1 + 0.9 * numbers.next();
+            let [a, b, c, d] = [(-1., -1.), (1., -1.), (1., 1.), (-1., 1.)]
+                .map(|(x, y)| center + half * Vec3::new(x, y, 0.0));
+            positions.extend([a, b, c, a, c, d]);
+        }
+        let scene = mesh_scene(positions);
+        let expected = picture(SurfaceMethod::ZBuffer, &scene, &view);
+        let items = expected.item.as_ref().expect("items");
+        for (y, x) in (0..40).flat_map(|y| (0..48).map(move |x| (y, x))) {
+            let at = DVec3::new((x as f64 + 0.5) / 20.0 - 1.2, 1.0 - (y as f64 + 0.5) / 20.0, 0.0);
+            let inside = |t: &[Vec3]| {
+                let [a, b, c] = [t[0], t[1], t[2]].map(Vec3::as_dvec3);
+                [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| (q - p).cross(at - p).z > 1e-2)
+            };
+            let triangles = scene.meshes[0].positions.chunks(3);
+            let lowest = triangles.enumerate().find(|(_, t)| inside(t));
+            if let (Some((lowest, _)), Some(seen)) = (lowest, items.get(x, y)) {
+                // Nearer to an edge than told apart here, a lower one may be seen.
+                assert!(seen as usize <= lowest, "seed {seed} at {x},{y}: {seen} {lowest}");
+            }
+        }
+        for &method in SurfaceMethod::ALL {
+            let found = picture(method, &scene, &view);
+            assert_same(method, &found, &expected, &format!("seed {seed}"));
+        }
+    }
+}
+
 #[test]
 fn masked_and_textured_surfaces_lines_and_points_agree_too() {
     let scene = scenes::materials();

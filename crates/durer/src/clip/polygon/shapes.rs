@@ -34,13 +34,13 @@ impl Shapes {
         Self { points: Vec::new(), ring_ends: Vec::new(), polygon_ends: Vec::new() }
     }
 
-    /// No polygon, with room for as many.
-    pub(crate) fn with_capacity(points: usize, rings: usize, polygons: usize) -> Self {
-        Self {
-            points: Vec::with_capacity(points),
-            ring_ends: Vec::with_capacity(rings),
-            polygon_ends: Vec::with_capacity(polygons),
-        }
+    /// From all points, where each ring ends among them, and where each polygon ends among the rings.
+    pub(crate) const fn from_parts(
+        points: Vec<DVec2>,
+        ring_ends: Vec<usize>,
+        polygon_ends: Vec<usize>,
+    ) -> Self {
+        Self { points, ring_ends, polygon_ends }
     }
 
     /// Each ring as a polygon of its own.

@@ -1,12 +1,13 @@
 //! Lines that lie on each other are drawn once.
 //!
-//! Pieces are taken in the order of preference (visible before hidden, then by class); what an earlier
-//! one covers is cut from a later one. Candidates come from a uniform grid; O(n) for lines that do
+//! Pieces are taken in the order of preference (visible before hidden, then by class, then the longest);
+//! what an earlier one covers is cut from a later one. Candidates come from a uniform grid; O(n) for lines that do
 //! not crowd.
 
 use super::page::GridPoint;
 use super::table::Table;
 use crate::target::drawing::LineClass;
+use std::cmp::Reverse;
 
 /// A straight piece on the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +28,13 @@ impl Piece {
     pub fn length(&self) -> f64 {
         self.ends[0].distance(self.ends[1])
     }
+
+    /// Of lines in a bundle each lies on the next and the first not on the last, so what is left
+    /// depends on which comes first: that must not be left to the order of the faces.
+    fn rank(&self) -> impl Ord + use<> {
+        let [dx, dy] = self.ends[1].minus(self.ends[0]);
+        (self.invisibility, self.class, Reverse(dx * dx + dy * dy), self.smooth, self.ends)
+    }
 }
 
 /// Two lines that diverge more than this lie beside each other, however close: they are the two
@@ -43,7 +51,7 @@ pub(super) fn drawn_once(
     sliver: f64,
 ) -> Vec<Piece> {
     pieces.retain(|p| p.ends[0] != p.ends[1]);
-    pieces.sort_by_key(|p| (p.invisibility, p.class));
+    pieces.sort_unstable_by_key(Piece::rank);
     let Some(table) = Table::new(&pieces, close) else { return pieces };
     let (mut table, entered) = (table, close);
     let mut kept: Vec<Piece> = Vec::with_capacity(pieces.len());
@@ -110,4 +118,25 @@ fn rest(piece: &Piece, gone: &[(f64, f64)], sliver: f64, kept: &mut Vec<Piece>) 
         done = done.max(to);
     }
     keep(done, length);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_of_a_bundle_does_not_depend_on_the_order() {
+        let line = |x: i32, y: i32| Piece {
+            ends: [GridPoint { x: 0, y: 0 }, GridPoint { x, y }],
+            class: LineClass::Border,
+            invisibility: 0,
+            smooth: false,
+        };
+        // Each lies on the next; the first and the last are apart.
+        let bundle = [line(90_000, 0), line(100_000, 60), line(95_000, 114)];
+        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+            let pieces = order.map(|i| bundle[i]).to_vec();
+            assert_eq!(drawn_once(pieces, 100.0, 0.0, 64.0), [bundle[1]], "{order:?}");
+        }
+    }
 }

@@ -13,7 +13,7 @@ use crate::view::View;
 use crate::visibility::surface::attributes::{Triangles, VisibleTriangle, Weights, blend, run_of};
 use crate::visibility::surface::gather::{Gathered, points};
 use crate::visibility::surface::setup::Run;
-use crate::visibility::surface::textured::GatheredCoords;
+use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
@@ -400,15 +400,22 @@ impl<'a> Lit<'a> {
         mine: &[u32; 8],
         [x, y]: [i32; 2],
     ) -> [[f32; 8]; 3] {
-        let (mut points, mut at) = (Gathered::default(), GatheredCoords::default());
-        for i in (0..8).filter(|&i| mine[i] != 0) {
-            let t = self.triangles.get(items[i], info.run);
-            let pixel = [x + i as i32, y];
-            points.set(simd, i, t, pixel);
-            at.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
-        }
-        let points = points.points(simd, self.parallel_view);
-        let at = at.coordinates(simd);
+        let one = *items == [items[0]; 8];
+        let (points, at) = if one {
+            let t = self.triangles.get(items[0], info.run);
+            let corners = t.corners.map(|c| coords[c as usize]);
+            let points = points_x8(simd, t, [x, y], self.parallel_view);
+            (points, coordinates_of_one(simd, t, [x, y], corners))
+        } else {
+            let (mut points, mut at) = (Gathered::default(), GatheredCoords::default());
+            for i in (0..8).filter(|&i| mine[i] != 0) {
+                let t = self.triangles.get(items[i], info.run);
+                let pixel = [x + i as i32, y];
+                points.set(simd, i, t, pixel);
+                at.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
+            }
+            (points.points(simd, self.parallel_view), at.coordinates(simd))
+        };
         let color = info.material.shade_x8(simd, &points, &at, self.shared.lights, info.shading);
         [color.x.into(), color.y.into(), color.z.into()]
     }

@@ -42,33 +42,74 @@ impl GatheredCoords {
     /// The coordinates and their change to the pixels beside and below, bit for bit as one by one.
     #[inline(always)]
     pub fn coordinates<S: Simd>(&self, simd: S) -> TexCoords<f32x8<S>> {
-        let (x, y) = (f32x8::from_slice(simd, &self.at[0]), f32x8::from_slice(simd, &self.at[1]));
-        let here = weights(simd, self.edges_at(simd, x, y));
-        let right = weights_beside(simd, self.edges_at(simd, x + 1.0, y), here);
-        let down = weights_beside(simd, self.edges_at(simd, x, y + 1.0), here);
-        let [u, v] = [self.corners_of(simd, 0), self.corners_of(simd, 1)];
-        let uv = [blend(u, here), blend(v, here)];
-        let ddx = [blend(u, right) - uv[0], blend(v, right) - uv[1]];
-        let ddy = [blend(u, down) - uv[0], blend(v, down) - uv[1]];
-        TexCoords { uv, ddx, ddy }
+        let [constant, dx, dy] = &self.edges;
+        let edges = [three(simd, constant), three(simd, dx), three(simd, dy)];
+        let at = [f32x8::from_slice(simd, &self.at[0]), f32x8::from_slice(simd, &self.at[1])];
+        coordinates(
+            simd,
+            &edges,
+            at,
+            [three(simd, &self.corners[0]), three(simd, &self.corners[1])],
+        )
     }
+}
 
-    #[inline(always)]
-    fn corners_of<S: Simd>(&self, simd: S, axis: usize) -> Corners<S> {
-        let [a, b, c] = &self.corners[axis];
-        let (a, b) = (f32x8::from_slice(simd, a), f32x8::from_slice(simd, b));
-        [a, b, f32x8::from_slice(simd, c)]
-    }
-
-    #[inline(always)]
-    fn edges_at<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> Corners<S> {
-        let mut edges = [x; 3];
-        for (i, edge) in edges.iter_mut().enumerate() {
-            let lane = |k: usize| f32x8::from_slice(simd, &self.edges[k][i]);
-            *edge = lane(0) + (lane(1) * x + lane(2) * y);
+/// The coordinates at eight pixels of one triangle in a row, and their change to the pixels beside
+/// and below; `corners` has those of its corners.
+#[inline(always)]
+pub fn coordinates_of_one<S: Simd>(
+    simd: S,
+    t: &VisibleTriangle,
+    [x, y]: [i32; 2],
+    corners: [Vec2; 3],
+) -> TexCoords<f32x8<S>> {
+    let (edges, [x, y]) = t.edge_functions(x, y);
+    let zero = simd.splat_f32x8(0.0);
+    let mut all = [[zero; 3]; 3];
+    for (all, edges) in all.iter_mut().zip(edges) {
+        for (all, edge) in all.iter_mut().zip(edges) {
+            *all = simd.splat_f32x8(*edge);
         }
-        edges
     }
+    let columns = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + x;
+    let (mut u, mut v) = ([zero; 3], [zero; 3]);
+    for (i, corner) in corners.iter().enumerate() {
+        (u[i], v[i]) = (simd.splat_f32x8(corner.x), simd.splat_f32x8(corner.y));
+    }
+    coordinates(simd, &all, [columns, simd.splat_f32x8(y)], [u, v])
+}
+
+#[inline(always)]
+fn three<S: Simd>(simd: S, [a, b, c]: &[[f32; 8]; 3]) -> Corners<S> {
+    let (a, b) = (f32x8::from_slice(simd, a), f32x8::from_slice(simd, b));
+    [a, b, f32x8::from_slice(simd, c)]
+}
+
+/// From edge functions, by constant and changes, and the coordinates of the corners.
+#[inline(always)]
+fn coordinates<S: Simd>(
+    simd: S,
+    edges: &[Corners<S>; 3],
+    [x, y]: [f32x8<S>; 2],
+    [u, v]: [Corners<S>; 2],
+) -> TexCoords<f32x8<S>> {
+    let here = weights(simd, edges_at(edges, x, y));
+    let right = weights_beside(simd, edges_at(edges, x + 1.0, y), here);
+    let down = weights_beside(simd, edges_at(edges, x, y + 1.0), here);
+    let uv = [blend(u, here), blend(v, here)];
+    let ddx = [blend(u, right) - uv[0], blend(v, right) - uv[1]];
+    let ddy = [blend(u, down) - uv[0], blend(v, down) - uv[1]];
+    TexCoords { uv, ddx, ddy }
+}
+
+#[inline(always)]
+fn edges_at<S: Simd>(edges: &[Corners<S>; 3], x: f32x8<S>, y: f32x8<S>) -> Corners<S> {
+    let [constant, dx, dy] = edges;
+    let mut at = [x; 3];
+    for (i, at) in at.iter_mut().enumerate() {
+        *at = constant[i] + (dx[i] * x + dy[i] * y);
+    }
+    at
 }
 
 /// As [`VisibleTriangle::weights`].

@@ -4,8 +4,12 @@
 //! Most points of a coast are passed by one ring and touched by nothing else. Such points are no
 //! nodes of the graph that winding numbers and rings are found on, but lie within an edge of it.
 
+use std::ops::Range;
+
+use super::edges::{Edges, Rings};
 use super::lattice::{Coord, Point, cross};
 use super::noding::Noding;
+use super::{Source, parallel};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -34,16 +38,8 @@ pub struct Edge {
     pub high: u32,
     /// Winding on the left less winding on the right, seen from `low` to `high`.
     pub step: Winding,
-    /// Winding on the right; of an edge without inner nodes that is below, or to the right of a
-    /// vertical one.
-    pub right: Winding,
-}
-
-impl Edge {
-    /// Winding on the left.
-    pub fn left(&self) -> Winding {
-        self.right.plus(self.step)
-    }
+    /// Where its inner nodes start and end in the list of all.
+    pub(super) inner: [u32; 2],
 }
 
 /// An edge in one of its directions: 2e runs from the low node of edge e to its high node, 2e + 1
@@ -77,63 +73,90 @@ impl Half {
 }
 
 /// See the module.
+///
+/// Nodes come in patches, and edges in those of their low nodes, so that each patch can be worked
+/// on alone but for the few edges that go to other ones.
 #[derive(Debug)]
 pub struct Arrangement<'a, C> {
     pub nodes: &'a [Point<C>],
     pub edges: Vec<Edge>,
-    /// The inner nodes of edge e, from low to high, are `inner[inner_starts[e]..inner_starts[e + 1]]`.
-    inner_starts: Vec<u32>,
+    /// Of each edge the winding on the right; of an edge without inner nodes that is below, or to
+    /// the right of a vertical one. Empty before it is found.
+    pub right: Vec<Winding>,
+    pub(super) patches: Vec<Patch>,
     inner: Vec<u32>,
     /// Of an inner node its index in `inner`, of the others `NONE`; empty where there are none.
     place: Vec<u32>,
+    /// The edge of an inner node is that of the last start that is not above its place.
+    inner_starts: Vec<(u32, u32)>,
     /// What leaves node n is `around[starts[n]..starts[n + 1]]`, counter-clockwise from straight
     /// down.
     starts: Vec<u32>,
     around: Vec<Half>,
 }
 
+/// Nodes and edges that lie close together.
+#[derive(Debug, Clone)]
+pub struct Patch {
+    pub nodes: Range<usize>,
+    pub edges: Range<usize>,
+}
+
+impl Patch {
+    #[inline(always)]
+    pub fn has_node(&self, node: u32) -> bool {
+        self.nodes.contains(&(node as usize))
+    }
+
+    #[inline(always)]
+    pub fn has_edge(&self, edge: usize) -> bool {
+        self.edges.contains(&edge)
+    }
+}
+
 impl<'a, C: Coord> Arrangement<'a, C> {
-    /// Builds the graph of rings, with inner nodes; `step` gives the change of winding across a
-    /// segment, right to left.
-    pub fn of_rings(noding: &'a Noding<C>, step: impl Fn(usize) -> Winding) -> Self {
-        let joints = Joints::new(noding);
-        Self::build(noding, joints, step, |edge| edge.step != Winding::default())
+    /// Builds the graph of rings, with inner nodes.
+    pub fn of_rings(noding: &'a Noding<C>, rings: Rings) -> Self {
+        let edges = Edges::of_rings(noding, rings);
+        Self::build(noding, edges, |edge| edge.step != Winding::default())
     }
 
     /// Builds the graph of rings, every point a node, so that all edges are straight.
-    pub fn of_straight(noding: &'a Noding<C>, step: impl Fn(usize) -> Winding) -> Self {
-        let joints = Joints::default();
-        Self::build(noding, joints, step, |edge| edge.step != Winding::default())
+    pub fn of_straight(noding: &'a Noding<C>, sources: &[Source]) -> Self {
+        let none = Winding::default();
+        let step = |i: usize| {
+            let across = sources[i].across();
+            if sources[i].reversed() { none.minus(across) } else { across }
+        };
+        Self::build(noding, Edges::of_straight(noding, step), |edge| edge.step != none)
     }
 
     /// Builds the graph of segments that bound nothing; it keeps them all, as straight edges.
     pub fn of_lines(noding: &'a Noding<C>) -> Self {
-        Self::build(noding, Joints::default(), |_| Winding::default(), |_| true)
+        Self::build(noding, Edges::of_straight(noding, |_| Winding::default()), |_| true)
     }
 
-    fn build(
-        noding: &'a Noding<C>,
-        joints: Joints,
-        step: impl Fn(usize) -> Winding,
-        keeps: impl Fn(&Edge) -> bool,
-    ) -> Self {
-        let nodes = &noding.nodes[..];
-        let pieces = noding.hits.len() + 1 - noding.starts.len();
+    fn build(noding: &'a Noding<C>, edges: Edges, keeps: impl Fn(&Edge) -> bool) -> Self {
+        let patches = (0..noding.patch_ends.len()).map(|k| Patch {
+            nodes: parallel::range(&noding.patch_ends, k),
+            edges: parallel::range(&edges.ends, k),
+        });
         let mut graph = Self {
-            nodes,
-            edges: Vec::with_capacity(pieces),
-            inner_starts: Vec::with_capacity(pieces + 1),
-            inner: Vec::new(),
+            nodes: &noding.nodes,
+            edges: edges.list,
+            right: Vec::new(),
+            patches: patches.collect(),
+            inner: edges.inner,
             place: Vec::new(),
-            starts: vec![0; nodes.len() + 2],
+            inner_starts: Vec::new(),
+            starts: Vec::new(),
             around: Vec::new(),
         };
-        graph.inner_starts.push(0);
-        graph.collect(noding, joints, step);
         let joined = graph.arrange();
         if !joined.is_empty() {
             graph.drop_unkept(&joined, keeps);
         }
+        graph.find_places();
         graph
     }
 
@@ -150,15 +173,11 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize
     }
 
-    #[inline(always)]
-    pub(super) fn half(&self, index: usize) -> Half {
-        self.around[index]
-    }
-
     /// The nodes within an edge, from low to high.
     #[inline(always)]
     pub fn inner(&self, edge: usize) -> &[u32] {
-        &self.inner[self.inner_starts[edge] as usize..self.inner_starts[edge + 1] as usize]
+        let [start, end] = self.edges[edge].inner;
+        &self.inner[start as usize..end as usize]
     }
 
     /// The node a half-edge comes from.
@@ -179,11 +198,31 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         }
     }
 
+    /// The winding on the left of an edge.
+    #[inline(always)]
+    pub fn left(&self, edge: usize) -> Winding {
+        self.right[edge].plus(self.edges[edge].step)
+    }
+
     /// The winding on the left of a half-edge.
     #[inline(always)]
     pub fn left_of(&self, half: Half) -> Winding {
-        let edge = &self.edges[half.edge()];
-        if half.is_back() { edge.right } else { edge.left() }
+        if half.is_back() { self.right[half.edge()] } else { self.left(half.edge()) }
+    }
+
+    /// Where the nodes of each patch end.
+    pub(super) fn node_ends(&self) -> Vec<u32> {
+        self.patches.iter().map(|patch| patch.nodes.end as u32).collect()
+    }
+
+    /// Where the edges of each patch end.
+    pub(super) fn edge_ends(&self) -> Vec<u32> {
+        self.patches.iter().map(|patch| patch.edges.end as u32).collect()
+    }
+
+    /// The patch of a node.
+    pub(super) fn patch_of(&self, node: u32) -> usize {
+        self.patches.partition_point(|patch| patch.nodes.end <= node as usize)
     }
 
     /// The half-edge that goes from a node straight on to another one; `None` where those edges
@@ -206,135 +245,133 @@ impl<'a, C: Coord> Arrangement<'a, C> {
 
     /// The edge that has this place in `inner`.
     fn edge_at(&self, place: u32) -> usize {
-        self.inner_starts.partition_point(|&start| start <= place) - 1
+        let next = self.inner_starts.partition_point(|&(start, _)| start <= place);
+        self.inner_starts[next - 1].1 as usize
     }
 
     /// The node that follows an inner node of an edge.
     fn beside(&self, place: u32, forward: Half) -> u32 {
-        let end = self.inner_starts[forward.edge() + 1];
-        if place + 1 < end {
-            self.inner[place as usize + 1]
-        } else {
-            self.edges[forward.edge()].high
-        }
+        let edge = &self.edges[forward.edge()];
+        if place + 1 < edge.inner[1] { self.inner[place as usize + 1] } else { edge.high }
     }
 
-    /// Cuts the segments into edges, and counts the edges of each node.
     #[inline(never)]
-    fn collect(&mut self, noding: &Noding<C>, joints: Joints, step: impl Fn(usize) -> Winding) {
-        let mut joints = joints;
-        if !joints.neighbours.is_empty() {
-            self.place = vec![NONE; self.nodes.len()];
-        }
-        let nodes = self.nodes;
-        for i in 0..noding.starts.len() - 1 {
-            let plus = step(i);
-            let minus = Winding::default().minus(plus);
-            for pair in noding.chain(i).windows(2) {
-                let (a, b) = (pair[0], pair[1]);
-                match (joints.is_passed(a), joints.is_passed(b)) {
-                    (false, false) if nodes[a as usize] < nodes[b as usize] => {
-                        self.push(a, b, plus)
-                    }
-                    (false, false) => self.push(b, a, minus),
-                    (false, true) => self.follow(&joints, a, b, plus),
-                    (true, false) => self.follow(&joints, b, a, minus),
-                    (true, true) => {}
-                }
-            }
-        }
-        // What is left are rings that nothing touches: one point of each becomes a node.
-        if !joints.neighbours.is_empty() {
-            for i in 0..noding.starts.len() - 1 {
-                for pair in noding.chain(i).windows(2) {
-                    if joints.is_passed(pair[0]) && self.place[pair[0] as usize] == NONE {
-                        joints.neighbours[pair[0] as usize] = Joints::NODE;
-                        self.follow(&joints, pair[0], pair[1], step(i));
-                    }
-                }
-            }
-        }
-    }
-
-    fn push(&mut self, low: u32, high: u32, step: Winding) {
-        self.edges.push(Edge { low, high, step, right: Winding::default() });
-        self.inner_starts.push(self.inner.len() as u32);
-        self.starts[low as usize + 2] += 1;
-        self.starts[high as usize + 2] += 1;
-    }
-
-    /// Makes an edge of all pieces from a node to the next one, unless it came from the other side.
-    fn follow(&mut self, joints: &Joints, from: u32, first: u32, step: Winding) {
-        if self.place[first as usize] != NONE {
+    fn find_places(&mut self) {
+        if self.inner.is_empty() {
             return;
         }
-        let (mut before, mut at) = (from, first);
-        while joints.is_passed(at) {
-            self.place[at as usize] = self.inner.len() as u32;
-            self.inner.push(at);
-            (before, at) = (at, joints.opposite(at, before));
+        self.place = vec![NONE; self.nodes.len()];
+        for (&node, place) in self.inner.iter().zip(0..) {
+            self.place[node as usize] = place;
         }
-        self.push(from, at, step);
+        let with_inner =
+            self.edges.iter().zip(0..).filter(|(edge, _)| edge.inner[0] < edge.inner[1]);
+        self.inner_starts = with_inner.map(|(edge, e)| (edge.inner[0], e)).collect();
+        self.inner_starts.sort_unstable();
     }
 
     /// Sorts the edges around every node, and joins those that coincide in the first of them.
     /// Gives the others, which have no meaning any more.
     #[inline(never)]
     fn arrange(&mut self) -> Vec<u32> {
-        for i in 2..self.starts.len() {
-            self.starts[i] += self.starts[i - 1];
-        }
-        self.around = vec![Half::default(); self.edges.len() * 2];
-        for (e, edge) in self.edges.iter().enumerate() {
-            for (node, half) in
-                [(edge.low, Half::forward(e)), (edge.high, Half::forward(e).reversed())]
-            {
-                let next = &mut self.starts[node as usize + 1];
-                self.around[*next as usize] = half;
-                *next += 1;
-            }
-        }
-        self.starts.pop();
+        let arrivals = self.arrivals();
+        let ends = parallel::ends(
+            self.patches.iter().zip(&arrivals).map(|(patch, list)| patch.edges.len() + list.len()),
+        );
+        let mut starts = vec![0u32; self.nodes.len() + 1];
+        let mut around = vec![Half::default(); self.edges.len() * 2];
+        starts[self.nodes.len()] = around.len() as u32;
+        let node_ends = self.node_ends();
+        let tasks = parallel::cut(&mut starts, &node_ends).into_iter();
+        let tasks = tasks.zip(parallel::cut(&mut around, &ends)).zip(arrivals).enumerate();
+        let joins = parallel::map(tasks.collect(), |(k, ((starts, around), arrivals))| {
+            let first = parallel::range(&ends, k).start as u32;
+            self.stars(&self.patches[k], &arrivals, starts, around, first)
+        });
+        (self.starts, self.around) = (starts, around);
         let mut joined = Vec::new();
-        let mut star: Vec<Ray<C>> = Vec::new();
-        for node in 0..self.nodes.len() {
-            let range = self.starts[node] as usize..self.starts[node + 1] as usize;
-            if range.len() < 2 {
-                continue;
-            }
-            star.clear();
-            star.extend(self.around[range.clone()].iter().map(|&half| self.ray(node, half)));
-            sort_around(self.nodes[node], &mut star);
-            for (half, ray) in self.around[range].iter_mut().zip(&star) {
-                *half = ray.half;
-            }
-            self.join(&star, &mut joined);
+        for (first, other) in joins.into_iter().flatten() {
+            let step = self.edges[other as usize].step;
+            let edge = &mut self.edges[first as usize];
+            edge.step = edge.step.plus(step);
+            joined.push(other);
         }
         joined
     }
 
+    /// For each patch the edges whose high node lies in it.
+    fn arrivals(&self) -> Vec<Vec<u32>> {
+        let all = parallel::map(self.patches.iter().collect(), |patch: &Patch| {
+            let mut here = Vec::with_capacity(patch.edges.len());
+            let mut elsewhere = Vec::new();
+            for e in patch.edges.clone() {
+                let high = self.edges[e].high;
+                if patch.has_node(high) {
+                    here.push(e as u32);
+                } else {
+                    elsewhere.push((self.patch_of(high), e as u32));
+                }
+            }
+            (here, elsewhere)
+        });
+        let (mut lists, elsewhere): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+        for (patch, e) in elsewhere.into_iter().flatten() {
+            lists[patch].push(e);
+        }
+        lists
+    }
+
+    /// Sorts the edges around the nodes of a patch; gives pairs of edges that coincide. The lists
+    /// start at index `first` of all.
+    fn stars(
+        &self,
+        patch: &Patch,
+        arrivals: &[u32],
+        starts: &mut [u32],
+        around: &mut [Half],
+        first: u32,
+    ) -> Vec<(u32, u32)> {
+        let leaving = || patch.edges.clone().map(|e| (self.edges[e].low, Half::forward(e)));
+        let arriving = || {
+            let edges = arrivals.iter().map(|&e| e as usize);
+            edges.map(|e| (self.edges[e].high, Half::forward(e).reversed()))
+        };
+        for (node, _) in leaving().chain(arriving()) {
+            starts[node as usize - patch.nodes.start] += 1;
+        }
+        let mut end = 0;
+        for start in starts.iter_mut() {
+            end += *start;
+            *start = end;
+        }
+        for (node, half) in leaving().chain(arriving()) {
+            let next = &mut starts[node as usize - patch.nodes.start];
+            *next -= 1;
+            around[*next as usize] = half;
+        }
+        let mut joins = Vec::new();
+        let mut star: Vec<Ray<C>> = Vec::new();
+        for k in 0..starts.len() {
+            let end = starts.get(k + 1).map_or(around.len(), |&end| end as usize);
+            let halves = &mut around[starts[k] as usize..end];
+            if halves.len() > 1 {
+                let node = patch.nodes.start + k;
+                star.clear();
+                star.extend(halves.iter().map(|&half| self.ray(node, half)));
+                sort_around(self.nodes[node], &mut star);
+                halves.iter_mut().zip(&star).for_each(|(half, ray)| *half = ray.half);
+                join(&star, &mut joins);
+            }
+        }
+        starts.iter_mut().for_each(|start| *start += first);
+        joins
+    }
+
+    #[inline(always)]
     fn ray(&self, node: usize, half: Half) -> Ray<C> {
         let toward = self.toward(half);
         let point = self.nodes[toward as usize];
         Ray { half, toward, point, left: point < self.nodes[node] }
-    }
-
-    fn join(&mut self, star: &[Ray<C>], joined: &mut Vec<u32>) {
-        let mut first = 0;
-        for k in 1..star.len() {
-            if star[k].toward != star[first].toward {
-                first = k;
-                continue;
-            }
-            // The high node finds the same edges side by side; one of the two is enough.
-            if !star[k].half.is_back() {
-                let other = star[k].half.edge();
-                let step = self.edges[other].step;
-                let edge = &mut self.edges[star[first].half.edge()];
-                edge.step = edge.step.plus(step);
-                joined.push(other as u32);
-            }
-        }
     }
 
     /// Drops the edges that were joined with others, and those that are not to be kept: that cancel.
@@ -343,18 +380,20 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         let mut kept = 0;
         let mut renamed = vec![0; self.edges.len()];
         joined.iter().for_each(|&e| renamed[e as usize] = NONE);
-        for (e, name) in renamed.iter_mut().enumerate() {
-            let edge = self.edges[e];
-            let drops = *name == NONE || !keeps(&edge);
-            *name = if drops { NONE } else { kept as u32 };
-            if !drops {
-                self.edges[kept] = edge;
-                kept += 1;
-                self.inner_starts[kept] = self.inner_starts[e + 1];
+        for patch in &mut self.patches {
+            let start = kept;
+            for e in patch.edges.clone() {
+                let edge = self.edges[e];
+                let drops = renamed[e] == NONE || !keeps(&edge);
+                renamed[e] = if drops { NONE } else { kept as u32 };
+                if !drops {
+                    self.edges[kept] = edge;
+                    kept += 1;
+                }
             }
+            patch.edges = start..kept;
         }
         self.edges.truncate(kept);
-        self.inner_starts.truncate(kept + 1);
         let mut filled = 0;
         for node in 0..self.nodes.len() {
             let range = self.starts[node] as usize..self.starts[node + 1] as usize;
@@ -391,44 +430,15 @@ fn sort_around<C: Coord>(node: Point<C>, star: &mut [Ray<C>]) {
     });
 }
 
-/// Which points one ring passes and nothing else touches: they have two neighbours, not the same.
-#[derive(Debug, Default)]
-struct Joints {
-    /// Of each node its two neighbours, or `NODE`; empty where every point is to be a node.
-    neighbours: Vec<[u32; 2]>,
-}
-
-impl Joints {
-    const NODE: [u32; 2] = [NONE - 1, NONE - 1];
-
-    #[inline(never)]
-    fn new<C>(noding: &Noding<C>) -> Self {
-        let mut joints = Self { neighbours: vec![[NONE; 2]; noding.nodes.len()] };
-        for i in 0..noding.starts.len() - 1 {
-            for pair in noding.chain(i).windows(2) {
-                joints.link(pair[0], pair[1]);
-                joints.link(pair[1], pair[0]);
-            }
+/// Finds the pairs of a sorted star that coincide. The other node finds the same pairs side by
+/// side; one of the two is enough.
+fn join<C: Coord>(star: &[Ray<C>], joins: &mut Vec<(u32, u32)>) {
+    let mut first = 0;
+    for k in 1..star.len() {
+        if star[k].toward != star[first].toward {
+            first = k;
+        } else if !star[k].half.is_back() {
+            joins.push((star[first].half.edge() as u32, star[k].half.edge() as u32));
         }
-        joints
-    }
-
-    fn link(&mut self, node: u32, to: u32) {
-        let list = &mut self.neighbours[node as usize];
-        match *list {
-            [NONE, _] => list[0] = to,
-            [other, NONE] if other != to => list[1] = to,
-            _ => *list = Self::NODE,
-        }
-    }
-
-    #[inline(always)]
-    fn is_passed(&self, node: u32) -> bool {
-        self.neighbours.get(node as usize).is_some_and(|list| list[1] < Self::NODE[1])
-    }
-
-    fn opposite(&self, node: u32, from: u32) -> u32 {
-        let [a, b] = self.neighbours[node as usize];
-        if a == from { b } else { a }
     }
 }

@@ -4,7 +4,10 @@
 //! Every pixel lies in exactly one leaf, and a segment is listed in every leaf it comes within one
 //! pixel of, before and after snap rounding. So leaves can be worked on alone.
 
+use std::ops::Range;
+
 use super::lattice::{Coord, Point, Segment, whole};
+use super::parallel;
 
 /// Leaves with no more segments than this are not divided.
 const SMALL_LEAF: usize = 24;
@@ -24,6 +27,12 @@ const SPARSEST: f64 = 1.0 / 16.0;
 /// Curves that go on in the next square all but once in so many segments are in order as they come.
 const FEW_JUMPS: usize = 64;
 
+/// Segments that start in one band of rows, and that one task handles: their data fit the cache.
+const PER_BAND: usize = if cfg!(test) { 16 } else { 1 << 15 };
+
+/// How many segments one task handles: large enough to hide the cost of a task.
+const TASK: usize = if cfg!(test) { 8 } else { 1 << 14 };
+
 /// The sides of a cell are at least 2³ pixels, so that the margin of a pixel stays a margin.
 const SMALLEST_SHIFT: u32 = 3;
 
@@ -37,12 +46,17 @@ pub struct Block {
 impl Block {
     /// The block around all segments; `None` where there is none.
     pub fn around<C: Coord>(segments: &[Segment<C>]) -> Option<Self> {
-        let first = segments.first()?;
-        let start = (first.a.x, first.b.x, first.a.y, first.a.y);
-        let (l, r, b, t) = segments.iter().fold(start, |(l, r, b, t), s| {
-            let (low, high) = s.y_range();
-            (l.min(s.a.x), r.max(s.b.x), b.min(low), t.max(high))
+        let blocks = parallel::map(segments.chunks(TASK).collect(), |some| {
+            let start = (some[0].a.x, some[0].b.x, some[0].a.y, some[0].a.y);
+            some.iter().fold(start, |(l, r, b, t), s| {
+                let (low, high) = s.y_range();
+                (l.min(s.a.x), r.max(s.b.x), b.min(low), t.max(high))
+            })
         });
+        let all = |m: (C, C, C, C), n: (C, C, C, C)| {
+            (m.0.min(n.0), m.1.max(n.1), m.2.min(n.2), m.3.max(n.3))
+        };
+        let (l, r, b, t) = blocks.into_iter().reduce(all)?;
         Some(Self { min: (l.i64(), b.i64()), max: (r.i64(), t.i64()) })
     }
 
@@ -109,11 +123,22 @@ struct Frame {
     rows: usize,
 }
 
-/// See the module.
-#[derive(Debug, Default)]
+/// See the module. Its first division is made in bands of rows, each on its own.
+#[derive(Debug)]
 pub struct Grid {
+    frame: Frame,
+    bands: Vec<Band>,
+    /// Which band each row of the first division belongs to.
+    band_of_row: Vec<u32>,
+}
+
+/// Rows of the first division.
+#[derive(Debug, Default)]
+pub struct Band {
+    rows: Range<usize>,
+    /// First the squares of the rows.
     nodes: Vec<Node>,
-    /// Divided blocks, and where the nodes of their squares start.
+    /// Divided squares, and where the nodes of their squares start.
     splits: Vec<(Frame, u32)>,
     leaves: Vec<Leaf>,
     items: Vec<u32>,
@@ -139,18 +164,39 @@ impl Frame {
         (columns * rows > 1).then_some(Self { block, shift, columns, rows })
     }
 
-    /// Calls `f` with the index of every square the segment comes within a pixel of.
+    /// The block as one square.
+    fn whole(block: Block) -> Self {
+        Self { block, shift: 62, columns: 1, rows: 1 }
+    }
+
+    #[inline(always)]
+    fn column(&self, x: i64) -> usize {
+        ((x.clamp(self.block.min.0, self.block.max.0) - self.block.min.0) >> self.shift) as usize
+    }
+
+    #[inline(always)]
+    fn row(&self, y: i64) -> usize {
+        ((y.clamp(self.block.min.1, self.block.max.1) - self.block.min.1) >> self.shift) as usize
+    }
+
+    /// The first and the last row that hold squares the segment comes within a pixel of.
+    #[inline(always)]
+    fn rows_of<C: Coord>(&self, s: &Segment<C>) -> (usize, usize) {
+        let (low, high) = s.y_range();
+        (self.row(low.i64() - 1), self.row(high.i64() + 1))
+    }
+
+    /// Calls `f` with the index of every square in some rows the segment comes within a pixel of.
     #[inline]
-    fn visit<C: Coord>(&self, s: &Segment<C>, mut f: impl FnMut(usize)) {
+    fn visit<C: Coord>(&self, s: &Segment<C>, rows: &Range<usize>, mut f: impl FnMut(usize)) {
         let (min, max) = (self.block.min, self.block.max);
-        let column = |x: i64| ((x.clamp(min.0, max.0) - min.0) >> self.shift) as usize;
-        let row = |y: i64| ((y.clamp(min.1, max.1) - min.1) >> self.shift) as usize;
+        let (column, row) = (|x| self.column(x), |y| self.row(y));
         let (low, high) = s.y_range();
         let (low, high) = (low.i64() - 1, high.i64() + 1);
-        let (left, right) = (column(s.a.x.i64() - 1), column(s.b.x.i64() + 1));
+        let (mut left, mut right) = (column(s.a.x.i64() - 1), column(s.b.x.i64() + 1));
         let (bottom, top) = (row(low), row(high));
         if left == right || bottom == top || s.a.x == s.b.x {
-            for r in bottom..=top {
+            for r in bottom.max(rows.start)..=top.min(rows.end - 1) {
                 for c in left..=right {
                     f(r * self.columns + c);
                 }
@@ -159,6 +205,14 @@ impl Frame {
         }
         let (ax, ay) = (s.a.x.f64(), s.a.y.f64());
         let slope = (s.b.y.f64() - ay) / (s.b.x.f64() - ax);
+        if bottom < rows.start || rows.end <= top {
+            // Of a long segment only the columns around these rows, with room for roundings.
+            let border = |r: usize| (min.1 + ((r as i64) << self.shift)) as f64;
+            let x = |y: f64| whole((ax + (y - ay) / slope).clamp(ax, s.b.x.f64()));
+            let (x0, x1) = (x(border(rows.start) - 4.0), x(border(rows.end) + 4.0));
+            left = left.max(column(x0.min(x1) - 2));
+            right = right.min(column(x0.max(x1) + 3));
+        }
         for c in left..=right {
             let start = min.0 + ((c as i64) << self.shift);
             let x0 = (start as f64 - 1.5).max(ax);
@@ -169,7 +223,8 @@ impl Frame {
             if y1 < min.1 || y0 > max.1 {
                 continue;
             }
-            for r in row(y0.max(low))..=row(y1.min(high)) {
+            let (bottom, top) = (row(y0.max(low)), row(y1.min(high)));
+            for r in bottom.max(rows.start)..=top.min(rows.end - 1) {
                 f(r * self.columns + c);
             }
         }
@@ -189,24 +244,32 @@ impl Frame {
         Block { min, max }
     }
 
-    /// The segments of every square, one after the other, and where each square's list starts.
+    /// The segments of every square of some rows, one after the other, and where each square's
+    /// list starts.
     #[inline(never)]
-    fn distribute<C: Coord>(&self, segments: &[Segment<C>], items: &[u32]) -> (Vec<u32>, Vec<u32>) {
-        let mut starts = vec![0u32; self.columns * self.rows + 1];
-        let mut entries: Vec<(u32, u32)> = Vec::with_capacity(items.len() * 2);
+    fn distribute<'a, C: Coord>(
+        &self,
+        segments: &[Segment<C>],
+        rows: &Range<usize>,
+        items: impl Iterator<Item = &'a u32>,
+        scratch: &mut Vec<(u32, u32)>,
+    ) -> (Vec<u32>, Vec<u32>) {
+        let first = rows.start * self.columns;
+        let mut starts = vec![0u32; self.columns * rows.len() + 1];
+        scratch.clear();
         for &i in items {
-            self.visit(&segments[i as usize], |square| {
-                starts[square + 1] += 1;
-                entries.push((square as u32, i));
+            self.visit(&segments[i as usize], rows, |square| {
+                starts[square - first + 1] += 1;
+                scratch.push(((square - first) as u32, i));
             });
         }
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut lists = vec![0u32; entries.len()];
+        let mut lists = vec![0u32; scratch.len()];
         // Backwards, from the end of each list, so that afterwards its start is at hand.
         starts.rotate_left(1);
-        for &(square, i) in entries.iter().rev() {
+        for &(square, i) in scratch.iter().rev() {
             let next = &mut starts[square as usize];
             *next -= 1;
             lists[*next as usize] = i;
@@ -230,18 +293,12 @@ impl Log2Floor for f64 {
 }
 
 /// The order in which segments that start close together have close indices, so that all that
-/// follows finds its data in the cache, `None` where they are in such an order; and how they lie.
+/// follows finds its data in the cache, `None` where they are in such an order.
 #[inline(never)]
-pub fn spatial_order<C: Coord>(
-    segments: &[Segment<C>],
-    block: Block,
-) -> (Option<Vec<u32>>, Spread) {
+pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<Vec<u32>> {
     let (width, height) = block.size();
     let length = segments.iter().map(|s| s.length(width, height)).sum();
-    let mut spread = Spread { occupied: 1.0, length };
-    let Some(frame) = Frame::of(block, segments.len(), spread) else {
-        return (None, spread);
-    };
+    let frame = Frame::of(block, segments.len(), Spread { occupied: 1.0, length })?;
     let square = |s: &Segment<C>| frame.index(s.a.x.i64(), s.a.y.i64());
     let mut starts = vec![0u32; frame.columns * frame.rows + 1];
     let (mut jumps, mut last) = (0, 0);
@@ -252,10 +309,8 @@ pub fn spatial_order<C: Coord>(
         jumps += usize::from(apart > 1 && apart.abs_diff(frame.columns) > 1);
         last = index;
     }
-    let filled = starts.iter().filter(|&&count| count > 0).count();
-    spread.occupied = (filled as f64 / (starts.len() - 1) as f64).max(SPARSEST);
     if jumps * FEW_JUMPS < segments.len() {
-        return (None, spread);
+        return None;
     }
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
@@ -266,17 +321,150 @@ pub fn spatial_order<C: Coord>(
         order[*next as usize] = i as u32;
         *next += 1;
     }
-    (Some(order), spread)
+    Some(order)
+}
+
+impl Spread {
+    /// How segments lie in the block around them.
+    #[inline(never)]
+    pub fn of<C: Coord>(segments: &[Segment<C>], block: Block) -> Self {
+        let (width, height) = block.size();
+        let lengths = parallel::map(segments.chunks(TASK).collect(), |some| {
+            some.iter().map(|s| s.length(width, height)).sum::<f64>()
+        });
+        let mut spread = Self { occupied: 1.0, length: lengths.iter().sum() };
+        let Some(frame) = Frame::of(block, segments.len(), spread) else { return spread };
+        let squares = frame.columns * frame.rows;
+        let filled = parallel::map(segments.chunks(TASK).collect(), |some| {
+            let mut filled = vec![0u64; squares.div_ceil(64)];
+            for s in some {
+                let square = frame.index(s.a.x.i64(), s.a.y.i64());
+                filled[square / 64] |= 1 << (square % 64);
+            }
+            filled
+        });
+        let word = |i| filled.iter().fold(0u64, |all, filled| all | filled[i]);
+        let filled: u32 = (0..squares.div_ceil(64)).map(|i| word(i).count_ones()).sum();
+        spread.occupied = (f64::from(filled) / squares as f64).max(SPARSEST);
+        spread
+    }
 }
 
 impl Grid {
-    /// Distributes the segments; `block` must hold them all.
+    /// Distributes the segments; `block` must hold them all. Those that are but a point are in no
+    /// list.
+    #[inline(never)]
     pub fn new<C: Coord>(segments: &[Segment<C>], block: Block, spread: Spread) -> Self {
-        let mut grid = Self::default();
-        let items: Vec<u32> = (0..segments.len() as u32).collect();
-        grid.nodes.push(Node::EMPTY);
-        grid.divide(segments, 0, block, &items, Some(spread));
-        grid
+        let frame = match segments.len() {
+            0..=SMALL_LEAF => None,
+            count => Frame::of(block, count, spread),
+        };
+        let frame = frame.unwrap_or(Frame::whole(block));
+        let ends = bands(&frame, segments);
+        let mut band_of_row = Vec::with_capacity(frame.rows);
+        for (band, &end) in (0..).zip(&ends) {
+            band_of_row.resize(end as usize, band);
+        }
+        let lists = parallel::map(parallel::ranges(segments.len(), TASK), |range| {
+            let mut lists = vec![Vec::new(); ends.len()];
+            for (s, i) in segments[range.clone()].iter().zip(range.start as u32..) {
+                if s.a == s.b {
+                    continue;
+                }
+                let (bottom, top) = frame.rows_of(s);
+                for band in band_of_row[bottom]..=band_of_row[top] {
+                    lists[band as usize].push(i);
+                }
+            }
+            lists
+        });
+        let bands = parallel::map((0..ends.len()).collect(), |k| {
+            Band::new(segments, &frame, parallel::range(&ends, k), || {
+                lists.iter().flat_map(move |lists: &Vec<Vec<u32>>| &lists[k])
+            })
+        });
+        Self { frame, bands, band_of_row }
+    }
+
+    /// All leaves, band by band; they cover the block without overlap.
+    pub fn bands(&self) -> &[Band] {
+        &self.bands
+    }
+
+    /// The smallest block around a pixel, and the segments that come within a pixel of it; `None`
+    /// outside the grid.
+    pub fn locate(&self, x: i64, y: i64) -> Option<(Block, &[u32])> {
+        let mut frame = &self.frame;
+        if !frame.block.holds(x, y) {
+            return None;
+        }
+        let band = &self.bands[*self.band_of_row.get(frame.row(y))? as usize];
+        let mut square = frame.index(x, y);
+        let mut node = *band.nodes.get(square - band.rows.start * frame.columns)?;
+        loop {
+            if node == Node::EMPTY {
+                return Some((frame.square(square), &[][..]));
+            }
+            if node.0 < Node::FIRST_SPLIT {
+                let leaf = band.leaves.get(node.0 as usize)?;
+                return leaf.block.holds(x, y).then(|| (leaf.block, band.items(leaf)));
+            }
+            let (inner, first) = band.splits.get((node.0 - Node::FIRST_SPLIT) as usize)?;
+            if !inner.block.holds(x, y) {
+                return None;
+            }
+            frame = inner;
+            square = frame.index(x, y);
+            node = band.nodes[*first as usize + square];
+        }
+    }
+}
+
+/// Where the rows of each band end: about as many segments start in one as in another.
+fn bands<C: Coord>(frame: &Frame, segments: &[Segment<C>]) -> Vec<u32> {
+    let most = segments.len().div_ceil(PER_BAND).min(frame.rows);
+    if most == 1 {
+        return vec![frame.rows as u32];
+    }
+    let counts = parallel::map(segments.chunks(TASK).collect(), |some| {
+        let mut counts = vec![0u32; frame.rows];
+        for s in some {
+            counts[frame.row(s.a.y.i64())] += 1;
+        }
+        counts
+    });
+    let mut ends = Vec::new();
+    let mut load = 0;
+    for row in 0..frame.rows {
+        load += counts.iter().map(|counts| counts[row] as usize).sum::<usize>();
+        if load * most >= segments.len() * (ends.len() + 1) || row + 1 == frame.rows {
+            ends.push(row as u32 + 1);
+        }
+    }
+    ends
+}
+
+impl Band {
+    fn new<'a, C: Coord, I: Iterator<Item = &'a u32>>(
+        segments: &[Segment<C>],
+        frame: &Frame,
+        rows: Range<usize>,
+        items: impl Fn() -> I,
+    ) -> Self {
+        let mut scratch = Vec::new();
+        let (starts, lists) = frame.distribute(segments, &rows, items(), &mut scratch);
+        let squares = starts.len() - 1;
+        let mut band = Self { nodes: vec![Node::EMPTY; squares], rows, ..Self::default() };
+        band.items.reserve(lists.len());
+        for square in 0..squares {
+            let list = &lists[starts[square] as usize..starts[square + 1] as usize];
+            if list.is_empty() {
+                continue;
+            }
+            let block = frame.square(band.rows.start * frame.columns + square);
+            band.divide(segments, square, block, list, &mut scratch);
+        }
+        band
     }
 
     fn divide<C: Coord>(
@@ -285,28 +473,26 @@ impl Grid {
         node: usize,
         block: Block,
         items: &[u32],
-        top: Option<Spread>,
+        scratch: &mut Vec<(u32, u32)>,
     ) {
-        let frame = match top {
-            _ if items.len() <= SMALL_LEAF => None,
-            Some(spread) => Frame::of(block, items.len(), spread),
-            None => Frame::new(block, segments, items),
+        let frame = match items.len() {
+            ..=SMALL_LEAF => None,
+            _ => Frame::new(block, segments, items),
         };
-        let parts = frame.map(|frame| (frame, frame.distribute(segments, items)));
+        let parts = frame.map(|frame| {
+            (frame, frame.distribute(segments, &(0..frame.rows), items.iter(), scratch))
+        });
         match parts {
-            Some((frame, (starts, lists)))
-                if top.is_some() || lists.len() * 16 <= items.len() * GROWTH =>
-            {
+            Some((frame, (starts, lists))) if lists.len() * 16 <= items.len() * GROWTH => {
                 let first = self.nodes.len();
                 self.nodes[node] = Node(Node::FIRST_SPLIT + self.splits.len() as u32);
                 self.splits.push((frame, first as u32));
                 self.nodes.resize(first + starts.len() - 1, Node::EMPTY);
                 for square in 0..starts.len() - 1 {
                     let list = &lists[starts[square] as usize..starts[square + 1] as usize];
-                    if list.is_empty() {
-                        continue;
+                    if !list.is_empty() {
+                        self.divide(segments, first + square, frame.square(square), list, scratch);
                     }
-                    self.divide(segments, first + square, frame.square(square), list, None);
                 }
             }
             _ => {
@@ -318,7 +504,7 @@ impl Grid {
         }
     }
 
-    /// All leaves; they cover the block without overlap.
+    /// The leaves of these rows that hold segments.
     pub fn leaves(&self) -> &[Leaf] {
         &self.leaves
     }
@@ -326,28 +512,5 @@ impl Grid {
     /// The segments that come within a pixel of a leaf, in the order of their indices.
     pub fn items(&self, leaf: &Leaf) -> &[u32] {
         &self.items[leaf.start as usize..leaf.end as usize]
-    }
-
-    /// The smallest block around a pixel, and the segments that come within a pixel of it; `None`
-    /// outside the grid.
-    pub fn locate(&self, x: i64, y: i64) -> Option<(Block, &[u32])> {
-        let mut node = *self.nodes.first()?;
-        let mut block = None;
-        loop {
-            if node == Node::EMPTY {
-                return block.map(|block| (block, &[][..]));
-            }
-            if node.0 < Node::FIRST_SPLIT {
-                let leaf = self.leaves.get(node.0 as usize)?;
-                return leaf.block.holds(x, y).then(|| (leaf.block, self.items(leaf)));
-            }
-            let (frame, first) = self.splits.get((node.0 - Node::FIRST_SPLIT) as usize)?;
-            if !frame.block.holds(x, y) {
-                return None;
-            }
-            let square = frame.index(x, y);
-            block = Some(frame.square(square));
-            node = self.nodes[*first as usize + square];
-        }
     }
 }

@@ -1,12 +1,16 @@
 //! Finds the hot pixels, those that hold an end or a crossing of segments, and which segments pass
 //! through each: snap rounding after Hobby (1999), leaf by leaf of the grid.
 
-use super::grid::{Grid, Leaf};
+use super::grid::{Band, Grid, Leaf};
 use super::lattice::{Coord, Point, Segment};
+use super::parallel;
 use super::strips::Strips;
 
 /// Leaves with more segments than this are divided into strips, smaller ones compare all pairs.
 const CROWD: usize = 96;
+
+/// How many pixels of a crowded leaf one task looks for.
+const SEARCHES: usize = if cfg!(test) { 8 } else { 1 << 11 };
 
 /// What made a pixel hot, in one word; of several causes the smallest counts, so that an end comes
 /// before a crossing, and small indices first.
@@ -33,6 +37,17 @@ impl CauseWord {
         Self(Self::CROSSING | u64::from(i) << 32 | u64::from(j))
     }
 
+    /// Counts a segment that passes, if the cause is an end: above its index there is room.
+    #[inline(always)]
+    fn count(&mut self) {
+        self.0 += (!self.0 >> 63) << 32;
+    }
+
+    /// Whether two segments were counted, at an end.
+    fn is_end_of_two(self) -> bool {
+        self.0 >> 32 == 2
+    }
+
     /// The cause itself.
     pub fn get(self) -> Cause {
         if self.0 & Self::CROSSING == 0 {
@@ -48,8 +63,12 @@ impl CauseWord {
 pub struct Noding<C> {
     /// The hot pixels, each once, leaf by leaf.
     pub nodes: Vec<Point<C>>,
-    /// What made each hot.
-    pub causes: Vec<CauseWord>,
+    /// Leaves are worked on in patches; where the nodes of each patch end.
+    pub patch_ends: Vec<u32>,
+    /// Of each node whether it is a ring's point that nothing but its two edges touches.
+    pub passed: Vec<bool>,
+    /// What made each hot, by patch.
+    causes: Vec<Vec<CauseWord>>,
     /// The nodes of segment i, in its direction, are `hits[starts[i]..starts[i + 1]]`.
     pub starts: Vec<u32>,
     /// Indices into `nodes`.
@@ -61,6 +80,18 @@ impl<C> Noding<C> {
     pub fn chain(&self, segment: usize) -> &[u32] {
         &self.hits[self.starts[segment] as usize..self.starts[segment + 1] as usize]
     }
+
+    /// What made the nodes hot.
+    pub fn causes(&self) -> impl Iterator<Item = &CauseWord> {
+        self.causes.iter().flatten()
+    }
+
+    /// What made a node hot.
+    pub fn cause(&self, node: u32) -> Cause {
+        let patch = self.patch_ends.partition_point(|&end| end <= node);
+        let first = parallel::range(&self.patch_ends, patch).start;
+        self.causes[patch][node as usize - first].get()
+    }
 }
 
 /// What some leaves contribute, with nodes counted from zero.
@@ -68,8 +99,13 @@ impl<C> Noding<C> {
 struct Part<C> {
     nodes: Vec<Point<C>>,
     causes: Vec<CauseWord>,
-    hits: Vec<(u32, u32)>,
+    passed: Vec<bool>,
+    /// Segments and nodes that they pass, by the segments' indices over [`SHELF`].
+    hits: Vec<Vec<(u32, u32)>>,
 }
+
+/// Hits are sorted by segment in shelves of so many: their lists fit the cache.
+const SHELF: usize = if cfg!(test) { 8 } else { 1 << 14 };
 
 /// Scratch space for one leaf.
 struct Workbench<C> {
@@ -98,37 +134,33 @@ pub fn node<C: Coord>(
     grid: &Grid,
     ends: impl Fn(u32) -> Ends + Sync + Send,
 ) -> Noding<C> {
-    let parts = work(segments, grid, ends);
-    let mut noding =
-        Noding { nodes: Vec::new(), causes: Vec::new(), starts: Vec::new(), hits: Vec::new() };
-    noding.nodes.reserve_exact(parts.iter().map(|p| p.nodes.len()).sum());
-    noding.causes.reserve_exact(parts.iter().map(|p| p.nodes.len()).sum());
-    let mut offsets = Vec::with_capacity(parts.len());
-    for part in &parts {
-        offsets.push(noding.nodes.len() as u32);
-        noding.nodes.extend_from_slice(&part.nodes);
-        noding.causes.extend_from_slice(&part.causes);
-    }
-    gather(segments, &parts, &offsets, &mut noding);
-    noding
+    let mut parts = work(segments, grid, ends);
+    let patch_ends = parallel::ends(parts.iter().map(|part| part.nodes.len()));
+    let nodes = parallel::concat(&parts.iter().map(|part| &part.nodes[..]).collect::<Vec<_>>());
+    let passed = parallel::concat(&parts.iter().map(|part| &part.passed[..]).collect::<Vec<_>>());
+    let causes = parts.iter_mut().map(|part| std::mem::take(&mut part.causes)).collect();
+    let (starts, hits) = gather(segments, &parts, &patch_ends, &nodes);
+    Noding { nodes, patch_ends, passed, causes, starts, hits }
 }
 
 /// How many segment entries one task handles: large enough to hide the cost of a task.
-const TASK: usize = 1 << 15;
+const TASK: usize = if cfg!(test) { 32 } else { 1 << 15 };
 
-fn tasks(grid: &Grid) -> Vec<&[Leaf]> {
-    let mut rest = grid.leaves();
+fn tasks(grid: &Grid) -> Vec<(&Band, &[Leaf])> {
     let mut tasks = Vec::new();
-    while !rest.is_empty() {
-        let mut load = 0;
-        let full = |leaf: &Leaf| {
-            load += grid.items(leaf).len() + 1;
-            load > TASK
-        };
-        let count = rest.iter().position(full).map_or(rest.len(), |i| i + 1);
-        let (task, others) = rest.split_at(count);
-        tasks.push(task);
-        rest = others;
+    for band in grid.bands() {
+        let mut rest = band.leaves();
+        while !rest.is_empty() {
+            let mut load = 0;
+            let full = |leaf: &Leaf| {
+                load += band.items(leaf).len() + 1;
+                load > TASK
+            };
+            let count = rest.iter().position(full).map_or(rest.len(), |i| i + 1);
+            let (task, others) = rest.split_at(count);
+            tasks.push((band, task));
+            rest = others;
+        }
     }
     tasks
 }
@@ -138,8 +170,13 @@ fn work<C: Coord>(
     grid: &Grid,
     ends: impl Fn(u32) -> Ends + Sync + Send,
 ) -> Vec<Part<C>> {
-    let run = |leaves: &[Leaf]| {
-        let mut part = Part { nodes: Vec::new(), causes: Vec::new(), hits: Vec::new() };
+    let run = |(band, leaves): (&Band, &[Leaf])| {
+        let mut part = Part {
+            nodes: Vec::new(),
+            causes: Vec::new(),
+            passed: Vec::new(),
+            hits: vec![Vec::new(); segments.len().div_ceil(SHELF)],
+        };
         let mut bench = Workbench {
             segments: Vec::new(),
             spans: Vec::new(),
@@ -148,11 +185,11 @@ fn work<C: Coord>(
             strips: Strips::default(),
         };
         for leaf in leaves {
-            bench.leaf(segments, grid.items(leaf), leaf, &ends, &mut part);
+            bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part);
         }
         part
     };
-    super::parallel::map(tasks(grid), run)
+    parallel::map(tasks(grid), run)
 }
 
 impl<C: Coord> Workbench<C> {
@@ -184,13 +221,11 @@ impl<C: Coord> Workbench<C> {
         part.nodes.extend(self.pixels.iter().map(|p| p.0));
         part.causes.extend(self.pixels.iter().map(|p| p.1));
         if items.len() > CROWD {
-            for (k, &(p, _)) in self.pixels.iter().enumerate() {
-                let hits = &mut part.hits;
-                self.strips.hits(&self.segments, p, |i| hits.push((items[i], first + k as u32)));
-            }
+            self.crowd_hits(items, first, part);
         } else {
             self.hits(items, first, part);
         }
+        part.passed.extend(self.pixels.iter().map(|p| p.1.is_end_of_two()));
     }
 
     /// Every point of a ring is the start of one edge, so only starts are looked at there.
@@ -232,18 +267,38 @@ impl<C: Coord> Workbench<C> {
         }
     }
 
+    #[inline(never)]
+    fn crowd_hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
+        let (strips, segments) = (&self.strips, &self.segments);
+        let tasks = self.pixels.chunks(SEARCHES).zip((0..).step_by(SEARCHES));
+        let hits = parallel::map(tasks.collect(), |(pixels, start)| {
+            let mut hits = Vec::new();
+            for ((p, _), k) in pixels.iter().zip(start..) {
+                strips.hits(segments, *p, |i| hits.push((i, k)));
+            }
+            hits
+        });
+        for (i, k) in hits.into_iter().flatten() {
+            part.hits[items[i] as usize / SHELF].push((items[i], first + k));
+            self.pixels[k as usize].1.count();
+        }
+    }
+
     /// Pixels are in the order of x: of each segment only those in its range of x are looked at.
     #[inline(never)]
-    fn hits(&self, items: &[u32], first: u32, part: &mut Part<C>) {
+    fn hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
         for (s, &i) in self.segments.iter().zip(items) {
             let (low, high) = s.y_range();
             let start = self.pixels.partition_point(|(p, _)| p.x < s.a.x);
-            for (&(p, _), k) in self.pixels[start..].iter().zip(start as u32..) {
+            let shelf = &mut part.hits[i as usize / SHELF];
+            let pixels = &mut self.pixels[start..];
+            for (k, (p, cause)) in (first + start as u32..).zip(pixels) {
                 if p.x > s.b.x {
                     break;
                 }
-                if (p.y >= low) & (p.y <= high) && s.side_of_pixel(p).is_eq() {
-                    part.hits.push((i, first + k));
+                if (p.y >= low) & (p.y <= high) && s.side_of_pixel(*p).is_eq() {
+                    shelf.push((i, k));
+                    cause.count();
                 }
             }
         }
@@ -269,34 +324,67 @@ fn push<C: Coord>(
 fn gather<C: Coord>(
     segments: &[Segment<C>],
     parts: &[Part<C>],
-    offsets: &[u32],
-    noding: &mut Noding<C>,
+    patch_ends: &[u32],
+    nodes: &[Point<C>],
+) -> (Vec<u32>, Vec<u32>) {
+    let shelves = segments.len().div_ceil(SHELF);
+    let length = |shelf: usize| parts.iter().map(|part| part.hits[shelf].len()).sum();
+    let ends = parallel::ends((0..shelves).map(length));
+    let total = ends.last().copied().unwrap_or(0);
+    let mut hits = vec![0u32; total as usize];
+    let mut starts = vec![0u32; segments.len() + 1];
+    starts[segments.len()] = total;
+    let tasks = parallel::cut(&mut hits, &ends).into_iter().zip(starts.chunks_mut(SHELF));
+    let tasks: Vec<_> = tasks.zip(segments.chunks(SHELF)).enumerate().collect();
+    parallel::map(tasks, |(shelf, ((hits, starts), segments))| {
+        let lists = || {
+            parts.iter().enumerate().map(move |(patch, part)| {
+                (parallel::range(patch_ends, patch).start as u32, &part.hits[shelf])
+            })
+        };
+        let first = parallel::range(&ends, shelf).start as u32;
+        let starts = &mut starts[..segments.len()];
+        sort_hits(lists, (shelf * SHELF) as u32, starts, hits);
+        let mut chains = starts.iter().map(|&start| start as usize).chain([hits.len()]);
+        let mut start = chains.next().unwrap_or(0);
+        for (s, end) in segments.iter().zip(chains) {
+            let chain = &mut hits[start..end];
+            let in_order = chain.len() == 2 && s.a == nodes[chain[0] as usize];
+            if chain.len() > 1 && !in_order {
+                sort_along(s, chain, nodes);
+            }
+            start = end;
+        }
+        starts.iter_mut().for_each(|start| *start += first);
+    });
+    (starts, hits)
+}
+
+/// Puts hits in the order of their segments, whose indices count from `first`; fills in where the
+/// hits of each segment start.
+fn sort_hits<'a, I: Iterator<Item = (u32, &'a Vec<(u32, u32)>)>>(
+    lists: impl Fn() -> I,
+    first: u32,
+    starts: &mut [u32],
+    hits: &mut [u32],
 ) {
-    let mut starts = vec![0u32; segments.len() + 2];
-    for part in parts {
-        for &(i, _) in &part.hits {
-            starts[i as usize + 2] += 1;
+    for (_, list) in lists() {
+        for &(i, _) in list {
+            starts[(i - first) as usize] += 1;
         }
     }
-    for i in 2..starts.len() {
-        starts[i] += starts[i - 1];
+    let mut end = 0;
+    for start in starts.iter_mut() {
+        end += *start;
+        *start = end;
     }
-    let mut hits = vec![0u32; starts[starts.len() - 1] as usize];
-    for (part, offset) in parts.iter().zip(offsets) {
-        for &(i, node) in &part.hits {
-            let next = &mut starts[i as usize + 1];
+    for (offset, list) in lists() {
+        for &(i, node) in list {
+            let next = &mut starts[(i - first) as usize];
+            *next -= 1;
             hits[*next as usize] = node + offset;
-            *next += 1;
         }
     }
-    starts.pop();
-    for (i, s) in segments.iter().enumerate() {
-        let chain = &mut hits[starts[i] as usize..starts[i + 1] as usize];
-        if chain.len() > 2 || s.a != noding.nodes[chain[0] as usize] {
-            sort_along(s, chain, &noding.nodes);
-        }
-    }
-    (noding.starts, noding.hits) = (starts, hits);
 }
 
 /// Snapped segments keep their direction on both axes, so x, then y in that direction, orders them.

@@ -1,5 +1,8 @@
 //! The same work on one thread or several, joined in order, so that the result is the same.
 
+use std::cmp::Ordering;
+use std::ops::Range;
+
 /// Applies `f` to every task, on the current rayon pool where the feature `parallel` is on.
 #[cfg(feature = "parallel")]
 pub fn map<T: Send, R: Send>(tasks: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
@@ -7,11 +10,71 @@ pub fn map<T: Send, R: Send>(tasks: Vec<T>, f: impl Fn(T) -> R + Sync + Send) ->
     if tasks.len() < 2 || rayon::current_num_threads() == 1 {
         return tasks.into_iter().map(f).collect();
     }
-    tasks.into_par_iter().map(f).collect()
+    tasks.into_par_iter().with_max_len(1).map(f).collect()
 }
 
 /// Applies `f` to every task.
 #[cfg(not(feature = "parallel"))]
 pub fn map<T: Send, R: Send>(tasks: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     tasks.into_iter().map(f).collect()
+}
+
+/// Sorts by an order that no two different items are equal in.
+#[cfg(feature = "parallel")]
+pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
+    use rayon::prelude::*;
+    if rayon::current_num_threads() == 1 {
+        list.sort_unstable_by(compare);
+    } else {
+        list.par_sort_unstable_by(compare);
+    }
+}
+
+/// Sorts by an order that no two different items are equal in.
+#[cfg(not(feature = "parallel"))]
+pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
+    list.sort_unstable_by(compare);
+}
+
+/// Ranges of at most `size` that cover `0..count`.
+pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
+    (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
+}
+
+/// A list cut at `ends`, which grow up to its length.
+pub fn cut<'a, T>(mut list: &'a mut [T], ends: &[u32]) -> Vec<&'a mut [T]> {
+    let mut start = 0;
+    let mut pieces = Vec::with_capacity(ends.len());
+    for &end in ends {
+        let (piece, rest) = list.split_at_mut((end - start) as usize);
+        pieces.push(piece);
+        (list, start) = (rest, end);
+    }
+    pieces
+}
+
+/// Where each of some lists ends if they follow one another.
+pub fn ends(lengths: impl Iterator<Item = usize>) -> Vec<u32> {
+    let mut end = 0;
+    lengths
+        .map(|length| {
+            end += length as u32;
+            end
+        })
+        .collect()
+}
+
+/// The range that ends at `ends[index]`.
+pub fn range(ends: &[u32], index: usize) -> Range<usize> {
+    let start = index.checked_sub(1).map_or(0, |before| ends[before]);
+    start as usize..ends[index] as usize
+}
+
+/// All lists, one after the other.
+pub fn concat<T: Copy + Default + Send + Sync>(lists: &[&[T]]) -> Vec<T> {
+    let ends = ends(lists.iter().map(|list| list.len()));
+    let mut all = vec![T::default(); ends.last().copied().unwrap_or(0) as usize];
+    let tasks = cut(&mut all, &ends).into_iter().zip(lists).collect();
+    map(tasks, |(to, from): (&mut [T], &&[T])| to.copy_from_slice(from));
+    all
 }

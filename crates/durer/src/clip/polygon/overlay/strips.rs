@@ -8,9 +8,13 @@
 use std::cmp::Ordering;
 
 use super::lattice::{Coord, Point, Segment};
+use super::parallel;
 
 /// Strips with no more segments than this are not halved.
 const FEW: usize = 12;
+
+/// How many segments one task looks for on a staircase.
+const CLIMBS: usize = if cfg!(test) { 8 } else { 1 << 11 };
 
 /// The staircases of all strips.
 #[derive(Debug, Default)]
@@ -87,9 +91,12 @@ impl<C: Coord> Strips<C> {
         } else {
             staircase(segments, left, right, &list)
         };
-        for &i in &rest {
-            self.climb(segments, left, right, &stairs, i);
-        }
+        let found = parallel::map(rest.chunks(CLIMBS).collect(), |some: &[u32]| {
+            let mut found = Vec::new();
+            some.iter().for_each(|&i| climb(segments, (left, right), &stairs, i, &mut found));
+            found
+        });
+        found.iter().for_each(|found| self.found.extend_from_slice(found));
         let start = self.lists.len() as u32;
         self.lists.extend_from_slice(&stairs);
         self.strips[index].stairs = (start, self.lists.len() as u32);
@@ -114,38 +121,6 @@ impl<C: Coord> Strips<C> {
         index as u32
     }
 
-    /// Finds the stairs that a segment crosses within the strip.
-    fn climb(
-        &mut self,
-        segments: &[Segment<C>],
-        left: i64,
-        right: i64,
-        stairs: &[u32],
-        index: u32,
-    ) {
-        if stairs.is_empty() {
-            return;
-        }
-        let s = &segments[index as usize];
-        let below = |end: Point<C>, border: i64, inside: bool| {
-            stairs.partition_point(|&i| {
-                let stair = &segments[i as usize];
-                if inside {
-                    super::lattice::cross(stair.a, stair.b, end) > C::Wide::default()
-                } else {
-                    stair.compare_at(s, border) == Ordering::Less
-                }
-            })
-        };
-        let start = below(s.a, 2 * left - 1, s.a.x.i64() >= left);
-        let end = below(s.b, 2 * right + 1, s.b.x.i64() <= right);
-        for &i in &stairs[start.min(end)..start.max(end)] {
-            if let Some(p) = segments[i as usize].crossing(s) {
-                self.found.push((i, index, p));
-            }
-        }
-    }
-
     fn compare_all(&mut self, segments: &[Segment<C>], list: &[u32]) {
         for (k, &j) in list.iter().enumerate() {
             for &i in &list[..k] {
@@ -153,6 +128,37 @@ impl<C: Coord> Strips<C> {
                     self.found.push((i, j, p));
                 }
             }
+        }
+    }
+}
+
+/// Finds the stairs that a segment crosses within a strip.
+fn climb<C: Coord>(
+    segments: &[Segment<C>],
+    (left, right): (i64, i64),
+    stairs: &[u32],
+    index: u32,
+    found: &mut Vec<(u32, u32, Point<C>)>,
+) {
+    if stairs.is_empty() {
+        return;
+    }
+    let s = &segments[index as usize];
+    let below = |end: Point<C>, border: i64, inside: bool| {
+        stairs.partition_point(|&i| {
+            let stair = &segments[i as usize];
+            if inside {
+                super::lattice::cross(stair.a, stair.b, end) > C::Wide::default()
+            } else {
+                stair.compare_at(s, border) == Ordering::Less
+            }
+        })
+    };
+    let start = below(s.a, 2 * left - 1, s.a.x.i64() >= left);
+    let end = below(s.b, 2 * right + 1, s.b.x.i64() <= right);
+    for &i in &stairs[start.min(end)..start.max(end)] {
+        if let Some(p) = segments[i as usize].crossing(s) {
+            found.push((i, index, p));
         }
     }
 }
@@ -168,7 +174,7 @@ fn staircase<C: Coord>(
     let spans = |i: &u32| at(*i).a.x.i64() < left && at(*i).b.x.i64() > right;
     let (mut spanning, mut rest): (Vec<u32>, Vec<u32>) = list.iter().partition(|i| spans(i));
     let (west, east) = (2 * left - 1, 2 * right + 1);
-    spanning.sort_unstable_by(|&i, &j| {
+    parallel::sort(&mut spanning, |&i, &j| {
         at(i).compare_at(at(j), west).then_with(|| at(i).compare_at(at(j), east)).then(i.cmp(&j))
     });
     let mut stairs: Vec<u32> = Vec::with_capacity(spanning.len());

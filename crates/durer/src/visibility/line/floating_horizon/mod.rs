@@ -22,6 +22,7 @@
 mod chain;
 mod horizon;
 mod sight;
+mod strip;
 mod walk;
 
 pub use chain::projected;

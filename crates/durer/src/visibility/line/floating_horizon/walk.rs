@@ -50,12 +50,50 @@ fn wanted(field: &HeightField, options: &Options, family: Family, line: usize) -
     every > 0 && (line.is_multiple_of(every) || line + 1 == count)
 }
 
+/// A side of a cell as a part of a line.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    family: Family,
+    line: usize,
+    segment: usize,
+}
+
+impl Place {
+    /// The side that begins at a point.
+    fn from_point(family: Family, column: usize, row: usize) -> Self {
+        match family {
+            Family::AlongX => Self { family, line: row, segment: column },
+            Family::AlongZ => Self { family, line: column, segment: row },
+        }
+    }
+
+    /// The column and the row of its first point.
+    fn point(self) -> [usize; 2] {
+        match self.family {
+            Family::AlongX => [self.segment, self.line],
+            Family::AlongZ => [self.line, self.segment],
+        }
+    }
+
+    /// The numbers of its points.
+    fn numbers(self, columns: usize) -> [usize; 2] {
+        let [column, row] = self.point();
+        let first = row * columns + column;
+        match self.family {
+            Family::AlongX => [first, first + 1],
+            Family::AlongZ => [first, first + columns],
+        }
+    }
+
+    /// A part of it.
+    fn piece(self, range: [f64; 2], visible: bool, underside: bool) -> Piece {
+        let Self { family, line, segment } = self;
+        Piece { family, line, segment, range, visible, underside }
+    }
+}
+
 /// The segments of all lines that are wanted and whose ends are there.
-fn segments(
-    field: &HeightField,
-    options: &Options,
-    mut f: impl FnMut(Family, usize, usize, [DVec3; 2]),
-) {
+fn segments(field: &HeightField, options: &Options, mut f: impl FnMut(Place, [DVec3; 2])) {
     let (columns, rows) = (field.columns(), field.rows());
     for (family, lines, points) in
         [(Family::AlongX, rows, columns), (Family::AlongZ, columns, rows)]
@@ -63,11 +101,17 @@ fn segments(
         for line in (0..lines).filter(|&l| wanted(field, options, family, l)) {
             for segment in 0..points - 1 {
                 if let [Some(a), Some(b)] = chain::ends(field, family, line, segment) {
-                    f(family, line, segment, [a, b]);
+                    f(Place { family, line, segment }, [a, b]);
                 }
             }
         }
     }
+}
+
+/// Tells of a piece and keeps it.
+fn keep(piece: Piece, pieces: &mut Vec<Piece>, t: &mut impl Tracer<Step>) {
+    t.step(|| Step::Piece(piece));
+    pieces.push(piece);
 }
 
 fn everything(
@@ -76,12 +120,7 @@ fn everything(
     pieces: &mut Vec<Piece>,
     t: &mut impl Tracer<Step>,
 ) {
-    segments(field, options, |family, line, segment, _| {
-        let range = [0.0, 1.0];
-        let piece = Piece { family, line, segment, range, visible: true, underside: false };
-        t.step(|| Step::Piece(piece));
-        pieces.push(piece);
-    });
+    segments(field, options, |place, _| keep(place.piece([0.0, 1.0], true, false), pieces, t));
 }
 
 /// Right above or below the eye upright pictures have no place. There only one cell hides, and not
@@ -102,26 +141,18 @@ fn at_the_foot(
     let row = place(eye.z + middle.z, field.z_range(), field.rows());
     // The sides of the cell below the eye, and of its neighbours for what rounding puts next door.
     let near = |i: usize, at: f64| (i as f64 - at).abs() <= 2.0;
-    segments(field, options, |family, line, segment, ends| {
-        let [c, r] = match family {
-            Family::AlongX => [segment, line],
-            Family::AlongZ => [line, segment],
-        };
+    segments(field, options, |place, ends| {
+        let [c, r] = place.point();
         if !near(c, column) || !near(r, row) {
             return;
         }
-        let numbers = match family {
-            Family::AlongX => [r * field.columns() + c, r * field.columns() + c + 1],
-            Family::AlongZ => [r * field.columns() + c, (r + 1) * field.columns() + c],
-        };
+        let numbers = place.numbers(field.columns());
         let ends = ends.map(|p| p - middle);
         let parts = pictures.iter().filter_map(|p| p.part(numbers, ends));
         let mut held: Vec<[f64; 2]> = parts.map(|p| p.range).collect();
         held.sort_by(|a, b| a[0].total_cmp(&b[0]));
         for range in gaps(&held) {
-            let piece = Piece { family, line, segment, range, visible: true, underside: false };
-            t.step(|| Step::Piece(piece));
-            pieces.push(piece);
+            keep(place.piece(range, true, false), pieces, t);
         }
     });
 }
@@ -275,12 +306,9 @@ impl<'a> Walk<'a> {
         t: &mut impl Tracer<Step>,
     ) {
         let [(a, p), (b, q)] = ends.map(|k| self.corner(column, row, k));
-        let (column, row) = (column + (ends[0] & 1), row + (ends[0] >> 1));
-        let (line, segment, bit) = match family {
-            Family::AlongX => (row, column, 1),
-            Family::AlongZ => (column, row, 2),
-        };
-        if self.done[a] & bit != 0 || !wanted(self.field, self.options, family, line) {
+        let place = Place::from_point(family, column + (ends[0] & 1), row + (ends[0] >> 1));
+        let bit = if family == Family::AlongX { 1 } else { 2 };
+        if self.done[a] & bit != 0 || !wanted(self.field, self.options, family, place.line) {
             return;
         }
         self.done[a] |= bit;
@@ -288,14 +316,12 @@ impl<'a> Walk<'a> {
         let mut hidden = std::mem::take(&mut self.hidden);
         self.horizon.hidden(part.ends[0], part.ends[1], &mut hidden);
         let tell = |range: [f64; 2], visible: bool| {
-            let range = range.map(|s| part.along(s));
-            Piece { family, line, segment, range, visible, underside }
+            place.piece(range.map(|s| part.along(s)), visible, underside)
         };
         let seen = gaps(&hidden).into_iter().map(|r| tell(r, true));
         let unseen = hidden.iter().filter(|_| self.options.hidden).map(|&r| tell(r, false));
         for piece in seen.chain(unseen) {
-            t.step(|| Step::Piece(piece));
-            self.pieces.push(piece);
+            keep(piece, self.pieces, t);
         }
         self.hidden = hidden;
     }

@@ -286,7 +286,9 @@ struct FeatureLine {
 
 impl FeatureLine {
     /// `None` for a line that is a point in the picture.
-    fn new(ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
+    fn new(mut ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
+        // One way round whatever the faces' order, so that cuts are rounded alike.
+        ends.sort_unstable_by_key(|v| v.at);
         let around = [NO_ITEM; 3];
         let line = Self { ends, class, items, around, smooth: false };
         (ends[0].at != ends[1].at).then_some(line)

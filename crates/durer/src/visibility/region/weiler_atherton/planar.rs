@@ -3,7 +3,7 @@
 
 use super::faces::{Place, float};
 use crate::clip::polygon::overlay::arrangement::Arrangement;
-use crate::clip::polygon::overlay::grid::{self, Block, Grid};
+use crate::clip::polygon::overlay::grid::{self, Block, Grid, Spread};
 use crate::clip::polygon::overlay::lattice::{Segment, cross};
 use crate::clip::polygon::overlay::noding::{self, Ends};
 use crate::clip::polygon::overlay::search::Search;
@@ -36,12 +36,11 @@ impl Planar {
         let Some(block) = Block::around(&segments) else {
             return Self { face_count: 1, starts: vec![0], ..Self::default() };
         };
-        let (order, spread) = grid::spatial_order(&segments, block);
-        let segments: Vec<Segment<i32>> = match order {
+        let segments: Vec<Segment<i32>> = match grid::spatial_order(&segments, block) {
             Some(order) => order.iter().map(|&i| segments[i as usize]).collect(),
             None => segments,
         };
-        let grid = Grid::new(&segments, block, spread);
+        let grid = Grid::new(&segments, block, Spread::of(&segments, block));
         let noding = noding::node(&segments, &grid, |_| Ends::Both);
         let graph = Arrangement::of_lines(&noding);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };

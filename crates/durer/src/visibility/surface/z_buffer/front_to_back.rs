@@ -15,8 +15,9 @@ const FEWEST: usize = 64;
 /// Ranges of depth that triangles are told apart by.
 const BUCKETS: usize = 64;
 
-/// After so many parts of the triangles the farthest depths are found anew.
-pub const PARTS: usize = 4;
+/// After these parts of the triangles, in sixteenths, the farthest depths are found anew: the first is
+/// small, for the nearest layer hides most.
+const PARTS: [usize; 5] = [1, 4, 8, 12, 16];
 
 /// The opaque triangles of one tile.
 #[derive(Default)]
@@ -40,8 +41,15 @@ impl<'a> FrontToBack<'a> {
         if !few {
             self.sort();
         }
-        let (triangles, parts) = if few { (&self.given, 1) } else { (&self.sorted, PARTS) };
-        triangles.chunks(triangles.len().div_ceil(parts).max(1))
+        let (triangles, parts) =
+            if few { (&self.given, &PARTS[4..]) } else { (&self.sorted, &PARTS[..]) };
+        let part = |sixteenths: usize| triangles.len() * sixteenths / 16;
+        let mut from = 0;
+        parts.iter().map(move |&sixteenths| {
+            let part = &triangles[from..part(sixteenths)];
+            from += part.len();
+            part
+        })
     }
 
     /// A counting sort by the depth of the nearest vertex.

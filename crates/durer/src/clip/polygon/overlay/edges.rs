@@ -1,0 +1,286 @@
+//! Cuts the segments at their nodes into edges of the graph, ring by ring, and sorts the edges by
+//! the patch of their first node.
+
+use std::ops::Range;
+
+use super::arrangement::{Edge, Winding};
+use super::lattice::Coord;
+use super::noding::Noding;
+use super::{Source, parallel};
+
+/// How many segments one task handles: large enough to hide the cost of a task.
+const TASK: usize = if cfg!(test) { 8 } else { 1 << 14 };
+
+/// Segments that form rings.
+#[derive(Debug, Clone, Copy)]
+pub struct Rings<'a> {
+    /// Where each ring ends among the segments.
+    pub ends: &'a [u32],
+    /// Of each segment.
+    pub sources: &'a [Source],
+}
+
+/// The edges of the graph, patch by patch.
+#[derive(Debug)]
+pub struct Edges {
+    pub list: Vec<Edge>,
+    /// Where those of each patch end.
+    pub ends: Vec<u32>,
+    /// The nodes within edges.
+    pub inner: Vec<u32>,
+}
+
+/// The edges that one task finds.
+struct Batch<'a, C> {
+    noding: &'a Noding<C>,
+    patches: Vec<Vec<Edge>>,
+    /// The patch of the last edge, and its nodes: the next edge is likely to start there too.
+    patch: (usize, Range<usize>),
+    inner: Vec<u32>,
+}
+
+/// What a part of a ring leaves to be joined with other parts.
+#[derive(Debug)]
+struct Loose {
+    ring: usize,
+    /// The first node that is not only passed, if there is one.
+    first: Option<u32>,
+    /// What comes before it.
+    head: Vec<u32>,
+    /// The last such node and what comes after it.
+    tail: Vec<u32>,
+}
+
+impl Edges {
+    /// The edges of rings: what one ring passes and nothing else touches lies within an edge.
+    #[inline(never)]
+    pub fn of_rings<C: Coord>(noding: &Noding<C>, rings: Rings) -> Self {
+        let count = rings.sources.len();
+        let (mut batches, loose): (Vec<_>, Vec<_>) =
+            parallel::map(parallel::ranges(count, TASK), |range| {
+                let mut batch = Batch::new(noding);
+                let loose = batch.rings(rings, range);
+                (batch, loose)
+            })
+            .into_iter()
+            .unzip();
+        let mut batch = Batch::new(noding);
+        batch.join(rings, loose);
+        batches.push(batch);
+        Self::merge(noding, batches)
+    }
+
+    /// The straight edges of segments.
+    pub fn of_straight<C: Coord>(
+        noding: &Noding<C>,
+        step: impl Fn(usize) -> Winding + Sync + Send,
+    ) -> Self {
+        let tasks = parallel::ranges(noding.starts.len() - 1, TASK);
+        let batches = parallel::map(tasks, |range| {
+            let mut batch = Batch::new(noding);
+            for i in range {
+                for pair in noding.chain(i).windows(2) {
+                    batch.straight(pair[0], pair[1], step(i));
+                }
+            }
+            batch
+        });
+        Self::merge(noding, batches)
+    }
+
+    fn merge<C: Coord>(noding: &Noding<C>, batches: Vec<Batch<C>>) -> Self {
+        let length = |patch: usize| batches.iter().map(|batch| batch.patches[patch].len()).sum();
+        let ends = parallel::ends((0..noding.patch_ends.len()).map(length));
+        let inner = parallel::concat(&batches.iter().map(|b| &b.inner[..]).collect::<Vec<_>>());
+        let inner_ends = parallel::ends(batches.iter().map(|b| b.inner.len()));
+        let mut list = vec![Edge::default(); ends.last().copied().unwrap_or(0) as usize];
+        let tasks = parallel::cut(&mut list, &ends).into_iter().enumerate().collect();
+        parallel::map(tasks, |(patch, mut list): (usize, &mut [Edge])| {
+            for (k, batch) in batches.iter().enumerate() {
+                let edges = &batch.patches[patch];
+                let (here, rest) = list.split_at_mut(edges.len());
+                let offset = parallel::range(&inner_ends, k).start as u32;
+                for (to, from) in here.iter_mut().zip(edges) {
+                    let inner = [from.inner[0] + offset, from.inner[1] + offset];
+                    *to = Edge { inner, ..*from };
+                }
+                list = rest;
+            }
+        });
+        Self { list, ends, inner }
+    }
+}
+
+impl<'a, C: Coord> Batch<'a, C> {
+    fn new(noding: &'a Noding<C>) -> Self {
+        let patches = vec![Vec::new(); noding.patch_ends.len()];
+        Self { noding, patches, patch: (0, 0..0), inner: Vec::new() }
+    }
+
+    /// The edges of some segments; gives what belongs to edges that go on in other parts.
+    fn rings(&mut self, rings: Rings, range: Range<usize>) -> Vec<Loose> {
+        let mut loose = Vec::new();
+        let mut path = Vec::new();
+        let mut index = rings.ends.partition_point(|&end| end as usize <= range.start);
+        let mut start = range.start;
+        while start < range.end {
+            let ring = parallel::range(rings.ends, index);
+            let end = ring.end.min(range.end);
+            path.clear();
+            self.collect(rings, start..end, &mut path);
+            let across = rings.sources[ring.start].across();
+            if (start, end) == (ring.start, ring.end) {
+                self.closed(&path, across);
+            } else {
+                let backward = (ring.start..start).rev().chain((start..ring.end).rev());
+                let before = self.neighbour(rings, backward, true);
+                let forward = (end..ring.end).chain(ring.start..end);
+                let after = self.neighbour(rings, forward, false);
+                loose.push(self.open(index, &path, before, after, across));
+            }
+            start = end;
+            index += 1;
+        }
+        loose
+    }
+
+    /// The nodes of consecutive segments of a ring in its direction, without the last one's end.
+    fn collect(&self, rings: Rings, segments: Range<usize>, path: &mut Vec<u32>) {
+        for i in segments {
+            let chain = self.noding.chain(i);
+            if rings.sources[i].reversed() {
+                path.extend(chain.iter().skip(1).rev());
+            } else {
+                path.extend(&chain[..chain.len().saturating_sub(1)]);
+            }
+        }
+    }
+
+    /// The first of some segments that has nodes gives its first, or the last before its end.
+    fn neighbour(
+        &self,
+        rings: Rings,
+        mut segments: impl Iterator<Item = usize>,
+        last: bool,
+    ) -> Option<u32> {
+        let i = segments.find(|&i| self.noding.chain(i).len() > 1)?;
+        let chain = self.noding.chain(i);
+        let k = match (last, rings.sources[i].reversed()) {
+            (true, true) => 1,
+            (true, false) => chain.len() - 2,
+            (false, true) => chain.len() - 1,
+            (false, false) => 0,
+        };
+        Some(chain[k])
+    }
+
+    /// The edges of a whole ring.
+    fn closed(&mut self, path: &[u32], across: Winding) {
+        let count = path.len();
+        if count < 2 {
+            return;
+        }
+        let passed = &self.noding.passed;
+        // A spike's tip is a node, so that its sides meet.
+        let node = |k: usize| {
+            let before = path[if k == 0 { count - 1 } else { k - 1 }];
+            let after = path[if k + 1 == count { 0 } else { k + 1 }];
+            !passed[path[k] as usize] || before == after
+        };
+        // A ring that nothing touches has any one of its points for a node.
+        let first = (0..count).find(|&k| node(k)).unwrap_or(0);
+        let mut from = first;
+        for k in (first + 1..count).filter(|&k| node(k)) {
+            self.edge(path[from], &path[from + 1..k], &[], path[k], across);
+            from = k;
+        }
+        self.edge(path[from], &path[from + 1..], &path[..first], path[first], across);
+    }
+
+    /// The edges between the nodes of a part of a ring.
+    fn open(
+        &mut self,
+        ring: usize,
+        path: &[u32],
+        before: Option<u32>,
+        after: Option<u32>,
+        across: Winding,
+    ) -> Loose {
+        let node = |k: usize| {
+            let before = if k == 0 { before } else { Some(path[k - 1]) };
+            let after = path.get(k + 1).copied().or(after);
+            !self.noding.passed[path[k] as usize] || before == after
+        };
+        let nodes: Vec<usize> = (0..path.len()).filter(|&k| node(k)).collect();
+        for pair in nodes.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            self.edge(path[from], &path[from + 1..to], &[], path[to], across);
+        }
+        let (first, last) = (nodes.first().copied(), nodes.last().copied());
+        let end = path.len();
+        Loose {
+            ring,
+            first: first.map(|k| path[k]),
+            head: path[..first.unwrap_or(end)].to_vec(),
+            tail: path[last.unwrap_or(end)..].to_vec(),
+        }
+    }
+
+    /// Joins the parts of rings that several tasks share.
+    fn join(&mut self, rings: Rings, loose: Vec<Vec<Loose>>) {
+        let loose: Vec<Loose> = loose.into_iter().flatten().collect();
+        for parts in loose.chunk_by(|a, b| a.ring == b.ring) {
+            let across = rings.sources[parallel::range(rings.ends, parts[0].ring).start].across();
+            // From the last node on; before the first one from the ring's start on.
+            let mut run: Vec<u32> = Vec::new();
+            let mut start: Option<(Vec<u32>, u32)> = None;
+            for part in parts {
+                run.extend_from_slice(&part.head);
+                let Some(first) = part.first else { continue };
+                match start {
+                    None => start = Some((std::mem::take(&mut run), first)),
+                    Some(_) => self.edge(run[0], &run[1..], &[], first, across),
+                }
+                run.clone_from(&part.tail);
+            }
+            match start {
+                Some((head, first)) => self.edge(run[0], &run[1..], &head, first, across),
+                None if run.len() > 1 => self.edge(run[0], &run[1..], &[], run[0], across),
+                None => {}
+            }
+        }
+    }
+
+    fn edge(&mut self, from: u32, inner: &[u32], more: &[u32], to: u32, across: Winding) {
+        if inner.is_empty() && more.is_empty() {
+            return self.straight(from, to, across);
+        }
+        let start = self.inner.len() as u32;
+        self.inner.extend_from_slice(inner);
+        self.inner.extend_from_slice(more);
+        let inner = [start, self.inner.len() as u32];
+        self.push(Edge { low: from, high: to, step: across, inner });
+    }
+
+    #[inline(always)]
+    fn straight(&mut self, from: u32, to: u32, across: Winding) {
+        let nodes = &self.noding.nodes;
+        let edge = if nodes[from as usize] < nodes[to as usize] {
+            Edge { low: from, high: to, step: across, inner: [0; 2] }
+        } else {
+            let step = Winding::default().minus(across);
+            Edge { low: to, high: from, step, inner: [0; 2] }
+        };
+        self.push(edge);
+    }
+
+    #[inline(always)]
+    fn push(&mut self, edge: Edge) {
+        if !self.patch.1.contains(&(edge.low as usize)) {
+            let ends = &self.noding.patch_ends;
+            let patch = ends.partition_point(|&end| end <= edge.low);
+            self.patch = (patch, parallel::range(ends, patch));
+        }
+        self.patches[self.patch.0].push(edge);
+    }
+}

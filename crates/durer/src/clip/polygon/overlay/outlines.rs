@@ -1,0 +1,154 @@
+//! The rings of both inputs in the order in which they are worked on, and their edges on the grid.
+
+use std::ops::Range;
+
+use super::lattice::{Coord, Lattice, Segment};
+use super::parallel;
+use super::{Operand, Source};
+use crate::clip::polygon::Shapes;
+use crate::math::{DVec2, Rect};
+
+/// How many points one task handles: large enough to hide the cost of a task.
+const TASK: usize = if cfg!(test) { 8 } else { 1 << 14 };
+
+/// Rings per square of the rough grid that their order is taken from.
+const PER_SQUARE: f64 = 4.0;
+
+/// Where at most one ring in so many starts away from the one before, rings stay in their order.
+const FEW_JUMPS: usize = 8;
+
+/// A ring of the input.
+#[derive(Debug, Clone)]
+struct Outline {
+    operand: Operand,
+    /// Indices into its operand's points.
+    points: Range<usize>,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct Outlines {
+    rings: Vec<Outline>,
+    /// Where the edges of each ring end among all edges.
+    pub ends: Vec<u32>,
+}
+
+impl Outlines {
+    /// The rings that `matters` accepts, those that start close together one after the other, so
+    /// that all that follows finds its data in the cache.
+    pub fn new(
+        inputs: [(&Shapes, Operand); 2],
+        bounds: Rect,
+        matters: impl Fn(Operand, &[DVec2]) -> bool,
+    ) -> Self {
+        let mut rings = Vec::new();
+        let mut starts = Vec::new();
+        for (shapes, operand) in inputs {
+            for ring in 0..shapes.ring_count() {
+                let points = shapes.ring_range(ring);
+                let ring = &shapes.points()[points.clone()];
+                let Some(&first) = ring.first() else { continue };
+                if matters(operand, ring) {
+                    rings.push(Outline { operand, points });
+                    starts.push(first);
+                }
+            }
+        }
+        if let Some(order) = order(&starts, bounds) {
+            rings = order.iter().map(|&i| rings[i as usize].clone()).collect();
+        }
+        let ends = parallel::ends(rings.iter().map(|ring| ring.points.len()));
+        Self { rings, ends }
+    }
+
+    /// One segment for each point, that to the next point of its ring, which may be the same one.
+    #[inline(never)]
+    pub fn segments<C: Coord>(
+        &self,
+        inputs: [&Shapes; 2],
+        lattice: &Lattice,
+    ) -> (Vec<Segment<C>>, Vec<Source>) {
+        let count = self.ends.last().copied().unwrap_or(0) as usize;
+        let mut segments = vec![Segment::default(); count];
+        let mut sources = vec![Source::default(); count];
+        let tasks =
+            segments.chunks_mut(TASK).zip(sources.chunks_mut(TASK)).zip((0..).step_by(TASK));
+        parallel::map(tasks.collect(), |((segments, sources), start)| {
+            self.fill(inputs, lattice, start, segments, sources);
+        });
+        (segments, sources)
+    }
+
+    /// The edges from index `start` on.
+    fn fill<C: Coord>(
+        &self,
+        inputs: [&Shapes; 2],
+        lattice: &Lattice,
+        start: usize,
+        segments: &mut [Segment<C>],
+        sources: &mut [Source],
+    ) {
+        let mut out = segments.iter_mut().zip(sources);
+        let mut at = start;
+        let end = start + out.len();
+        let mut index = self.ends.partition_point(|&end| end as usize <= start);
+        while at < end {
+            let Outline { operand, ref points } = self.rings[index];
+            let range = parallel::range(&self.ends, index);
+            let shapes = inputs[operand as usize];
+            let point = |i: usize| lattice.snap::<C>(shapes.points()[i]);
+            let first = points.start + (at - range.start);
+            let last = points.start + (range.end.min(end) - range.start);
+            let mut from = point(first);
+            for ((segment, source), i) in out.by_ref().take(last - first).zip(first..last) {
+                let to = point(if i + 1 < points.end { i + 1 } else { points.start });
+                let reversed = from > to;
+                let (a, b) = if reversed { (to, from) } else { (from, to) };
+                *segment = Segment { a, b };
+                *source = Source::new(i, reversed, operand);
+                from = to;
+            }
+            at = range.end.min(end);
+            index += 1;
+        }
+    }
+}
+
+/// The order of points by the squares of a rough grid; `None` where they are in such an order.
+fn order(points: &[DVec2], bounds: Rect) -> Option<Vec<u32>> {
+    let size = bounds.max() - bounds.min();
+    let squares = points.len() as f64 / PER_SQUARE;
+    let side = (size.x / squares).max(1e-300) * size.y;
+    let side = side.sqrt().max(size.max_element() / squares.max(1.0));
+    if squares <= 1.0 || !side.is_normal() {
+        return None;
+    }
+    let columns = (size.x / side) as usize + 1;
+    let rows = (size.y / side) as usize + 1;
+    let square = |p: &DVec2| {
+        let at = (*p - bounds.min()) / side;
+        (at.y as usize).min(rows - 1) * columns + (at.x as usize).min(columns - 1)
+    };
+    let mut starts = vec![0u32; columns * rows + 1];
+    let (mut jumps, mut last) = (0, 0);
+    for p in points {
+        let index = square(p);
+        starts[index + 1] += 1;
+        let apart = index.abs_diff(last);
+        jumps += usize::from(apart > 1 && apart.abs_diff(columns) > 1);
+        last = index;
+    }
+    if jumps * FEW_JUMPS < points.len() {
+        return None;
+    }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut order = vec![0; points.len()];
+    for (p, i) in points.iter().zip(0..) {
+        let next = &mut starts[square(p)];
+        order[*next as usize] = i;
+        *next += 1;
+    }
+    Some(order)
+}
