@@ -416,7 +416,8 @@ impl<'a> Lit<'a> {
             }
             (points.points(simd, self.parallel_view), at.coordinates(simd))
         };
-        let color = info.material.shade_x8(simd, &points, &at, self.shared.lights, info.shading);
+        let (material, lights) = (info.material, self.shared.lights);
+        let color = PreparedMaterial::shade_x8(simd, material, &points, &at, lights, info.shading);
         [color.x.into(), color.y.into(), color.z.into()]
     }
 
