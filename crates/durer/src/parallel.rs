@@ -1,16 +1,49 @@
 //! Work on several threads, joined in order: results never depend on how many there are.
 
+use std::sync::{Mutex, PoisonError};
+
 /// Applies `f` to each item and gives the results in the order of the items.
 ///
 /// Runs on the current rayon pool where the feature `parallel` is on, else one after the other.
 pub fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    // Not worth a task: also keeps one thread from paying for others.
+    if items.len() < 2 || threads() == 1 {
+        return items.into_iter().map(f).collect();
+    }
+    let todo: Vec<_> = items.into_iter().map(|item| Mutex::new((Some(item), None))).collect();
+    for_each(todo.len(), &|i| {
+        let slot = || todo[i].lock().unwrap_or_else(PoisonError::into_inner);
+        let item = slot().0.take();
+        let result = item.map(&f);
+        slot().1 = result;
+    });
+    let done =
+        todo.into_iter().map(|slot| slot.into_inner().unwrap_or_else(PoisonError::into_inner));
+    done.filter_map(|(_, result)| result).collect()
+}
+
+/// How many threads share the work.
+pub fn threads() -> usize {
     #[cfg(feature = "parallel")]
     {
-        use rayon::prelude::*;
-        items.into_par_iter().with_max_len(1).map(f).collect()
+        rayon::current_num_threads()
     }
     #[cfg(not(feature = "parallel"))]
     {
-        items.into_iter().map(f).collect()
+        1
+    }
+}
+
+/// Calls `f` with each number below `count`. Not generic, so that rayon is compiled once and not for
+/// everything that is done on several threads.
+fn for_each(count: usize, f: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().with_max_len(1).for_each(f);
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        (0..count).for_each(f);
     }
 }

@@ -39,12 +39,11 @@ pub(super) fn display<L: Lane>(
             metallic_roughness::reflect(frame, position, &inputs.substance, lights)
                 .plus(inputs.emission)
         }
-        Shading::Flat => {
-            let frame = Frame { normal: frame.face, ..*frame };
-            phong_color(&frame, position, inputs, lit, lights)
+        Shading::Flat | Shading::Gouraud | Shading::Phong => {
+            let normal = if shading == Shading::Flat { frame.face } else { frame.normal };
+            let lit = lit.filter(|_| shading != Shading::Phong);
+            phong_color(&Frame { normal, ..*frame }, position, inputs, lit, lights)
         }
-        Shading::Gouraud => phong_color(frame, position, inputs, lit, lights),
-        Shading::Phong => phong_color(frame, position, inputs, None, lights),
     };
     tone::display(color)
 }

@@ -11,6 +11,7 @@ use crate::math::{Vec2, Vec4};
 use crate::scene::{Filter, MipFilter, Wrap};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, i32x8};
+use fearless_simd_macros::simd;
 
 /// Texture coordinates and how they change over the screen, in lanes.
 #[derive(Debug, Clone, Copy)]
@@ -36,17 +37,21 @@ impl PreparedTexture<'_> {
     }
 
     /// Red, green, blue and alpha of eight points, bit for bit what [`Self::sample`] gives.
-    #[inline(always)]
-    pub(super) fn sample_x8<S: Simd>(&self, simd: S, at: &TexCoords<f32x8<S>>) -> [f32x8<S>; 4] {
+    #[simd]
+    pub(super) fn sample_x8<S: Simd>(
+        simd: S,
+        this: &Self,
+        at: &TexCoords<f32x8<S>>,
+    ) -> [f32x8<S>; 4] {
         let mut colors = [Vec4::ZERO; 8];
-        if self.sampler.mip == MipFilter::None {
-            self.filtered_x8(simd, at.uv, &[self.chain.level(0); 8], &mut colors);
+        if this.sampler.mip == MipFilter::None {
+            Self::filtered_x8(simd, this, &at.uv, &[this.chain.level(0); 8], &mut colors);
         } else {
-            self.between_levels(simd, at, &mut colors);
+            this.between_levels(simd, at, &mut colors);
         }
         let mut channels = [[0.0; 8]; 4];
         for (i, color) in colors.iter().enumerate() {
-            let color = self.straight(*color).to_array();
+            let color = this.straight(*color).to_array();
             for (channel, value) in channels.iter_mut().zip(color) {
                 channel[i] = value;
             }
@@ -77,10 +82,10 @@ impl PreparedTexture<'_> {
                 }
             }
         }
-        self.filtered_x8(simd, at.uv, &levels, colors);
+        Self::filtered_x8(simd, self, &at.uv, &levels, colors);
         if mixed {
             let mut far = [Vec4::ZERO; 8];
-            self.filtered_x8(simd, at.uv, &next, &mut far);
+            Self::filtered_x8(simd, self, &at.uv, &next, &mut far);
             for i in 0..8 {
                 if weights[i] > 0.0 {
                     colors[i] = colors[i] * (1.0 - weights[i]) + far[i] * weights[i];
@@ -90,11 +95,11 @@ impl PreparedTexture<'_> {
     }
 
     /// Each point in its level; premultiplied where alpha weights the colour.
-    #[inline(always)]
+    #[simd]
     fn filtered_x8<S: Simd>(
-        &self,
         simd: S,
-        [u, v]: [f32x8<S>; 2],
+        this: &Self,
+        [u, v]: &[f32x8<S>; 2],
         levels: &[Level<'_>; 8],
         colors: &mut [Vec4; 8],
     ) {
@@ -103,15 +108,15 @@ impl PreparedTexture<'_> {
             (widths[i], heights[i]) = (levels[i].width as i32, levels[i].height as i32);
         }
         let width = i32x8::from_slice(simd, &widths);
-        let (x0, x1, tx) = linear_x8(simd, u, width, self.sampler.wrap_u);
+        let (x0, x1, tx) = linear_x8(simd, *u, width, this.sampler.wrap_u);
         let height = i32x8::from_slice(simd, &heights);
-        let (y0, y1, ty) = linear_x8(simd, v, height, self.sampler.wrap_v);
+        let (y0, y1, ty) = linear_x8(simd, *v, height, this.sampler.wrap_v);
         let (top, low) = (y0 * width, y1 * width);
         let index = |i: i32x8<S>| <[i32; 8]>::from(i);
         let (a, b, c, d) = (index(top + x0), index(top + x1), index(low + x0), index(low + x1));
         let (tx, ty): ([f32; 8], [f32; 8]) = (tx.into(), ty.into());
         for i in 0..8 {
-            let texel = |index: i32| self.texel(levels[i].texels, index as usize);
+            let texel = |index: i32| this.texel(levels[i].texels, index as usize);
             let top = texel(a[i]) * (1.0 - tx[i]) + texel(b[i]) * tx[i];
             let low = texel(c[i]) * (1.0 - tx[i]) + texel(d[i]) * tx[i];
             colors[i] = top * (1.0 - ty[i]) + low * ty[i];
@@ -180,13 +185,16 @@ mod tests {
     use crate::scene::{Image, Sampler};
     use crate::shade::lane::levels;
     use fearless_simd::dispatch;
-    use fearless_simd_macros::simd;
 
     #[simd]
     fn eight<S: Simd>(simd: S, texture: &PreparedTexture<'_>, at: &[[f32; 8]; 6]) -> [[f32; 8]; 4] {
         let lane = |i: usize| f32x8::from_slice(simd, &at[i]);
         let (uv, ddx) = ([lane(0), lane(1)], [lane(2), lane(3)]);
-        let colors = texture.sample_x8(simd, &TexCoords { uv, ddx, ddy: [lane(4), lane(5)] });
+        let colors = PreparedTexture::sample_x8(
+            simd,
+            texture,
+            &TexCoords { uv, ddx, ddy: [lane(4), lane(5)] },
+        );
         let [r, g, b, a] = colors;
         [r.into(), g.into(), b.into(), a.into()]
     }

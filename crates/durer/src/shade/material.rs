@@ -16,6 +16,7 @@ use super::{Shading, tone};
 use crate::math::{Vec3, Vec4};
 use crate::scene::{AlphaMode, Material, Scene, ShadingModel};
 use fearless_simd::{Simd, f32x8};
+use fearless_simd_macros::simd;
 
 /// Whether a formula takes Phong's inputs.
 fn by_phong(shading: Shading) -> bool {
@@ -125,20 +126,20 @@ impl<'a> PreparedMaterial<'a> {
     }
 
     /// Linear red, green and blue of eight points, each bit for bit what [`shade`] gives; the material
-    /// must be [looked up together](Self::looked_up_together). To be called inside a function with
-    /// the token's target features; it is always inlined. Cost: O(lights) and eight samples per texture.
-    #[inline(always)]
+    /// must be [looked up together](Self::looked_up_together). Cost: O(lights) and eight samples per
+    /// texture.
+    #[simd]
     pub fn shade_x8<S: Simd>(
-        &self,
         simd: S,
+        this: &Self,
         points: &Points<f32x8<S>>,
         at: &TexCoords<f32x8<S>>,
         lights: &PreparedLights,
         shading: Shading,
     ) -> Vec3Lane<f32x8<S>> {
         let like = points.position.x;
-        let mut base = Vec3Lane::splat(like, self.base_color.truncate());
-        if let Some(texel) = sampled_x8(simd, &self.base_color_slot, at) {
+        let mut base = Vec3Lane::splat(like, this.base_color.truncate());
+        if let Some(texel) = sampled_x8(simd, &this.base_color_slot, at) {
             base = base.times(texel.color());
         }
         if shading == Shading::Unlit {
@@ -146,12 +147,12 @@ impl<'a> PreparedMaterial<'a> {
         }
         let frame = face_viewer(points.view, points.geometric_normal, points.normal);
         let texels = Texels {
-            emissive: sampled_x8(simd, &self.emissive_slot, at),
-            occlusion: sampled_x8(simd, &self.occlusion_slot, at),
-            metallic_roughness: sampled_x8(simd, &self.metallic_roughness_slot, at),
-            specular: sampled_x8(simd, &self.specular_slot, at),
+            emissive: sampled_x8(simd, &this.emissive_slot, at),
+            occlusion: sampled_x8(simd, &this.occlusion_slot, at),
+            metallic_roughness: sampled_x8(simd, &this.metallic_roughness_slot, at),
+            specular: sampled_x8(simd, &this.specular_slot, at),
         };
-        let inputs = self.inputs(like, base, &texels, shading);
+        let inputs = this.inputs(like, base, &texels, shading);
         formula::display(&frame, points.position, &inputs, None, lights, shading)
     }
 

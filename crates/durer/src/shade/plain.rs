@@ -1,10 +1,12 @@
 //! Eight samples of one plain material at a time.
 
-use super::lane::{Lane, Vec3Lane};
+use super::lane::Vec3Lane;
 use super::light::PreparedLights;
 use super::material::PreparedMaterial;
 use super::normal::face_viewer;
 use super::{Shading, formula};
+use fearless_simd::{f32x8, prelude::*};
+use fearless_simd_macros::simd;
 
 /// Surface points, component by component; lanes without a sample may hold anything.
 #[derive(Debug, Clone, Copy)]
@@ -22,19 +24,20 @@ pub struct Points<L> {
 /// Linear red, green and blue of several samples, each bit for bit what [`super::shade`] gives.
 ///
 /// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
-/// looked at, alpha is 1. To be called inside a function with the token's target features
-/// (`fearless_simd::dispatch!` or `#[simd]`); it is always inlined. Cost: O(lights), a tenth of
-/// [`super::shade`] per sample where eight lanes are native.
-#[inline(always)]
-pub fn shade_points<L: Lane>(
-    points: &Points<L>,
+/// looked at, alpha is 1. Cost: O(lights), a tenth of [`super::shade`] per sample where eight lanes are
+/// native.
+#[simd]
+pub fn shade_points<S: Simd>(
+    simd: S,
+    points: &Points<f32x8<S>>,
     material: &PreparedMaterial<'_>,
     lights: &PreparedLights,
     shading: Shading,
-) -> Vec3Lane<L> {
+) -> [[f32; 8]; 3] {
     let frame = face_viewer(points.view, points.geometric_normal, points.normal);
     let inputs = material.constant_inputs(points.position.x);
-    formula::display(&frame, points.position, &inputs, None, lights, shading)
+    let color = formula::display(&frame, points.position, &inputs, None, lights, shading);
+    [color.x.into(), color.y.into(), color.z.into()]
 }
 
 #[cfg(test)]
@@ -44,8 +47,7 @@ mod tests {
     use crate::scene::{Camera, Light, LightKind, Material, Projection, ShadingModel};
     use crate::shade::lane::levels;
     use crate::shade::{PreparedMaterials, Surface, shade};
-    use fearless_simd::{dispatch, f32x8, prelude::*};
-    use fearless_simd_macros::simd;
+    use fearless_simd::dispatch;
 
     /// Eight points of test data.
     type Eight = [[[f32; 8]; 3]; 4];
@@ -70,8 +72,7 @@ mod tests {
             normal: load(simd, normal),
             geometric_normal: load(simd, geometric_normal),
         };
-        let color = shade_points(&points, material, lights, shading);
-        [color.x.into(), color.y.into(), color.z.into()]
+        shade_points(simd, &points, material, lights, shading)
     }
 
     fn camera() -> Camera {

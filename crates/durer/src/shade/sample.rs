@@ -8,6 +8,7 @@ use super::metallic_roughness::Substance;
 use super::normal::Frame;
 use super::phong::Shininess;
 use fearless_simd::{f32x8, prelude::*};
+use fearless_simd_macros::simd;
 
 /// A point of a surface with everything that its material's textures say of it, ready to be lit.
 #[derive(Debug, Clone, Copy)]
@@ -72,33 +73,32 @@ impl Samples {
         self.shininess = inputs.shininess;
     }
 
-    /// Linear red, green and blue, each bit for bit what [`super::shade`] gives. To be called inside a
-    /// function with the token's target features; it is always inlined. Cost: O(lights).
-    #[inline(always)]
+    /// Linear red, green and blue, each bit for bit what [`super::shade`] gives. Cost: O(lights).
+    #[simd]
     pub fn shade<S: Simd>(
-        &self,
         simd: S,
+        this: &Self,
         lights: &PreparedLights,
         shading: Shading,
     ) -> [[f32; 8]; 3] {
         let frame = Frame {
-            view: self.vector(simd, 0),
-            face: self.vector(simd, 3),
-            normal: self.vector(simd, 6),
+            view: this.vector(simd, 0),
+            face: this.vector(simd, 3),
+            normal: this.vector(simd, 6),
         };
-        let position = self.vector(simd, 9);
+        let position = this.vector(simd, 9);
         let substance = Substance {
-            base: self.vector(simd, 12),
-            metallic: f32x8::from_slice(simd, &self.numbers[15]),
-            roughness: f32x8::from_slice(simd, &self.numbers[16]),
-            occlusion: f32x8::from_slice(simd, &self.numbers[17]),
+            base: this.vector(simd, 12),
+            metallic: f32x8::from_slice(simd, &this.numbers[15]),
+            roughness: f32x8::from_slice(simd, &this.numbers[16]),
+            occlusion: f32x8::from_slice(simd, &this.numbers[17]),
         };
         let inputs = Inputs {
             substance,
-            diffuse: self.vector(simd, 18),
-            specular: self.vector(simd, 21),
-            shininess: self.shininess,
-            emission: self.vector(simd, 24),
+            diffuse: this.vector(simd, 18),
+            specular: this.vector(simd, 21),
+            shininess: this.shininess,
+            emission: this.vector(simd, 24),
         };
         let color = formula::display(&frame, position, &inputs, None, lights, shading);
         [color.x.into(), color.y.into(), color.z.into()]

@@ -44,7 +44,7 @@ impl Slot<'_> {
             ddx: [sum(at.ddx, u), sum(at.ddx, v)],
             ddy: [sum(at.ddy, u), sum(at.ddy, v)],
         };
-        self.texture.sample_x8(simd, &at)
+        PreparedTexture::sample_x8(simd, &self.texture, &at)
     }
 }
 

@@ -129,6 +129,28 @@ impl BandFiller {
         }
     }
 
+    /// Adds the edges of a path to the cells; says whether there are pixels that have to be resolved.
+    fn collect(&mut self, path: &PathEdges, top: i32, exact: bool) -> bool {
+        let (cells, resolver, Extent { rows, first, words }) = self.choose(path, top);
+        if !exact {
+            path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
+            return false;
+        }
+        cells.any_shared = 0;
+        let mut edges = 0;
+        path.for_each(top, first, |edge| {
+            cells.add::<true>(&edge, top);
+            edges += 1;
+        });
+        let any = cells.any_shared != 0;
+        let shared = if any { resolver.begin(cells, rows, words, edges) } else { 0 };
+        if shared != 0 {
+            let marks = |row: i32| cells.marks_of(row);
+            path.for_each(top, first, |edge| resolver.add(&edge, top, shared, marks));
+        }
+        shared != 0
+    }
+
     /// Fills one path: hands the coverage of its rows, from the top, to the sink.
     #[simd]
     pub fn fill<S: Simd, K: Sink<S>>(
@@ -140,26 +162,9 @@ impl BandFiller {
         exact: bool,
         sink: &mut K,
     ) {
+        let resolved = this.collect(path, top, exact && !path.convex);
         let width = this.width;
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
-        let mut resolved = false;
-        if exact && !path.convex {
-            cells.any_shared = 0;
-            let mut edges = 0;
-            path.for_each(top, first, |edge| {
-                cells.add::<true>(&edge, top);
-                edges += 1;
-            });
-            let any = cells.any_shared != 0;
-            let shared = if any { resolver.begin(cells, rows, words, edges) } else { 0 };
-            resolved = shared != 0;
-            if resolved {
-                let marks = |row: i32| cells.marks_of(row);
-                path.for_each(top, first, |edge| resolver.add(&edge, top, shared, marks));
-            }
-        } else {
-            path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
-        }
         for row in rows.0..rows.1 {
             let (cells, marks) = cells.row(row);
             let resolver = resolved.then_some(&mut *resolver);

@@ -16,6 +16,7 @@ use crate::visibility::surface::setup::Run;
 use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
+use fearless_simd_macros::simd;
 
 /// Sets of texture coordinates that are looked at.
 const TEX_COORD_SETS: usize = 4;
@@ -299,10 +300,10 @@ impl<'a> Lit<'a> {
     /// Linear RGB of up to eight pixels in a row from `x`: those with an item.
     ///
     /// Where the material allows it they are lit eight at a time, else one by one; the bits are the same.
-    #[inline(always)]
+    #[simd]
     pub fn colors_x8<S: Simd>(
-        &mut self,
         simd: S,
+        this: &mut Lit<'_>,
         items: &[u32; 8],
         x: i32,
         y: i32,
@@ -313,14 +314,14 @@ impl<'a> Lit<'a> {
             if done[i] || items[i] == NO_ITEM {
                 continue;
             }
-            let info = self.run_info(items[i]);
+            let info = this.run_info(items[i]);
             if info.plain && i == 0 && *items == [items[0]; 8] {
-                return self.one_triangle_x8(simd, &info, items[0], [x, y], colors);
+                return this.one_triangle_x8(simd, &info, items[0], [x, y], colors);
             }
             if info.plain || info.together {
-                self.run_x8(simd, &info, items, [x, y], &mut done, colors);
+                this.run_x8(simd, &info, items, [x, y], &mut done, colors);
             } else {
-                let color = self.color(items[i], x + i as i32, y);
+                let color = this.color(items[i], x + i as i32, y);
                 set_lane(colors, i, color.truncate());
             }
         }
@@ -339,8 +340,7 @@ impl<'a> Lit<'a> {
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, info.run);
         let points = points_x8(simd, t, [x, y], parallel);
-        let color = shade_points(&points, info.material, self.shared.lights, info.shading);
-        *colors = [color.x.into(), color.y.into(), color.z.into()];
+        *colors = shade_points(simd, &points, info.material, self.shared.lights, info.shading);
     }
 
     /// Shades all of eight pixels whose items belong to one run.
@@ -416,7 +416,8 @@ impl<'a> Lit<'a> {
             }
             (points.points(simd, self.parallel_view), at.coordinates(simd))
         };
-        let color = info.material.shade_x8(simd, &points, &at, self.shared.lights, info.shading);
+        let (material, lights) = (info.material, self.shared.lights);
+        let color = PreparedMaterial::shade_x8(simd, material, &points, &at, lights, info.shading);
         [color.x.into(), color.y.into(), color.z.into()]
     }
 
@@ -434,7 +435,7 @@ impl<'a> Lit<'a> {
         for i in (0..8).filter(|&i| mine[i] != 0) {
             samples.set(i, &self.sample(items[i], x + i as i32, y));
         }
-        samples.shade(simd, self.shared.lights, info.shading)
+        Samples::shade(simd, &samples, self.shared.lights, info.shading)
     }
 
     /// What the textures say of an item at a pixel's centre.
@@ -452,8 +453,7 @@ impl<'a> Lit<'a> {
         gathered: &Gathered,
     ) -> [[f32; 8]; 3] {
         let points = gathered.points(simd, self.parallel_view);
-        let color = shade_points(&points, info.material, self.shared.lights, info.shading);
-        [color.x.into(), color.y.into(), color.z.into()]
+        shade_points(simd, &points, info.material, self.shared.lights, info.shading)
     }
 
     /// Adds a pixel of an item to a queue that is not full.

@@ -4,6 +4,7 @@ use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, unpremultiply};
 use crate::visibility::surface::lit::{Lit, Queue, Queued};
 use fearless_simd::Simd;
+use fearless_simd_macros::simd;
 
 /// The sums of colours of pixels so far, and what still waits to be lit.
 pub struct Mixed {
@@ -54,7 +55,7 @@ impl Mixed {
         match lit.queue(simd, item, at, &mut self.queue) {
             Queued::Done => {}
             Queued::OtherRun => {
-                self.flush(simd, lit);
+                Self::flush(simd, self, lit);
                 lit.queue(simd, item, at, &mut self.queue);
             }
             Queued::Never => {
@@ -64,21 +65,21 @@ impl Mixed {
         }
         self.waiting[(self.queue.count - 1) % 8] = (index, weight);
         if self.queue.count == 8 {
-            self.flush(simd, lit);
+            Self::flush(simd, self, lit);
         }
     }
 
     /// Lights what waits.
-    #[inline(always)]
-    pub fn flush<S: Simd>(&mut self, simd: S, lit: &mut Lit<'_>) {
-        if self.queue.count == 0 {
+    #[simd]
+    pub fn flush<S: Simd>(simd: S, this: &mut Self, lit: &mut Lit<'_>) {
+        if this.queue.count == 0 {
             return;
         }
-        let [r, g, b] = lit.shade_queue(simd, &self.queue);
-        for (i, (pixel, weight)) in self.waiting.into_iter().take(self.queue.count).enumerate() {
-            self.add_color(pixel, Vec4::new(r[i], g[i], b[i], 1.0), weight);
+        let [r, g, b] = lit.shade_queue(simd, &this.queue);
+        for (i, (pixel, weight)) in this.waiting.into_iter().take(this.queue.count).enumerate() {
+            this.add_color(pixel, Vec4::new(r[i], g[i], b[i], 1.0), weight);
         }
-        self.queue.count = 0;
+        this.queue.count = 0;
     }
 }
 

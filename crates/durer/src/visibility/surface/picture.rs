@@ -162,7 +162,7 @@ fn color_row<S: Simd>(
         items[..of_out.len()].copy_from_slice(of_out);
         let mut colors = [[0.0; 8]; 3];
         if items != [NO_ITEM; 8] {
-            lit.colors_x8(simd, &items, x + 8 * eight as i32, y, &mut colors);
+            Lit::colors_x8(simd, lit, &items, x + 8 * eight as i32, y, &mut colors);
         }
         let [r, g, b] = colors;
         for (i, to) in out.iter_mut().enumerate() {

@@ -299,25 +299,37 @@ pub fn spatial_order<C: Coord>(segments: &[Segment<C>], block: Block) -> Option<
     let (width, height) = block.size();
     let length = segments.iter().map(|s| s.length(width, height)).sum();
     let frame = Frame::of(block, segments.len(), Spread { occupied: 1.0, length })?;
-    let square = |s: &Segment<C>| frame.index(s.a.x.i64(), s.a.y.i64());
-    let mut starts = vec![0u32; frame.columns * frame.rows + 1];
+    let square = |i: usize| frame.index(segments[i].a.x.i64(), segments[i].a.y.i64());
+    let size = [frame.columns, frame.rows];
+    order_by_squares(segments.len(), size, square, FEW_JUMPS)
+}
+
+/// The order of things by the squares of a grid, column by column along each row; `None` where at
+/// most one in `few_jumps` is not in or beside the square of the one before.
+pub fn order_by_squares(
+    count: usize,
+    [columns, rows]: [usize; 2],
+    square: impl Fn(usize) -> usize,
+    few_jumps: usize,
+) -> Option<Vec<u32>> {
+    let mut starts = vec![0u32; columns * rows + 1];
     let (mut jumps, mut last) = (0, 0);
-    for s in segments {
-        let index = square(s);
+    for i in 0..count {
+        let index = square(i);
         starts[index + 1] += 1;
         let apart = index.abs_diff(last);
-        jumps += usize::from(apart > 1 && apart.abs_diff(frame.columns) > 1);
+        jumps += usize::from(apart > 1 && apart.abs_diff(columns) > 1);
         last = index;
     }
-    if jumps * FEW_JUMPS < segments.len() {
+    if jumps * few_jumps < count {
         return None;
     }
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
     }
-    let mut order = vec![0; segments.len()];
-    for (i, s) in segments.iter().enumerate() {
-        let next = &mut starts[square(s)];
+    let mut order = vec![0; count];
+    for i in 0..count {
+        let next = &mut starts[square(i)];
         order[*next as usize] = i as u32;
         *next += 1;
     }

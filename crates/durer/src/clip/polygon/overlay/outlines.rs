@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::grid::order_by_squares;
 use super::lattice::{Coord, Lattice, Segment};
 use super::parallel;
 use super::{Operand, Source};
@@ -125,30 +126,9 @@ fn order(points: &[DVec2], bounds: Rect) -> Option<Vec<u32>> {
     }
     let columns = (size.x / side) as usize + 1;
     let rows = (size.y / side) as usize + 1;
-    let square = |p: &DVec2| {
-        let at = (*p - bounds.min()) / side;
+    let square = |i: usize| {
+        let at = (points[i] - bounds.min()) / side;
         (at.y as usize).min(rows - 1) * columns + (at.x as usize).min(columns - 1)
     };
-    let mut starts = vec![0u32; columns * rows + 1];
-    let (mut jumps, mut last) = (0, 0);
-    for p in points {
-        let index = square(p);
-        starts[index + 1] += 1;
-        let apart = index.abs_diff(last);
-        jumps += usize::from(apart > 1 && apart.abs_diff(columns) > 1);
-        last = index;
-    }
-    if jumps * FEW_JUMPS < points.len() {
-        return None;
-    }
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let mut order = vec![0; points.len()];
-    for (p, i) in points.iter().zip(0..) {
-        let next = &mut starts[square(p)];
-        order[*next as usize] = i;
-        *next += 1;
-    }
-    Some(order)
+    order_by_squares(points.len(), [columns, rows], square, FEW_JUMPS)
 }

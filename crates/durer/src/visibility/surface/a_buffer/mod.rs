@@ -306,7 +306,7 @@ impl Rows<'_> {
                 mixed.sums[x as usize] += behind * pixel.background;
             }
         }
-        mixed.flush(simd, lit);
+        Mixed::flush(simd, mixed, lit);
     }
 }
 

@@ -164,7 +164,7 @@ fn resolve_opaque<S: Simd>(
             }
         }
     }
-    mixed.flush(simd, lit);
+    Mixed::flush(simd, mixed, lit);
     for pixel in mixed.pixels.drain(..) {
         let (x, y) = (pixel as usize % TILE as usize, pixel as usize / TILE as usize);
         output.color[y * output.stride + x] = encode(mixed.sums[pixel as usize]);
@@ -202,7 +202,7 @@ fn resolve_eight<S: Simd>(
         return out.fill(behind);
     }
     let mut colors = [[0.0; 8]; 3];
-    lit.colors_x8(simd, whole, x, y, &mut colors);
+    Lit::colors_x8(simd, lit, whole, x, y, &mut colors);
     let encoded = encode_opaque_x8(simd, &colors);
     if whole.iter().all(|&item| item != NO_ITEM) {
         out.copy_from_slice(&encoded[..out.len()]);
