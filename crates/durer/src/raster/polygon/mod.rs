@@ -1,9 +1,9 @@
 //! Polygons by their pixels' centres: scan conversion without smoothing, two ways.
 //!
 //! Both snap vertices to 1/256 of a pixel, decide with exact arithmetic from there on, and emit the same spans:
-//! row by row from the top, from left to right, none of a row touching another. A pixel belongs to the polygon if its centre does; a centre on
-//! the border belongs to a left and an upper edge (y down), not to a right or lower one, so faces that share
-//! edges light each pixel once.
+//! row by row from the top, from left to right, none of a row touching another. A pixel belongs to the polygon
+//! if its centre does; a centre on the border belongs to a left and an upper edge (y down), not to a right or
+//! lower one, so faces that share edges light each pixel once.
 //!
 //! ```
 //! use durer::curve::{Path, flatten};
