@@ -138,12 +138,15 @@ pub(super) fn reach<L: Lane>(
 ) -> L {
     let one = position.x.splat(1.0);
     match maps {
-        Some(maps) if !maps.is_empty() => {
-            let (p, n, l) = (position, face, to_light);
-            L::lanewise([p.x, p.y, p.z, n.x, n.y, n.z, l.x, l.y, l.z], |v| reach_one(maps, v))
-        }
+        Some(maps) if !maps.is_empty() => reach_by(maps, position, face, to_light),
         _ => one,
     }
+}
+
+/// Not inlined: formulas would make ready for it before they know that there are maps.
+#[inline(never)]
+fn reach_by<L: Lane>(maps: &[ShadowMap], p: Vec3Lane<L>, n: Vec3Lane<L>, l: Vec3Lane<L>) -> L {
+    L::lanewise([p.x, p.y, p.z, n.x, n.y, n.z, l.x, l.y, l.z], |v| reach_one(maps, v))
 }
 
 #[inline(never)]

@@ -109,7 +109,14 @@ impl<'a> Picture<'a> {
     /// Writes row `y` of the colour plane from linear, premultiplied colours.
     pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
         let row = self.framebuffer.color.row_mut(y);
-        row.iter_mut().zip(sums).for_each(|(to, &sum)| *to = encode(sum));
+        // Neighbours are often alike: the background, what one colour fills.
+        let (mut last, mut code) = (Vec4::ZERO, encode(Vec4::ZERO));
+        for (to, &sum) in row.iter_mut().zip(sums) {
+            if sum != last {
+                (last, code) = (sum, encode(sum));
+            }
+            *to = code;
+        }
     }
 
     /// Writes one pixel of the colour plane from a linear, premultiplied colour.

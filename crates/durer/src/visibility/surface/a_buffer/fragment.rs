@@ -49,10 +49,12 @@ pub struct Face {
 
 impl Face {
     pub fn new(t: &ScreenTriangle, triangle: u32, coverage: Coverage) -> Self {
-        let edges = [0, 1, 2].map(|i| {
+        let edge = |i| {
             let [a, b] = edge_slope(t, i);
             Direction::new(a as f32, b as f32)
-        });
+        };
+        // Not by `map`, which would be a call.
+        let edges = [edge(0), edge(1), edge(2)];
         let half_depth = 0.5 * (t.depth_dx.abs() + t.depth_dy.abs());
         let far = (t.depth_max >= 1.0).then(|| Direction::new(-t.depth_dx, -t.depth_dy));
         Self { triangle, coverage, edges, slopes: slopes(t), half_depth, far }

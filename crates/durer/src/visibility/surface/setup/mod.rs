@@ -194,21 +194,23 @@ impl<'a> Assembler<'a> {
             let part = start..range.end.min(start.saturating_add(most));
             start = part.end;
             let first = self.transform_vertices(mesh, transform, &part, &mut vertices);
-            for triangle in part.clone() {
-                let corners = mesh.triangle(triangle as usize);
-                let at = match first {
-                    Some(first) => {
-                        let [a, b, c] = corners;
-                        [a - first, b - first, c - first].map(|i| i as usize)
+            let items = run.first_item + (part.start - run.range.start)..;
+            match (first, &mesh.indices) {
+                (Some(first), Some(indices)) => {
+                    let corners = &indices[3 * part.start as usize..3 * part.end as usize];
+                    for (&[a, b, c], item) in corners.as_chunks().0.iter().zip(items) {
+                        let at = |corner: u32| &vertices[(corner - first) as usize];
+                        let v = [at(a), at(b), at(c)];
+                        self.assemble(mesh, transform, [a, b, c], v, item, emit);
                     }
-                    None => {
-                        let i = 3 * (triangle - part.start) as usize;
-                        [i, i + 1, i + 2]
+                }
+                _ => {
+                    let of_triangles = part.zip(vertices.as_chunks().0).zip(items);
+                    for ((triangle, [a, b, c]), item) in of_triangles {
+                        let corners = mesh.triangle(triangle as usize);
+                        self.assemble(mesh, transform, corners, [a, b, c], item, emit);
                     }
-                };
-                let v = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
-                let item = run.first_item + (triangle - run.range.start);
-                self.assemble(mesh, transform, corners, v, item, emit);
+                }
             }
         }
         self.vertices = vertices;

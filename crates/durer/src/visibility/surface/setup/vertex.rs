@@ -145,22 +145,36 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     let (grid_x, grid_y) = (x * snap_scale, y * snap_scale);
     let (snapped_x, snapped_y) = (grid_x + magic, grid_y + magic);
     let (rest_x, rest_y) = (grid_x - (snapped_x - magic), grid_y - (snapped_y - magic));
-    for i in 0..4 {
-        let bit = |mask: u64, code: u32| ((mask >> i) as u32 & 1) * code;
+    let [first, second, third, fourth] = codes([
+        (left, code::LEFT),
+        (right, code::RIGHT),
+        (top, code::TOP),
+        (bottom, code::BOTTOM),
+        (near, code::NEAR),
+        (far, code::FAR),
+        (outside_guard, code::GUARD),
+        (non_finite, code::NON_FINITE),
+    ]);
+    for (i, code) in [first, second, third, fourth].into_iter().enumerate() {
         to[i] = ScreenVertex {
             x: snapped_x[i].to_bits() as i32,
             y: snapped_y[i].to_bits() as i32,
             rest_x: rest_x[i] as f32,
             rest_y: rest_y[i] as f32,
             depth: z[i] as f32,
-            code: bit(left, code::LEFT)
-                | bit(right, code::RIGHT)
-                | bit(top, code::TOP)
-                | bit(bottom, code::BOTTOM)
-                | bit(near, code::NEAR)
-                | bit(far, code::FAR)
-                | bit(outside_guard, code::GUARD)
-                | bit(non_finite, code::NON_FINITE),
+            code,
         };
     }
+}
+
+/// From masks whose bit i is set where vertex i is beyond a border, and the border's code, to the codes of
+/// the four vertices.
+#[inline(always)]
+fn codes(borders: [(u64, u32); 8]) -> [u32; 4] {
+    // A byte per vertex: the product puts bit i of the mask at bit 8 · i.
+    let mut all = 0_u32;
+    for (mask, code) in borders {
+        all |= ((mask as u32 & 15).wrapping_mul(0x0020_4081) & 0x0101_0101) * code;
+    }
+    all.to_le_bytes().map(u32::from)
 }

@@ -92,6 +92,15 @@ impl Bins {
     }
 }
 
+/// Whether anything touches each tile of the screen.
+pub fn occupied(bins: &[Bins], view: &View) -> Vec<bool> {
+    let mut occupied = vec![false; TileGrid::new(view.width(), view.height()).count() as usize];
+    for &(tile, _) in bins.iter().flat_map(|bins| &bins.starts) {
+        occupied[tile as usize] = true;
+    }
+    occupied
+}
+
 /// Sorts (tile, triangle) pairs by tile, keeping the order of the triangles.
 fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> (Vec<(u32, u32)>, Vec<u32>) {
     let mut next = vec![0u32; tiles as usize + 1];

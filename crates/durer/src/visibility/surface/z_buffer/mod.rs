@@ -18,13 +18,14 @@ mod tile;
 use crate::info::{Class, Info};
 use crate::math::Vec4;
 use crate::scene::Scene;
+use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{Lighting, Lit};
-use crate::visibility::surface::mixed::Mixed;
+use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
@@ -122,7 +123,8 @@ pub fn render(
         level: options.level,
     };
     let triangle_count = scene.triangle_count() as u32;
-    let frame = Frame { view, options, lighting, bins: &bins, triangle_count };
+    let occupied = bins::occupied(&bins, view);
+    let frame = Frame { view, options, lighting, bins: &bins, occupied, triangle_count };
     crate::parallel::map(bands(framebuffer), |band| frame.render_band(band));
     report.raster_seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -165,6 +167,8 @@ struct Frame<'a> {
     options: &'a Options,
     lighting: Lighting<'a>,
     bins: &'a [Bins],
+    /// Whether there is anything in each tile.
+    occupied: Vec<bool>,
     /// Items from here on are lines and points, which the item plane does not show.
     triangle_count: u32,
 }
@@ -200,7 +204,11 @@ impl<'a> Frame<'a> {
                 TILE.min(self.view.height() as i32 - tile[1]),
             ];
             let index = (band.row * grid.columns + column) as u32;
-            self.color_tile(&mut band, &mut scratch, [tile, size], index);
+            if self.occupied[index as usize] {
+                self.color_tile(&mut band, &mut scratch, [tile, size], index);
+            } else {
+                self.empty_tile(&mut band, [tile, size]);
+            }
             if wants_center {
                 self.center_tile(&mut band, &mut scratch, [tile, size], index);
             }
@@ -244,6 +252,16 @@ impl<'a> Frame<'a> {
                 let triangles = part.iter().copied();
                 rasterize(simd, planes, area, triangles, None::<&mut AllPass>)
             });
+        }
+    }
+
+    /// The colours of a tile that shows nothing but the background.
+    fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
+        let background = background_rows(self.options.background, self.view.height());
+        for y in 0..size[1] {
+            let start = y as usize * band.width + tile[0] as usize;
+            let row = &mut band.color[start..start + size[0] as usize];
+            row.fill(encode(premultiply(background(tile[1] + y))));
         }
     }
 

@@ -59,7 +59,8 @@ impl Edges {
 /// Pixels on a top or left edge belong to the triangle, on others they do not.
 #[inline(always)]
 fn top_left(dx: i32, dy: i32) -> bool {
-    dy < 0 || (dy == 0 && dx > 0)
+    // dy < 0, or it is 0 and dx > 0; as one sign, for edges take turns and cannot be foreseen.
+    (i64::from(dy) << 33) - i64::from(dx) < 0
 }
 
 /// Edge functions of eight samples, in i32.

@@ -1,0 +1,298 @@
+//! Lighting visible items eight pixels at a time, where their materials allow it.
+
+use super::{Lit, RunInfo};
+use crate::math::{Vec2, Vec3};
+use crate::shade::lane::Vec3Lane;
+use crate::shade::{Points, PreparedMaterial, Sample, Samples, shade_points};
+use crate::target::NO_ITEM;
+use crate::visibility::surface::attributes::VisibleTriangle;
+use crate::visibility::surface::gather::{Gathered, points};
+use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, u32x8};
+use fearless_simd_macros::simd;
+
+/// Eight pixels in a row that change the triangle at most as often are interpolated triangle by triangle,
+/// others pixel by pixel.
+const FEW_CHANGES: u32 = 2;
+
+impl<'a> Lit<'a> {
+    /// Linear RGB of up to eight pixels in a row from `x`: those with an item.
+    ///
+    /// Where the material allows it they are lit eight at a time, else one by one; the bits are the same.
+    #[simd]
+    pub fn colors_x8<S: Simd>(
+        simd: S,
+        this: &mut Lit<'_>,
+        items: &[u32; 8],
+        x: i32,
+        y: i32,
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let mut done = [false; 8];
+        for i in 0..8 {
+            if done[i] || items[i] == NO_ITEM {
+                continue;
+            }
+            let info = this.run_info(items[i]);
+            if info.plain && i == 0 && *items == [items[0]; 8] {
+                return this.one_triangle_x8(simd, &info, items[0], [x, y], colors);
+            }
+            if info.plain || info.together {
+                this.run_x8(simd, &info, items, [x, y], &mut done, colors);
+            } else {
+                let color = this.color(items[i], x + i as i32, y);
+                set_lane(colors, i, color.truncate());
+            }
+        }
+    }
+
+    /// Shades eight pixels that show one triangle of a plain run.
+    #[inline(always)]
+    fn one_triangle_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        item: u32,
+        [x, y]: [i32; 2],
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let parallel = self.parallel_view;
+        let t = self.triangles.get(item, info.run);
+        let points = points_x8(simd, t, [x, y], parallel);
+        *colors = shade_points(simd, &points, info.material, self.shared.lights, info.shading);
+    }
+
+    /// Shades all of eight pixels whose items belong to one run.
+    #[inline(always)]
+    fn run_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 8],
+        at: [i32; 2],
+        done: &mut [bool; 8],
+        colors: &mut [[f32; 8]; 3],
+    ) {
+        let mut mine = [0; 8];
+        for i in 0..8 {
+            if items[i].wrapping_sub(info.first_item) < info.count {
+                (done[i], mine[i]) = (true, u32::MAX);
+            }
+        }
+        let shaded = if info.plain {
+            self.plain_x8(simd, info, items, &mine, at)
+        } else if let Some(coords) = info.looked_up {
+            self.looked_up_x8(simd, (info, coords), items, &mine, at)
+        } else {
+            self.textured_x8(simd, info, items, &mine, at)
+        };
+        for (to, from) in colors.iter_mut().zip(&shaded) {
+            fill_axis(*from, &mine, to);
+        }
+    }
+
+    /// Shades the chosen of eight pixels, of a plain run.
+    #[inline(always)]
+    fn plain_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 8],
+        mine: &[u32; 8],
+        [x, y]: [i32; 2],
+    ) -> [[f32; 8]; 3] {
+        let mut changes = 0;
+        for i in 1..8 {
+            changes += u32::from(items[i] != items[i - 1]);
+        }
+        if changes <= FEW_CHANGES {
+            let points = self.points_of_few(simd, info.run, items, mine, [x, y]);
+            return shade_points(simd, &points, info.material, self.shared.lights, info.shading);
+        }
+        let mut gathered = Gathered::default();
+        for i in (0..8).filter(|&i| mine[i] != 0) {
+            let t = self.triangles.get(items[i], info.run);
+            gathered.set(simd, i, t, [x + i as i32, y]);
+        }
+        self.shade_gathered(simd, info, &gathered)
+    }
+
+    /// The points at the chosen of eight pixels in a row: all eight of each triangle, of which those that
+    /// show it are taken.
+    #[inline(always)]
+    fn points_of_few<S: Simd>(
+        &mut self,
+        simd: S,
+        run: usize,
+        items: &[u32; 8],
+        mine: &[u32; 8],
+        [x, y]: [i32; 2],
+    ) -> Points<f32x8<S>> {
+        let zero = f32x8::splat(simd, 0.0);
+        let shown = u32x8::from_slice(simd, items);
+        let (mut row, mut normal) = ([zero; 6], [zero; 3]);
+        let chosen = u32x8::from_slice(simd, mine).simd_ne(u32x8::splat(simd, 0));
+        let mut left = chosen.to_bitmask();
+        while left != 0 {
+            let item = items[left.trailing_zeros() as usize % 8];
+            let same = shown.simd_eq(u32x8::splat(simd, item));
+            left &= !same.to_bitmask();
+            let t = self.triangles.get(item, run);
+            let of_t = t.points_x8(simd, x, y);
+            let of_face = t.face_normal.to_array();
+            for (to, from) in row.iter_mut().zip(of_t) {
+                *to = same.select(from, *to);
+            }
+            for (to, from) in normal.iter_mut().zip(of_face) {
+                *to = same.select(f32x8::splat(simd, from), *to);
+            }
+        }
+        let [nx, ny, nz] = normal;
+        points(row, Vec3Lane::new(nx, ny, nz), self.parallel_view)
+    }
+
+    /// Shades the chosen of eight pixels, of a run whose textures are looked up together.
+    #[inline(always)]
+    fn looked_up_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        (info, coords): (&RunInfo<'a>, &[Vec2]),
+        items: &[u32; 8],
+        mine: &[u32; 8],
+        [x, y]: [i32; 2],
+    ) -> [[f32; 8]; 3] {
+        let one = *items == [items[0]; 8];
+        let (points, at) = if one {
+            let t = self.triangles.get(items[0], info.run);
+            let corners = t.corners.map(|c| coords[c as usize]);
+            let points = points_x8(simd, t, [x, y], self.parallel_view);
+            (points, coordinates_of_one(simd, t, [x, y], corners))
+        } else {
+            let (mut points, mut at) = (Gathered::default(), GatheredCoords::default());
+            for i in (0..8).filter(|&i| mine[i] != 0) {
+                let t = self.triangles.get(items[i], info.run);
+                let pixel = [x + i as i32, y];
+                points.set(simd, i, t, pixel);
+                at.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
+            }
+            (points.points(simd, self.parallel_view), at.coordinates(simd))
+        };
+        let (material, lights) = (info.material, self.shared.lights);
+        let color = PreparedMaterial::shade_x8(simd, material, &points, &at, lights, info.shading);
+        [color.x.into(), color.y.into(), color.z.into()]
+    }
+
+    /// Shades the chosen of eight pixels, of a run that is lit together.
+    #[inline(always)]
+    fn textured_x8<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 8],
+        mine: &[u32; 8],
+        [x, y]: [i32; 2],
+    ) -> [[f32; 8]; 3] {
+        let mut samples = Samples::default();
+        for i in (0..8).filter(|&i| mine[i] != 0) {
+            samples.set(i, &self.sample(items[i], x + i as i32, y));
+        }
+        Samples::shade(simd, &samples, self.shared.lights, info.shading)
+    }
+
+    /// What the textures say of an item at a pixel's centre.
+    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample {
+        self.with_surface(item, x, y, |surface, material, _, shading| {
+            material.sample(surface, shading)
+        })
+    }
+
+    #[inline(always)]
+    fn shade_gathered<S: Simd>(
+        &self,
+        simd: S,
+        info: &RunInfo<'a>,
+        gathered: &Gathered,
+    ) -> [[f32; 8]; 3] {
+        let points = gathered.points(simd, self.parallel_view);
+        shade_points(simd, &points, info.material, self.shared.lights, info.shading)
+    }
+
+    /// Adds a pixel of an item to a queue that is not full.
+    #[inline(always)]
+    pub fn queue<S: Simd>(
+        &mut self,
+        simd: S,
+        item: u32,
+        at: [i32; 2],
+        queue: &mut Queue,
+    ) -> Queued {
+        let RunInfo { run, first_item, plain, .. } = self.run_info(item);
+        if !plain {
+            return Queued::Never;
+        }
+        if queue.count > 0 && queue.first_item != first_item {
+            return Queued::OtherRun;
+        }
+        queue.first_item = first_item;
+        queue.gathered.set(simd, queue.count, self.triangles.get(item, run), at);
+        queue.count += 1;
+        Queued::Done
+    }
+
+    /// Shades the pixels that [`Self::queue`] has added.
+    #[inline(always)]
+    pub fn shade_queue<S: Simd>(&mut self, simd: S, queue: &Queue) -> [[f32; 8]; 3] {
+        let info = self.run_info(queue.first_item);
+        self.shade_gathered(simd, &info, &queue.gathered)
+    }
+}
+
+/// Whether an item has been queued.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Queued {
+    /// It has.
+    Done,
+    /// Not yet: what waits is of another run and has to be shaded first.
+    OtherRun,
+    /// Its pixels have to be shaded one by one.
+    Never,
+}
+
+/// Up to eight pixels of one plain run, from anywhere.
+#[derive(Default)]
+pub struct Queue {
+    gathered: Gathered,
+    /// How many pixels there are.
+    pub count: usize,
+    /// The first item of their run.
+    first_item: u32,
+}
+
+#[inline(always)]
+fn set_lane(lanes: &mut [[f32; 8]; 3], lane: usize, v: Vec3) {
+    lanes[0][lane] = v.x;
+    lanes[1][lane] = v.y;
+    lanes[2][lane] = v.z;
+}
+
+/// The points of a triangle at eight pixels in a row.
+#[inline(always)]
+fn points_x8<S: Simd>(
+    simd: S,
+    t: &VisibleTriangle,
+    [x, y]: [i32; 2],
+    parallel_view: Option<Vec3>,
+) -> Points<f32x8<S>> {
+    let geometric_normal = Vec3Lane::splat(f32x8::splat(simd, 0.0), t.face_normal);
+    points(t.points_x8(simd, x, y), geometric_normal, parallel_view)
+}
+
+#[inline(always)]
+fn fill_axis(from: [f32; 8], lanes: &[u32; 8], to: &mut [f32; 8]) {
+    // Bits instead of a choice, which would become a slow masked store.
+    for i in 0..8 {
+        let old = to[i].to_bits();
+        to[i] = f32::from_bits(old ^ ((old ^ from[i].to_bits()) & lanes[i]));
+    }
+}
