@@ -336,16 +336,21 @@ fn blended(
     t: &mut impl Tracer<Step>,
 ) -> Vec4 {
     let (x, y) = (place.x, place.y);
-    let colors: Vec<Vec4> = pixel
-        .fragments
-        .iter()
-        .map(|f| {
-            let color = lit.color(f.item, x, y);
-            if f.blended { color } else { color.truncate().extend(1.0) }
-        })
-        .collect();
-    let alphas: Vec<f32> = colors.iter().map(|c| c.w).collect();
-    pixel.resolve_blended(&alphas, place);
+    let mut color = |f: &Fragment| {
+        let color = lit.color(f.item, x, y);
+        if f.blended { color } else { color.truncate().extend(1.0) }
+    };
+    let mut colors = vec![Vec4::ZERO; pixel.fragments.len()];
+    if pixel.is_in_order() {
+        pixel.resolve_in_order(place.table.full(), |i, f| {
+            colors[i] = color(f);
+            colors[i].w
+        });
+    } else {
+        colors.iter_mut().zip(&pixel.fragments).for_each(|(to, f)| *to = color(f));
+        let alphas: Vec<f32> = colors.iter().map(|c| c.w).collect();
+        pixel.resolve_blended(&alphas, place);
+    }
     let mut sum = Vec4::ZERO;
     for ((f, &share), color) in pixel.fragments.iter().zip(&pixel.shares).zip(&colors) {
         t.step(|| Step::Share { x, item: f.item, share });
