@@ -66,7 +66,7 @@ fn all_methods_compose_what_the_z_buffer_sorts() {
 #[test]
 fn the_a_buffer_is_sorted_compositing() {
     const SIDE: u32 = 24;
-    // Behind the first dozen or two of sixty panes nothing is seen any more.
+    // Behind the first two or three dozen of sixty panes nothing is seen any more.
     for (seed, count) in (0..20).map(|seed| (seed, 9)).chain([(20, 60), (21, 60)]) {
         let mut numbers = Numbers(seed + 77);
         let mut scene = Scene::default();

@@ -28,6 +28,10 @@ pub use method::{SurfaceMethod, render_with};
 
 use crate::math::Vec4;
 
+/// Blended surfaces that let through less than this hide what is behind them: it is the last bit of a
+/// colour's sum.
+pub(crate) const LEAST_THROUGH: f32 = 1.0 / 16_777_216.0;
+
 /// Which faces are left out by the way they face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Cull {

@@ -2,6 +2,7 @@
 
 use super::fragment::{Fragment, plane_depth};
 use super::mask::{Direction, MaskTable};
+use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::setup::ScreenTriangle;
 use std::cmp::Ordering;
 
@@ -209,9 +210,6 @@ impl Pixel {
         }
     }
 }
-
-/// What lets through less hides what is behind: no channel would change by a tenth of an 8-bit step.
-const LEAST_THROUGH: f32 = 1.0 / 65_536.0;
 
 /// Sorts fragments front to back: mostly they are few and nearly so.
 #[inline(always)]

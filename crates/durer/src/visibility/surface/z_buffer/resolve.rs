@@ -2,10 +2,11 @@
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
 use super::rasterize::FragmentTest;
-use super::tile::{SamplePlane, TILE};
+use super::tile::{SamplePlane, TILE, TILE_PIXELS};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x8, premultiply};
 use crate::target::NO_ITEM;
+use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -17,7 +18,7 @@ use fearless_simd_macros::simd;
 const MOST_SAMPLES: usize = 16;
 
 /// A fragment of a blended surface, in tile-local pixels.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Fragment {
     pixel: u32,
     item: u32,
@@ -30,13 +31,15 @@ struct Fragment {
 /// Collects the fragments of blended surfaces that nothing opaque hides.
 pub struct Fragments {
     list: Vec<Fragment>,
+    /// Room for sorting.
+    by_pixel: Vec<Fragment>,
     offsets: &'static [[i32; 2]],
     tile: [i32; 2],
 }
 
 impl Fragments {
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
-        Self { list: Vec::new(), offsets, tile: [0; 2] }
+        Self { list: Vec::new(), by_pixel: Vec::new(), offsets, tile: [0; 2] }
     }
 
     /// Forgets all fragments and begins with another tile.
@@ -48,9 +51,21 @@ impl Fragments {
     /// Brings the fragments of each pixel together, far ones first; of equally far ones the higher
     /// item first, so that the lower is seen.
     fn sort(&mut self) {
-        self.list.sort_by(|a, b| {
-            (a.pixel, a.item).cmp(&(b.pixel, b.item)).then(a.samples.cmp(&b.samples))
-        });
+        // They came triangle by triangle, so those of one item at one pixel follow each other.
+        let mut next = [0; TILE_PIXELS + 1];
+        for f in &self.list {
+            next[f.pixel as usize + 1] += 1;
+        }
+        for pixel in 0..TILE_PIXELS {
+            next[pixel + 1] += next[pixel];
+        }
+        self.by_pixel.resize(self.list.len(), Fragment::default());
+        for f in &self.list {
+            let slot = &mut next[f.pixel as usize];
+            self.by_pixel[*slot] = *f;
+            *slot += 1;
+        }
+        std::mem::swap(&mut self.list, &mut self.by_pixel);
         // The samples of one item at one pixel become one fragment.
         self.list.dedup_by(|next, kept| {
             let same = (next.pixel, next.item) == (kept.pixel, kept.item);
@@ -60,9 +75,9 @@ impl Fragments {
             }
             same
         });
-        self.list.sort_by(|a, b| {
-            a.pixel.cmp(&b.pixel).then(b.depth.total_cmp(&a.depth)).then(b.item.cmp(&a.item))
-        });
+        for of_pixel in self.list.chunk_by_mut(|a, b| a.pixel == b.pixel) {
+            of_pixel.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(b.item.cmp(&a.item)));
+        }
     }
 }
 
@@ -323,10 +338,24 @@ fn blended(
     let index = fragments[0].pixel as usize;
     let behind = premultiply((area.background)(y));
     let (mut colors, count) = sample_colors(planes, index, lit, behind, [x, y]);
-    for fragment in fragments {
+    // What is in front is asked first, for what next to nothing comes through of need not be lit.
+    let mut through = [1.0; MOST_SAMPLES];
+    let mut seen = Vec::with_capacity(fragments.len());
+    for fragment in fragments.iter().rev() {
         let over = premultiply(lit.color(fragment.item, x, y));
-        for (i, under) in colors[..count].iter_mut().enumerate() {
+        seen.push((over, fragment.samples));
+        for (i, through) in through[..count].iter_mut().enumerate() {
             if fragment.samples >> i & 1 == 1 {
+                *through *= 1.0 - over.w;
+            }
+        }
+        if through[..count].iter().all(|&through| through <= LEAST_THROUGH) {
+            break;
+        }
+    }
+    for (over, samples) in seen.into_iter().rev() {
+        for (i, under) in colors[..count].iter_mut().enumerate() {
+            if samples >> i & 1 == 1 {
                 *under = over + *under * (1.0 - over.w);
             }
         }
