@@ -86,7 +86,8 @@ pub struct RegionArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Cutting")]
 pub struct CuttingArgs {
-    /// intersection, difference; union, xor: these join all polygons, those of the mask too, to one
+    /// intersection, difference; union, xor: these join all polygons, those of the mask too, to one,
+    /// and leave lines and points out
     #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
     pub op: BooleanOp,
     /// Which points polygons enclose: even-odd, non-zero, positive (rings counter-clockwise) or negative
@@ -143,7 +144,8 @@ fn algorithm_help() -> String {
         "An algorithm by its name [default: what is fast and right]\n\nOne of {}. Those for lines \
          take windows and leave polygons to the default, and the other way round; \
          sutherland-hodgman takes convex masks and leaves bridges along the border; rectangle, \
-         weiler-atherton and greiner-hormann take polygons as valid.",
+         weiler-atherton and greiner-hormann take polygons as valid. Of those for polygons, overlay \
+         and vatti follow --grid and --fill-rule.",
         names()
     )
 }

@@ -115,6 +115,14 @@ impl Algorithm {
         }
     }
 
+    /// Whether polygons are cut on a grid and by a fill rule; so they are beside algorithms for lines.
+    pub fn takes_rules(self) -> bool {
+        match self {
+            Self::Polygon(a) => matches!(a, PolygonClipper::Overlay | PolygonClipper::Vatti),
+            Self::Line(_) => true,
+        }
+    }
+
     /// Whether it keeps the inside only.
     pub fn needs_intersection(self) -> bool {
         match self {
@@ -314,7 +322,10 @@ fn by_segments(
                 start = Some(out.points.len());
                 push(&mut out, seen.start, segment, k);
             }
-            push(&mut out, seen.end, segment, k);
+            // A segment that only touches the window has its point already.
+            if seen.start != seen.end || segment.start == segment.end {
+                push(&mut out, seen.end, segment, k);
+            }
             if seen.end != segment.end {
                 finish(&mut out, &mut start);
             }
@@ -442,6 +453,37 @@ mod tests {
                 .sum();
             // Where the hole is cut open it is part of the outer ring, or a hole on the border.
             assert!((size - 2.0 * holes - 28.0).abs() < 1e-9, "{algorithm:?}: {size} {holes}");
+        }
+    }
+
+    #[test]
+    fn vertices_nearer_than_a_grid_cell_stay_valid() {
+        // A long border, and teeth that reach down to it but for less than a cell of the grid.
+        let (length, mut state) = (1_048_576.0, 3_u64);
+        let cell = length / 2f64.powi(40);
+        let mut random = || {
+            let step = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
+            state = state.wrapping_mul(step.0).wrapping_add(step.1);
+            (state >> 40) as f64 / (1 << 24) as f64
+        };
+        for _ in 0..200 {
+            let border = [random() * 2.0 * cell, random() * 2.0 * cell];
+            let mut ring = vec![DVec2::new(0.0, border[0]), DVec2::new(length, border[1])];
+            ring.push(DVec2::new(length, 9.0));
+            for i in (1..8).rev() {
+                let x = length * (f64::from(i) + 0.3 * random()) / 8.5;
+                let y = border[0] + (border[1] - border[0]) * (x / length);
+                ring.push(DVec2::new(x, y + 0.7 * random() * cell + 1e-12));
+                ring.push(DVec2::new(x - 0.1, 8.0));
+            }
+            ring.push(DVec2::new(0.0, 9.0));
+            let area = Area::flat(Shapes::from_rings([ring]));
+            let far = rectangle_shape(&Rect::new(DVec2::splat(5.0), DVec2::splat(6.0)).unwrap());
+            for op in BooleanOp::ALL {
+                let cut = Rules::default().overlay(&area, &far, *op, FillRule::EvenOdd);
+                let cut = cut.expect("finite").shapes;
+                assert!(edges_are_apart(&cut, Touching::AtVertices), "{op}: {cut:?}");
+            }
         }
     }
 

@@ -68,7 +68,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         (None, Some(mask)) => job.cut(mask)?,
         (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
     }
-    tell(&messages, &display_name(&args.input), &reader, &mut report);
+    tell(&messages, args, &reader, &mut report);
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
@@ -107,6 +107,12 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     let difference = region.outside || args.cutting.op == BooleanOp::Difference;
     if algorithm.needs_intersection() && difference {
         return Err(Failure::Usage(format!("--algorithm {name} keeps the inside only")));
+    }
+    let ruled = args.cutting.grid.is_some() || args.cutting.fill_rule != FillRule::EvenOdd;
+    if ruled && !algorithm.takes_rules() {
+        let message =
+            "takes polygons as they are; --grid and --fill-rule go with overlay and vatti";
+        return Err(Failure::Usage(format!("--algorithm {name} {message}")));
     }
     Ok(())
 }
@@ -186,21 +192,31 @@ fn read_mask(path: &Path, rules: Rules, messages: &Messages) -> Result<Mask, Fai
 }
 
 /// Warnings of reading and of cutting.
-fn tell(messages: &Messages, name: &str, reader: &Source, report: &mut Report) {
-    messages.warnings(name, reader.warnings());
+fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Report) {
+    let name = display_name(&args.input);
+    messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
     let more = reader.further_warnings();
     if more > 0 {
         report.warnings.push(format!("and {more} more"));
     }
+    let mut found = Vec::new();
     if report.repaired > 0 {
-        let message = format!(
+        found.push(format!(
             "polygons of {} features crossed or overlapped themselves or one another; made valid by \
              the even-odd rule",
             report.repaired
-        );
+        ));
+    }
+    let (lines, points) = (report.given.lines, report.given.points);
+    if joins(args) && lines + points > 0 {
+        let op = args.cutting.op;
+        found
+            .push(format!("left out: {lines} lines and {points} points; --op {op} joins polygons"));
+    }
+    for message in found {
         let warning = durer_formats::Warning { place: Default::default(), message };
-        messages.warnings(name, std::slice::from_ref(&warning));
+        messages.warnings(&name, std::slice::from_ref(&warning));
         report.warnings.push(warning.to_string());
     }
 }

@@ -121,6 +121,104 @@ fn fill_rules_decide_what_crossing_rings_enclose() {
     assert!(warned.err.contains("1 features crossed"), "{}", warned.err);
 }
 
+/// What `durer clip` makes of WKT, line by line.
+fn clipped(wkt: &str, arguments: &str) -> Vec<String> {
+    let folder = Folder::new();
+    folder.write("a.wkt", wkt);
+    folder.must(&format!("clip a.wkt {arguments} -o o.wkt"));
+    String::from_utf8(folder.read("o.wkt")).unwrap().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn points_and_lines_have_an_outside_too() {
+    let wkt = "MULTIPOINT(0 0,2 2,9 9)\nPOINT(2 3)\nLINESTRING(-5 3,9 3)";
+    let inside = ["MULTIPOINT (2 2)", "POINT (2 3)", "LINESTRING (1 3, 4 3)"];
+    let outside = ["MULTIPOINT (0 0, 9 9)", "MULTILINESTRING ((-5 3, 1 3), (4 3, 9 3))"];
+    assert_eq!(clipped(wkt, "--window 1,1,4,4"), inside);
+    assert_eq!(clipped(wkt, "--window 1,1,4,4 --outside"), outside);
+}
+
+#[test]
+fn lines_that_leave_at_a_vertex_end_there_once() {
+    let wkt =
+        "LINESTRING(0.5 0.5,1 1,3 1,1 1,0.5 0)\nLINESTRING(2 2,1 1,0 0,-1 0,0 0,0.5 0.5,0.5 0.5)";
+    let expected = [
+        "MULTILINESTRING ((0.5 0.5, 1 1), (1 1, 0.5 0))",
+        "MULTILINESTRING ((1 1, 0 0), (0 0, 0.5 0.5, 0.5 0.5))",
+    ];
+    assert_eq!(clipped(wkt, "--window 0,0,1,1"), expected);
+    for algorithm in ["cohen-sutherland", "liang-barsky", "nicholl-lee-nicholl"] {
+        assert_eq!(clipped(wkt, &format!("--window 0,0,1,1 --algorithm {algorithm}")), expected);
+    }
+}
+
+#[test]
+fn heights_go_on_along_lines_and_round_corners() {
+    let cut = clipped("LINESTRING Z (-1 1 0,3 1 8)", "--window 0,0,8,8");
+    assert_eq!(cut, ["LINESTRING Z (0 1 2, 3 1 8)"]);
+    // A corner of the window lies on no edge: its height is that of its neighbours on the border.
+    let flat = "POLYGON Z ((-5 -5 7,5 -5 7,5 5 7,-5 5 7,-5 -5 7))";
+    let cut = clipped(flat, "--window 0,0,8,8");
+    assert_eq!(cut[0].matches(" 7").count(), 5, "{cut:?}");
+    assert!(cut[0].contains("0 0 7"), "{cut:?}");
+}
+
+#[test]
+fn an_odd_number_of_layers_is_the_xor() {
+    let folder = Folder::new();
+    let square = |low: u32, high: u32| {
+        format!("POLYGON(({low} {low},{high} {low},{high} {high},{low} {high},{low} {low}))\n")
+    };
+    folder.write("a.wkt", [square(0, 4), square(2, 6), square(3, 9)].concat());
+    for (op, area) in [("xor", 16.0 + 16.0 + 36.0 - 2.0 * (4.0 + 9.0 + 1.0) + 4.0), ("union", 55.0)]
+    {
+        let report = folder.must(&format!("clip a.wkt --op {op} -o o.wkt --json")).json();
+        assert_eq!(report["out"]["area"], area, "{op}");
+    }
+}
+
+#[test]
+fn a_mask_of_many_points_cuts_nothing_within_it() {
+    let folder = Folder::new();
+    let corner = |i: usize| {
+        let (x, y) = (i as f64 / 100.0 * 90.0 - 45.0, i as f64 / 100.0);
+        format!("{x} {}", 100.0 - y * y * 20.0)
+    };
+    let arc: Vec<String> = (0..=100).map(corner).collect();
+    folder.write("mask.wkt", format!("POLYGON((-45 -99,{},45 -99,-45 -99))", arc.join(",")));
+    folder.write("a.wkt", "POLYGON((0 0,1 0,1 1,0 1,0 0))\nLINESTRING(0 0,7 7)\nPOINT(3 3)");
+    for (arguments, area, length) in [("", 1.0, 98f64.sqrt()), ("--outside", 0.0, 0.0)] {
+        let line = format!("clip a.wkt --by mask.wkt {arguments} -o o.wkt --json");
+        let report = folder.must(&line).json();
+        let found = ["area", "length"].map(|what| report["out"][what].as_f64().unwrap());
+        assert!((found[0] - area).abs() + (found[1] - length).abs() < 1e-12, "{found:?}");
+    }
+}
+
+#[test]
+fn a_feature_that_cannot_be_cut_is_named_by_its_number() {
+    let folder = Folder::new();
+    let mut wkt = "POINT(0 0)\n".repeat(600);
+    wkt += "POLYGON((0 0,1e305 0,1e305 1e305,0 1e305,1e305 1,0 0))";
+    folder.write("a.wkt", wkt);
+    folder.run("clip a.wkt --window -1,-1,9,9 -o o.wkt").fails(1, "feature 601 (from 1): ");
+    folder.run("clip a.wkt --op union -o o.wkt").fails(1, "feature 601 (from 1): ");
+}
+
+#[test]
+fn what_joining_leaves_out_is_told() {
+    let folder = Folder::new();
+    folder
+        .write("a.wkt", "POLYGON((0 0,1 0,1 1,0 0))\nLINESTRING(0 0,1 1)\nPOINT(0 0)\nPOINT(1 0)");
+    let told = "left out: 1 lines and 2 points";
+    for (op, names) in [("union", true), ("xor", true), ("intersection", false)] {
+        let line = format!("clip a.wkt --op {op} --window -9,-9,9,9 -o o.wkt");
+        assert_eq!(folder.must(&line).err.contains(told), names, "{op}");
+        let report = folder.must(&format!("{line} --json -q")).json();
+        assert_eq!(report["warnings"].as_array().map(Vec::len), Some(usize::from(names)), "{op}");
+    }
+}
+
 #[test]
 fn streams_and_formats() {
     let folder = folder();
@@ -196,6 +294,12 @@ fn wrong_use_and_bad_data_are_told() {
         .run("clip in.geojson --by in.geojson --algorithm rectangle -o a.wkt")
         .fails(2, "--window");
     folder.run("clip in.geojson --window 0,0,1,1 --algorithm magic -o a.wkt").fails(2, "overlay");
+    for rules in ["--grid 0.5", "--fill-rule non-zero"] {
+        for name in ["rectangle", "sutherland-hodgman", "weiler-atherton", "greiner-hormann"] {
+            let line = format!("clip in.geojson --window 0,0,1,1 --algorithm {name} {rules}");
+            folder.run(&format!("{line} -o a.wkt")).fails(2, "go with overlay and vatti");
+        }
+    }
     folder.run("clip none.geojson --window 0,0,1,1 -o a.wkt").fails(1, "none.geojson: ");
     folder
         .run("clip bad.geojsonl --window 0,0,9,9 -o old.geojsonl")

@@ -250,3 +250,86 @@ fn faces_that_meet_leave_no_gap() {
     }
     assert_eq!(black, 256);
 }
+
+/// A view of the plane z = 0, a pixel for each unit, x to the right from the left border and y down
+/// from the upper one; z = 0 lies in the far plane.
+fn upright() -> View {
+    let camera = Camera {
+        eye: DVec3::new(4.0, -4.0, 10.0),
+        target: DVec3::new(4.0, -4.0, 0.0),
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: 8.0 },
+        near: 1.0,
+        far: 10.0,
+    };
+    View::new(camera, 8, 8).expect("view")
+}
+
+/// x, y and z.
+type Corners = [(f32, f32, f32); 3];
+
+/// Triangles, each in its own material.
+fn faces(triangles: &[(Corners, Vec3)]) -> Scene {
+    let mut scene = Scene::default();
+    for (i, (corners, color)) in triangles.iter().enumerate() {
+        scene.materials.push(flat(color.extend(1.0)));
+        let positions = corners.map(|(x, y, z)| Vec3::new(x, -y, z)).to_vec();
+        let parts = vec![Part { range: 0..1, material: Some(i), name: String::new() }];
+        scene.meshes.push(Mesh { positions, parts, ..Mesh::default() });
+        scene.instances.push(scenes::instance(i));
+    }
+    scene
+}
+
+/// The linear grey of pixel (2, 3) by both masks.
+fn grey(scene: &Scene) -> [f64; 2] {
+    [Mask::M16, Mask::M64].map(|mask| {
+        let options = Options { mask, ..Options::default() };
+        linear(&render(scene, &upright(), &options).0)[3 * 8 + 2]
+    })
+}
+
+/// Left of x = `border`, at a height.
+fn left_of(border: f32, z: f32) -> Corners {
+    [(border, -20.0, z), (border, 28.0, z), (border - 90.0, 4.0, z)]
+}
+
+#[test]
+fn what_is_half_hidden_fills_what_the_front_leaves() {
+    let far = [(-60.0, -60.0, 2.0), (90.0, -60.0, 2.0), (4.0, 90.0, 2.0)];
+    for border in [2.3, 2.45, 2.55, 2.7] {
+        let scene = faces(&[(left_of(border, 4.0), Vec3::ONE), (far, Vec3::ZERO)]);
+        for found in grey(&scene) {
+            let expected = f64::from(border) - 2.0;
+            assert!((found - expected).abs() < 0.006, "{found} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_sliver_between_sub_pixels_is_hidden_by_what_is_in_front() {
+    // Between the centres of both masks, of which 3/16 and 5/16 are the nearest.
+    let sliver = [(2.2, 3.2, 2.0), (2.3, 3.2, 2.0), (2.25, 3.3, 2.0)];
+    let by = |front: Option<f32>, color: Vec3| {
+        let sliver = (sliver, Vec3::ZERO);
+        let front = front.map(|z| (left_of(2.5, z), color));
+        grey(&faces(&front.into_iter().chain([sliver]).collect::<Vec<_>>()))
+    };
+    let alone = by(None, Vec3::ONE);
+    assert!(alone.iter().all(|g| (g - 0.995).abs() < 0.006), "{alone:?}");
+    assert_eq!(by(Some(4.0), Vec3::ONE), [1.0; 2]);
+    assert_eq!(by(Some(1.0), Vec3::ONE), alone);
+}
+
+#[test]
+fn a_face_ends_at_the_far_plane_within_a_pixel() {
+    for border in [2.2, 2.45, 2.8] {
+        // Nearer than the far plane left of the border only.
+        let steep =
+            [(border - 8.0, -60.0, 8.0), (border + 8.0, 4.0, -8.0), (border - 8.0, 68.0, 8.0)];
+        for (found, step) in grey(&faces(&[(steep, Vec3::ZERO)])).into_iter().zip([4.0, 8.0]) {
+            let expected = 1.0 - (f64::from(border) - 2.0);
+            assert!((found - expected).abs() <= 0.5 / step, "{found} for {expected}");
+        }
+    }
+}

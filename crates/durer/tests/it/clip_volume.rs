@@ -272,3 +272,27 @@ fn planes_of_the_source_space_are_the_borders() {
         }
     }
 }
+
+#[test]
+fn an_end_on_the_border_stays_bit_for_bit() {
+    for i in 1..50 {
+        let w = 0.1 * f64::from(i);
+        let on = vertex(DVec4::new(w, 0.07 * f64::from(i), w / 3.0, w));
+        let out = vertex(DVec4::new(1.7 + w, 0.2, 0.1, 0.9));
+        for ends in [[on, out], [out, on]] {
+            let found = clip_segment(ends, &Options::default(), &mut NoTrace).expect("they touch");
+            assert_eq!(found.map(|v| bits(v.position)), [bits(on.position); 2]);
+            assert_eq!(found.map(|v| v.attributes), [on.attributes; 2]);
+        }
+    }
+}
+
+#[test]
+fn a_corner_on_the_border_comes_out_once() {
+    let [on, out, within] =
+        [(1.0, 0.0), (2.0, 0.5), (0.0, 0.5)].map(|(x, y)| vertex(DVec4::new(x, y, 0.0, 1.0)));
+    for ring in [[on, out, within], [out, within, on], [within, out, on]] {
+        let clipped = clip_polygon(&ring, &Options::default(), &mut NoTrace);
+        assert_eq!(clipped.len(), 3, "{clipped:?}");
+    }
+}

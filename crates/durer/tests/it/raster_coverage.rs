@@ -205,6 +205,76 @@ fn reversal_and_the_starting_vertex_change_nothing() {
     }
 }
 
+/// A star with its spikes in a circle, from one of its points on.
+fn star(center: DVec2, radius: f64, start: usize) -> Vec<DVec2> {
+    let point = |i: usize| {
+        let angle = 0.3 + (i + start) as f64 * 2.0 / 5.0 * std::f64::consts::TAU;
+        center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius
+    };
+    (0..5).map(point).collect()
+}
+
+#[test]
+fn tiny_stars_are_exact_wherever_they_begin() {
+    let mut random = Random(21);
+    for _ in 0..150 {
+        let (center, radius) = (random.point(1.2, 2.8), 0.1 + random.next());
+        for rule in RULES {
+            let of = |start| mask(&Contours::polygon(star(center, radius, start)), 4, 4, rule);
+            for start in 1..5 {
+                let (a, b) = (of(0), of(start));
+                let pairs = a.data().iter().zip(b.data());
+                assert!(
+                    pairs.clone().all(|(a, b)| a.abs_diff(*b) <= 1),
+                    "{center} {radius} {start}"
+                );
+            }
+            let worst = worst_error(&Contours::polygon(star(center, radius, 0)), 4, 4, rule);
+            assert!(worst <= 0.52, "{worst}: {center} {radius} {rule:?}");
+        }
+    }
+}
+
+#[test]
+fn a_closing_edge_that_crosses_near_the_start_is_exact() {
+    let mut random = Random(23);
+    for _ in 0..400 {
+        // The first edge lies within a pixel, and the last may cross the second there.
+        let mut points = vec![random.point(2.0, 3.0), random.point(2.0, 3.0)];
+        points.extend((0..2).map(|_| random.point(0.0, 5.0)));
+        for rule in RULES {
+            let worst = worst_error(&Contours::polygon(points.clone()), 5, 5, rule);
+            assert!(worst <= 0.52, "{worst}: {rule:?} {points:?}");
+        }
+    }
+}
+
+#[test]
+fn columns_are_alike_wherever_the_shape_stands() {
+    // Words of 64 columns, bands of 32 rows: shapes that cross within pixels at all their borders.
+    let mut random = Random(22);
+    for _ in 0..12 {
+        // On a grid of 1/256, so that moving changes no bit of the shape.
+        let on_grid = |p: DVec2| (p * 256.0).round() / 256.0;
+        let points: Vec<DVec2> = (0..9).map(|_| on_grid(random.point(1.0, 7.0))).collect();
+        for rule in RULES {
+            let at = |x: u32, y: u32| {
+                let offset = DVec2::new(x.into(), y.into());
+                let mut moved = Contours::polygon(points.iter().map(|p| *p + offset));
+                // So that columns are counted from the left border.
+                moved.push([(0.0, 66.0), (1.0, 66.0), (0.0, 67.0)].map(DVec2::from), true);
+                let whole = mask(&moved, 140, 72, rule);
+                let pixel = |i: u32| whole.get(x + i % 8, y + i / 8).expect("inside");
+                (0..64).map(pixel).collect::<Vec<u8>>()
+            };
+            let expected = at(0, 0);
+            for (x, y) in (54..68).chain(120..132).map(|x| (x, 0)).chain((22..36).map(|y| (3, y))) {
+                assert_eq!(at(x, y), expected, "{x},{y} {rule:?} {points:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_window_shows_what_the_whole_shows_there() {
     let mut random = Random(7);

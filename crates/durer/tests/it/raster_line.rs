@@ -123,6 +123,46 @@ fn smooth_lines_carry_the_lines_weight() {
 }
 
 #[test]
+fn smooth_lines_in_a_window_are_the_whole_ones_there() {
+    let mut random = Random(5);
+    for _ in 0..1500 {
+        let (a, b) = (point(&mut random, 30.0), point(&mut random, 30.0));
+        let (c, d) = (point(&mut random, 20.0), point(&mut random, 20.0));
+        let (low, high) = (c.min(d), c.max(d));
+        for method in SmoothLine::ALL {
+            let drawn = |window| {
+                let mut found = Vec::new();
+                let plot = |p: IVec2, i: u8| found.push((p, i));
+                anti_aliased::draw(*method, a, b, &Options { window }, plot, &mut NoTrace);
+                found.sort_by_key(|(p, i)| (p.x, p.y, *i));
+                found
+            };
+            let mut expected = drawn(None);
+            expected.retain(|(p, _)| p.cmpge(low).all() && p.cmple(high).all());
+            assert_eq!(drawn(Some((low, high))), expected, "{method} {a} {b} in {low} {high}");
+        }
+    }
+}
+
+#[test]
+fn wus_pairs_share_a_pixel_by_the_nearest_level() {
+    let mut random = Random(6);
+    for _ in 0..500 {
+        let b = point(&mut random, 60.0).abs();
+        let (long, short) = (b.x.max(b.y), b.x.min(b.y));
+        let (a, b) = (IVec2::ZERO, IVec2::new(long, short));
+        let mut found = Vec::new();
+        let plot = |p: IVec2, i: u8| found.push((p, i));
+        anti_aliased::draw(SmoothLine::Wu, a, b, &Options::default(), plot, &mut NoTrace);
+        for (p, i) in found {
+            let height = f64::from(p.x) * f64::from(short) / f64::from(long.max(1));
+            let share = 255.0 * (1.0 - (height - f64::from(p.y)).abs());
+            assert!((f64::from(i) - share).abs() <= 0.5 + 1e-9, "{b} {p}: {i} {share}");
+        }
+    }
+}
+
+#[test]
 fn tiled_lines_are_bresenhams_in_their_order() {
     let mut random = Random(11);
     for round in 0..40 {
@@ -151,5 +191,31 @@ fn tiled_lines_are_bresenhams_in_their_order() {
         let mut found = Pixels::new(width, height, 0);
         tiled::draw(&lines, &mut found);
         assert!(found == expected, "round {round}");
+    }
+}
+
+#[test]
+fn every_short_slope_is_bresenhams_in_a_tile() {
+    for steps in 0..128 {
+        for rise in 0..=steps {
+            let ends = [
+                [0, 0, steps, rise],
+                [0, rise, steps, 0],
+                [0, 0, rise, steps],
+                [rise, 0, 0, steps],
+            ];
+            for [ax, ay, bx, by] in if (steps + rise) % 3 == 0 { &ends[..] } else { &ends[..2] } {
+                let (from, to) = (IVec2::new(*ax, *ay), IVec2::new(*bx, *by));
+                // So many that the tile is drawn by itself.
+                let lines = [Line { from, to, value: 1_u8 }; 24];
+                let (width, height) = (ax.max(bx) + 1, ay.max(by) + 1);
+                let mut found = Pixels::new(width as u32, height as u32, 0);
+                tiled::draw(&lines, &mut found);
+                let mut expected = Pixels::new(width as u32, height as u32, 0);
+                let plot = |p: IVec2| expected.set(p.x as u32, p.y as u32, 1);
+                bresenham::draw(from, to, &Options::default(), plot, &mut NoTrace);
+                assert!(found == expected, "{from} {to}");
+            }
+        }
     }
 }

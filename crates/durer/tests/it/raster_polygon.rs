@@ -209,3 +209,30 @@ fn strange_polygons_give_defined_spans() {
     assert!(covered(&Contours::polygon(huge), 8, FillRule::NonZero).iter().all(|c| *c == 1));
     assert!(covered(&Contours::new(), 0, FillRule::NonZero).is_empty());
 }
+
+#[test]
+fn an_edge_just_right_of_a_centre_leaves_that_pixel_out() {
+    // In 1/256 of a pixel: at the second row's centre the left edge is at 128 + 1/257, a pixel's
+    // centre is at 128.
+    let corners = [(129.0, 128.0), (128.0, 385.0), (2000.0, 385.0), (2000.0, 128.0)];
+    let at = |(x, y): (f64, f64)| DVec2::new(x / 256.0, y / 256.0);
+    let contours = Contours::polygon(corners.map(at));
+    for method in PolygonRasterizer::ALL {
+        let found = spans(*method, &contours, (9, 3), FillRule::NonZero);
+        assert_eq!(found, [0, 1].map(|y| Span { y, x0: 1, x1: 8 }), "{method}");
+    }
+}
+
+#[test]
+fn points_that_are_not_finite_are_left_out() {
+    let corners = [(1.0, 1.0), (17.0, 3.0), (12.0, 18.0), (2.0, 15.0)].map(DVec2::from);
+    let expected = covered(&Contours::polygon(corners), 20, FillRule::NonZero);
+    for bad in [DVec2::NAN, DVec2::new(f64::INFINITY, 3.0), DVec2::new(4.0, f64::NEG_INFINITY)] {
+        for place in 0..=4 {
+            let mut points = corners.to_vec();
+            points.insert(place, bad);
+            let found = covered(&Contours::polygon(points), 20, FillRule::NonZero);
+            assert_eq!(found, expected, "{bad} {place}");
+        }
+    }
+}

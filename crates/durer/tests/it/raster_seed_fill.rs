@@ -119,3 +119,59 @@ fn boundaries_and_tolerance_on_colours() {
         );
     }
 }
+
+#[test]
+fn bits_differ_wholly_and_boundaries_have_their_tolerance() {
+    for method in SeedFill::ALL {
+        for tolerance in [0, 1, 254] {
+            let mut bits = Pixels::from_data(4, 1, vec![false, false, true, false]).unwrap();
+            let options = Options::default();
+            let n = flood_fill(&mut bits, (0, 0), true, tolerance, *method, &options, &mut NoTrace);
+            assert_eq!((n, bits.data()), (2, &[true, true, true, false][..]), "{method}");
+        }
+        // The border is what differs by the tolerance and less.
+        for (tolerance, expected) in [(9, 5), (10, 3), (20, 2), (29, 2)] {
+            let mut grey = Pixels::from_data(5, 1, vec![90_u8, 80, 70, 60, 50]).unwrap();
+            let options = Options::default();
+            let border = if tolerance == 9 { 40 } else { 50 };
+            let n = boundary_fill(
+                &mut grey,
+                (0, 0),
+                0,
+                border,
+                tolerance,
+                *method,
+                &options,
+                &mut NoTrace,
+            );
+            assert_eq!(n, expected, "{method} {tolerance}");
+        }
+    }
+}
+
+#[test]
+fn long_runs_that_meet_at_corners_are_one_region_of_eight() {
+    // Stairs down to the right and to the left, of steps longer than a word.
+    for mirrored in [false, true] {
+        let (width, height) = (400, 4);
+        let mut image = Pixels::new(width, height, 0_u8);
+        for y in 0..height {
+            for x in 100 * y..100 * (y + 1) {
+                image.set(if mirrored { width - 1 - x } else { x }, y, 1);
+            }
+        }
+        for (seed_y, method) in
+            [0, 1, 3].into_iter().flat_map(|y| SeedFill::ALL.iter().map(move |m| (y, m)))
+        {
+            let x = 100 * seed_y + 50;
+            let seed = (if mirrored { width - 1 - x } else { x }, seed_y);
+            for (connectivity, expected) in [(Connectivity::Four, 100), (Connectivity::Eight, 400)]
+            {
+                let options = Options { connectivity };
+                let mut filled = image.clone();
+                let n = flood_fill(&mut filled, seed, 7, 0, *method, &options, &mut NoTrace);
+                assert_eq!(n, expected, "{method} {connectivity:?} {mirrored} {seed:?}");
+            }
+        }
+    }
+}

@@ -1,9 +1,11 @@
 //! Shadows by maps and by rays agree away from their edges.
 
 use crate::scenes::{self, sphere};
-use durer::math::{DMat4, DVec3, Vec3};
+use durer::math::{DMat4, DVec3, Vec3, Vec4};
 use durer::pipeline::{Lighting, RenderOptions, Samples, Shading, Shadows, SurfaceMethod, render};
-use durer::scene::{Camera, Instance, Light, LightKind, Mesh, Projection, Scene};
+use durer::scene::{
+    AlphaMode, Camera, Instance, Light, LightKind, Material, Mesh, Part, Projection, Scene,
+};
 use durer::target::Framebuffer;
 
 /// A floor, a sphere above it, and a tilted plate.
@@ -138,5 +140,30 @@ fn only_rays_cast_rays() {
     for shadow_map_side in [0, u32::MAX] {
         let options = RenderOptions { shadows: Shadows::Map, shadow_map_side, ..base.clone() };
         assert!(render(&scene, &options).is_err());
+    }
+}
+
+#[test]
+fn what_is_blended_throws_no_shadow_by_maps_either() {
+    for (name, kind) in lights() {
+        let differing = |alpha_mode| {
+            let mut scene = scene();
+            // Blended it is clear: nothing of it is seen but a shadow.
+            let base_color = Vec4::new(1.0, 1.0, 1.0, 0.0);
+            scene.materials.push(Material { alpha_mode, base_color, ..Material::default() });
+            for mesh in &mut scene.meshes[1..] {
+                let range = 0..mesh.triangle_count() as u32;
+                mesh.parts = vec![Part { range, material: Some(0), name: String::new() }];
+            }
+            let [plain, shadowed] = [Shadows::None, Shadows::Map].map(|shadows| {
+                let options =
+                    RenderOptions { shadows, shadow_map_side: 1024, ..options(kind, None) };
+                render(&scene, &options).expect("picture").0.color
+            });
+            plain.data().iter().zip(shadowed.data()).filter(|(a, b)| a != b).count()
+        };
+        let (blended, opaque) = (differing(AlphaMode::Blend), differing(AlphaMode::Opaque));
+        println!("{name}: {blended} {opaque}");
+        assert!(blended * 10 < opaque, "{name}: {blended} {opaque}");
     }
 }

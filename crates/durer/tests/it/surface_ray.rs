@@ -170,3 +170,107 @@ fn glass_bends_rays_and_clear_film_does_not() {
     let wider = width * 4.0 / (3.0 + 2.0 / 3.0);
     assert!((f64::from(glass) - wider).abs() <= 1.0, "{glass} {wider}");
 }
+
+/// The rays of a kind that a picture takes.
+fn rays(p: &Prepared<'_>, options: &Options, wanted: RayKind) -> usize {
+    let mut recorder = Recorder::default();
+    render(&p.fine_input(), &p.lights, options, &mut p.framebuffer(), &mut recorder);
+    let is_one = |s: &&Step| matches!(s, Step::Ray { kind, .. } if *kind == wanted);
+    recorder.steps().iter().filter(is_one).count()
+}
+
+#[test]
+fn what_lies_behind_a_lamp_or_around_it_throws_no_shadow() {
+    let matte = Material { specular: Vec3::ZERO, ..Material::default() };
+    let with_square = |z: Option<f32>| {
+        let mut scene = Scene::default();
+        square(&mut scene, 0.0, 1.0, matte.clone());
+        if let Some(z) = z {
+            square(&mut scene, z, 0.5, matte.clone());
+        }
+        scene
+    };
+    let options = Options { shadows: true, ..Options::default() };
+    let kind = LightKind::Point { position: DVec3::new(0.0, 0.0, 5.0), range: None };
+    let light = Light { kind, color: Vec3::splat(20.0) };
+    let seen = |z| picture(&in_front(&with_square(z), &[light]), &options).color;
+    let expected = seen(None);
+    // Behind the eye, so that only their shadows could be seen.
+    for z in [5.0, 6.0, 50.0] {
+        assert!(seen(Some(z)) == expected, "{z}");
+    }
+    assert!(seen(Some(4.5)) != expected);
+}
+
+#[test]
+fn what_is_blended_throws_no_shadow() {
+    let options = Options { shadows: true, ..Options::default() };
+    let kind = LightKind::Point { position: DVec3::new(0.0, 0.0, 6.0), range: None };
+    let light = Light { kind, color: Vec3::splat(20.0) };
+    let seen = |alpha_mode| {
+        let mut scene = Scene::default();
+        square(&mut scene, 0.0, 1.0, Material::default());
+        // Behind the eye.
+        let base_color = Vec4::new(1.0, 1.0, 1.0, 0.9);
+        square(&mut scene, 5.0, 0.5, Material { alpha_mode, base_color, ..Material::default() });
+        color_at(&picture(&in_front(&scene, &[light]), &options), 32, 30)
+    };
+    let (blended, opaque) = (seen(AlphaMode::Blend), seen(AlphaMode::Opaque));
+    assert!(blended[0] > opaque[0] + 50, "{blended:?} {opaque:?}");
+    assert_eq!(seen(AlphaMode::Mask { cutoff: 0.5 }), opaque);
+    assert_eq!(seen(AlphaMode::Mask { cutoff: 0.95 }), blended);
+}
+
+#[test]
+fn what_faces_away_from_a_light_asks_no_ray() {
+    let mut scene = Scene::default();
+    square(&mut scene, 0.0, 1.0, Material::default());
+    let options = Options { shadows: true, ..Options::default() };
+    for (z, asked) in [(-5.0, false), (5.0, true)] {
+        let kind = LightKind::Point { position: DVec3::new(0.0, 0.0, z), range: None };
+        let p = in_front(&scene, &[Light { kind, color: Vec3::ONE }]);
+        assert_eq!(rays(&p, &options, RayKind::Shadow) > 0, asked, "{z}");
+    }
+}
+
+#[test]
+fn a_face_never_shades_itself() {
+    // A lamp just above the plane of one triangle: rays to it leave at angles of a degree and less.
+    let corners =
+        [Vec3::new(-2.1, -1.3, 0.37), Vec3::new(2.3, -0.7, -0.51), Vec3::new(0.2, 1.9, 0.13)];
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+    let scene = crate::surface_scenes::of_triangles(&[corners]);
+    for (corner, height) in [(0, 0.02), (1, 0.01), (2, 0.03), (2, 0.001)] {
+        let position = (corners[corner] * 1.3 + normal * height).as_dvec3();
+        let kind = LightKind::Point { position, range: None };
+        let p = in_front(&scene, &[Light { kind, color: Vec3::splat(9.0) }]);
+        let shadowed = picture(&p, &Options { shadows: true, ..Options::default() });
+        assert!(shadowed.color == picture(&p, &Options::default()).color, "{corner} {height}");
+    }
+}
+
+#[test]
+fn at_grazing_angles_everything_smooth_is_a_mirror() {
+    let mut scene = Scene::default();
+    let base_color = Vec4::new(0.0, 0.0, 0.0, 1.0);
+    let (model, metallic, roughness) = (ShadingModel::MetallicRoughness, 0.0, 0.0);
+    let black = Material { model, base_color, metallic, roughness, ..Material::default() };
+    square(&mut scene, 0.0, 1.0, black);
+    for degrees in [0.0f64, 45.0, 70.0, 80.0] {
+        let mut p = in_front(&scene, &[]);
+        let (sin, cos) = (libm::sin(degrees.to_radians()), libm::cos(degrees.to_radians()));
+        p.options.camera.eye = DVec3::new(0.0, -400.0 * sin, 400.0 * cos);
+        p.options.camera.projection = durer::scene::Projection::Perspective { fov_y: 0.002 };
+        p.options.camera.far = 1000.0;
+        p.view = durer::view::View::new(p.options.camera, 64, 64).expect("view");
+        let linear = |reflections| {
+            let found = picture(&p, &Options { reflections, ..Options::default() });
+            f64::from(durer::shade::color::decode_srgb8(color_at(&found, 32, 32)[0]))
+        };
+        // The sky is white, so the picture shows how much is reflected: Schlick's formula.
+        let share = 0.04 + 0.96 * libm::pow(1.0 - cos, 5.0);
+        let (own, seen) = (linear(false), linear(true));
+        let expected = own * (1.0 - share) + share;
+        assert!((seen - expected).abs() < 0.004, "{degrees}: {seen} for {expected}");
+    }
+}

@@ -86,6 +86,27 @@ pub fn random(seed: u64) -> Scene {
     of_triangles(&triangles)
 }
 
+/// Flat needles across the view, a pixel high or less and steep in depth, close behind one another.
+pub fn needles(seed: u64) -> Scene {
+    let mut numbers = Numbers(seed.wrapping_mul(7919).wrapping_add(3));
+    let camera = options(&Scene::default(), 1, 1).camera;
+    let ahead = (camera.target - camera.eye).normalize();
+    let right = ahead.cross(camera.up).normalize();
+    let axes = [right, right.cross(ahead), ahead].map(|axis| axis.as_vec3());
+    let mut triangles = Vec::new();
+    for _ in 0..4 {
+        let row = (numbers.next() - 0.5) * 1.6;
+        for _ in 0..6 {
+            let mut corner = |x: f32| {
+                let place = [x, row + (numbers.next() - 0.5) * 0.05, numbers.next() * 0.6];
+                axes.iter().zip(place).map(|(axis, v)| *axis * v).sum::<Vec3>()
+            };
+            triangles.push([corner(-1.0), corner(1.0), corner(0.2)]);
+        }
+    }
+    of_triangles(&triangles)
+}
+
 /// What an algorithm gets to see of a scene.
 pub struct Prepared<'a> {
     pub scene: &'a Scene,

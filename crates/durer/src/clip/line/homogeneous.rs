@@ -10,12 +10,15 @@
 //! border, which windows without width need. Points of space and their view volume:
 //! [`crate::clip::volume`].
 
-use super::border::{Canonical, clamped};
+use super::border::{Canonical, clamped, doubt};
+use super::convex::HalfSpace;
 use super::{ClipBox, Segment, convex, passage};
 use crate::Result;
+use crate::clip::exact::Exact;
 use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
+use std::cmp::Ordering;
 
 pub use super::passage::{Step, replay};
 
@@ -102,6 +105,9 @@ fn crossing(
     line: &Canonical<3>,
 ) -> [f64; 3] {
     let mut point = line.at(convex::parameter(&planes[border], line));
+    if border == 4 || is_null(&planes[border], line, point[2]) {
+        return [0.0; 3];
+    }
     let w = point[2];
     for (axis, (value, borders)) in point.iter_mut().zip(window.borders).enumerate() {
         let [min, max] = borders.map(|border| border * w);
@@ -111,8 +117,15 @@ fn crossing(
             _ => clamped(*value, min, max),
         };
     }
-    if border == 4 {
-        point[2] = 0.0;
-    }
     point
+}
+
+/// Whether a segment crosses a border in the null vector, where all borders meet: w, given rounded,
+/// is exactly 0 there.
+fn is_null(border: &Plane, line: &Canonical<3>, w: f64) -> bool {
+    if w.abs() > doubt(line.p[2], line.q[2]) {
+        return false;
+    }
+    let (p, q) = (border.exact(line.p), border.exact(line.q));
+    (Exact::from(line.p[2]) * q - Exact::from(line.q[2]) * p).sign() == Ordering::Equal
 }

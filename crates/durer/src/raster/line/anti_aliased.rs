@@ -67,11 +67,11 @@ pub fn draw(
     mut plot: impl FnMut(IVec2, u8),
     t: &mut impl Tracer<Step>,
 ) {
-    // Neighbours across of the pixels in the window may lie in it though the line does not.
-    let reach = IVec2::ONE;
-    let wider = options.window.map(|(low, high)| {
-        (IVec2::new(low.x.saturating_sub(1), low.y.saturating_sub(1)), high.saturating_add(reach))
-    });
+    // Neighbours across of the pixels in the window may lie in it though the line does not: next but
+    // one where a tie goes the other way.
+    let reach = IVec2::splat(2);
+    let wider =
+        options.window.map(|(low, high)| (low.saturating_sub(reach), high.saturating_add(reach)));
     let course = Course::new(from, to, &Options { window: wider });
     let inside = |p: IVec2| {
         options.window.is_none_or(|(l, h)| p.x >= l.x && p.y >= l.y && p.x <= h.x && p.y <= h.y)

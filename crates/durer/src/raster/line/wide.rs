@@ -70,6 +70,9 @@ const MEASURED: f64 = 1e4;
 /// of the width: too short to be seen, long enough to have a direction.
 const DOT: f64 = 1e-4;
 
+/// The finest tolerance, in sizes of the path: a hundredth of a pixel of ten million.
+const FINEST: f64 = 1e-9;
+
 /// Points farther out and greater widths are moved here first, so that products stay finite.
 const FARTHEST: f64 = 1e15;
 
@@ -100,7 +103,10 @@ pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
     }
     let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
     let mut style = style(stroke);
-    let tolerance = tolerance.max(1e-3);
+    // Not finer than the size of the whole allows: a path may be given in any unit.
+    let extent = source.control_box();
+    let size = extent.width().abs() + extent.height().abs() + stroke.width;
+    let tolerance = tolerance.max(size * FINEST);
     let source = dashed(source, stroke, &mut style, tolerance);
     Ok(from_kurbo(&kurbo::stroke(source, &style, &StrokeOpts::default(), tolerance)))
 }

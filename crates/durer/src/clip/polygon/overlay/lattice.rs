@@ -400,6 +400,25 @@ mod tests {
     }
 
     #[test]
+    fn heights_that_round_alike_are_told_apart() {
+        let (far, mut state) = (i64::LIMIT, 11_u64);
+        let mut random = |range: i64| {
+            let step = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
+            state = state.wrapping_mul(step.0).wrapping_add(step.1);
+            (state >> 20) as i64 % range
+        };
+        for _ in 0..2000 {
+            let heights = [random(far), random(far)];
+            let s = segment::<i64>((-far, heights[0]), (far, heights[1]));
+            let beside = heights.map(|y| y + random(2));
+            let t = segment::<i64>((-far + random(3), beside[0]), (far - random(3), beside[1]));
+            let doubled = 2 * random(far) - far;
+            assert_eq!(s.compare_at(&t, doubled), s.compare_exactly(&t, doubled));
+            assert_eq!(t.compare_at(&s, doubled), s.compare_at(&t, doubled).reverse());
+        }
+    }
+
+    #[test]
     fn integers_stay_as_they_are() {
         let bounds = Rect::new(DVec2::splat(-3.0), DVec2::splat(1000.0)).expect("valid");
         let lattice = Lattice::new(bounds, None).expect("fits");

@@ -130,10 +130,15 @@ fn cut(
             }
         };
         let Some(visible) = cut_inside(window, a, b) else { continue };
+        // Where an edge only touches the window, at its first or last point, that is in already or
+        // comes once.
+        let touches = visible.start == visible.end && a != b;
         if !open {
             push(visible.start);
         }
-        push(visible.end);
+        if !touches {
+            push(visible.end);
+        }
         open = visible.end == b;
         if !open {
             out.end_piece(line);
