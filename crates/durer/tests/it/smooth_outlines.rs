@@ -39,7 +39,8 @@ fn outline_of_a_coarse_ball_is_round() {
         let closed = drawing.lines.iter().filter(|l| l.closed).count();
         let in_the_open = drawing.length(|l| !l.closed);
         assert_eq!(closed, 1, "{perspective}");
-        assert!(in_the_open < 0.02 * drawing.length(|_| true), "{perspective}: {in_the_open}");
+        // Near a pole one edge of a facet sticks out.
+        assert!(in_the_open < 0.05 * drawing.length(|_| true), "{perspective}: {in_the_open}");
     }
 }
 

@@ -399,7 +399,7 @@ fn visible_regions_hatched_alike_share_their_lines() {
     };
     let options = hatch::Options { spacing: 0.1, angle: 0.0, cross: true, ..Default::default() };
     let lines = hatch::hatch(&[region(0.0, 0), region(1.0, 0)], &options);
-    let across = |l: &&durer::target::drawing::Line| l.points[0].x == l.points[1].x;
+    let across = |l: &&durer::target::drawing::Line| (l.points[0].x - l.points[1].x).abs() < 1e-6;
     let (second, first): (Vec<_>, Vec<_>) = lines.iter().partition(across);
     // Through both; across, twenty columns.
     assert!(first.iter().all(|l| (l.length() - 2.0).abs() < 1e-9), "{first:?}");

@@ -364,6 +364,8 @@ mod tests {
         // Further apart than the line is long, or aside, they are other lines.
         let apart = vec![dash(0, 0), dash(2, 0)];
         assert_eq!(chains_of(&without_stubs(apart, 10_000.0, 10.0)), 2);
+        let short = vec![piece([0, 0], [12_000, 0], false), piece([26_000, 0], [38_000, 0], false)];
+        assert_eq!(chains_of(&without_stubs(short, 10_000.0, 10.0)), 2);
         let aside = vec![dash(0, 0), dash(1, 6000)];
         assert_eq!(chains_of(&without_stubs(aside, 10_000.0, 10.0)), 2);
     }
