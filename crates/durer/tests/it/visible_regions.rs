@@ -398,14 +398,14 @@ fn visible_regions_hatched_alike_share_their_lines() {
         item: None,
     };
     let options = hatch::Options { spacing: 0.1, angle: 0.0, cross: true, ..Default::default() };
-    let lines = hatch::hatch(&[region(0.0, 0), region(1.0, 0)], &options);
+    let lines = hatch::hatch(&[region(0.05, 0), region(1.05, 0)], &options);
     let across = |l: &&durer::target::drawing::Line| (l.points[0].x - l.points[1].x).abs() < 1e-6;
     let (second, first): (Vec<_>, Vec<_>) = lines.iter().partition(across);
     // Through both; across, twenty columns.
     assert!(first.iter().all(|l| (l.length() - 2.0).abs() < 1e-9), "{first:?}");
     assert_eq!((first.len(), second.len()), (10, 20));
     // A little lighter, and every second line is left of those across.
-    let lines = hatch::hatch(&[region(0.0, 41)], &options);
+    let lines = hatch::hatch(&[region(0.05, 41)], &options);
     assert_eq!(lines.iter().filter(across).count(), 5, "{lines:?}");
 }
 
