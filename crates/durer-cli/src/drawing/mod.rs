@@ -174,7 +174,10 @@ pub fn render(
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut laid = lay_out(args, kind, subject, frame, &drawings)?;
-    if hatch(args, kind) == Hatch::Shade && style.has_regions() {
+    // In a line drawing the faces of a section are hatched, unless they are to be filled.
+    let on_paper = kind != Kind::Drawing(DrawingFormat::GeoJson);
+    let lines_only = on_paper && !style.has_regions() && args.drawing.hatch.is_none();
+    if hatch(args, kind) == Hatch::Shade || lines_only {
         // The paper's scale says how far apart lines are in the model.
         let spacing = HATCH_SPACING / (laid.scale * unit(args, subject).millimetres());
         drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();

@@ -117,14 +117,19 @@ fn sections_have_lines_of_their_own() {
     // The lower half, from above.
     let ended = folder
         .must("render cube.obj -o cut.svg --section 0,-1,0,0 --view top --lines section --json");
-    let lines = &ended.json()["models"][0]["pictures"][0]["drawing"]["lines"];
-    assert_eq!(lines.as_array().unwrap().len(), 1);
-    assert_eq!(
-        (&lines[0]["class"], &lines[0]["visible"]["polylines"]),
-        (&"section".into(), &1.into())
-    );
-    let length = lines[0]["visible"]["length"].as_f64().unwrap();
+    let drawing = ended.json()["models"][0]["pictures"][0]["drawing"].clone();
+    let lines = drawing["lines"].as_array().unwrap();
+    let of = |class: &str| lines.iter().find(|l| l["class"] == class).expect("a class");
+    assert_eq!((lines.len(), &of("section")["visible"]["polylines"]), (2, &1.into()));
+    let length = of("section")["visible"]["length"].as_f64().unwrap();
     assert!((length - 8.0).abs() < 1e-6, "{length}");
+    // What was cut is hatched; or filled, where that is asked for.
+    assert!(of("hatch")["visible"]["length"].as_f64().unwrap() > 8.0);
+    let ended =
+        folder.must("render cube.obj -o cut.svg --section 0,-1,0,0 --view top --hatch none --json");
+    let drawing = ended.json()["models"][0]["pictures"][0]["drawing"].clone();
+    assert_eq!(drawing["regions"], 1);
+    assert!(drawing["lines"].as_array().unwrap().iter().all(|l| l["class"] != "hatch"));
 }
 
 #[test]

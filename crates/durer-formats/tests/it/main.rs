@@ -6,6 +6,7 @@ mod conformance_height_map;
 mod conformance_meshes;
 mod conformance_svg;
 mod drawing;
+mod drawing_marks;
 mod fuzz;
 mod geo;
 mod gltf;

@@ -4,7 +4,7 @@ use super::Lighting;
 use crate::math::DVec3;
 use crate::scene::{Camera, Projection, Scene};
 use crate::shade::PreparedLights;
-use crate::target::drawing::{Drawing, Line, LineClass};
+use crate::target::drawing::{Drawing, Line, LineClass, RegionKind};
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::line::{ClassSet, hidden_line, wireframe};
@@ -129,6 +129,7 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
     let columns = (ROWS * options.aspect).round().max(1.0) as u32;
     let view = View::new(options.camera, columns, ROWS as u32)?;
     let mut drawing = match options.style {
+        DrawStyle::HiddenLine if options.cap_material.is_some() => caps(scene, &view, options)?,
         DrawStyle::HiddenLine => Drawing::default(),
         DrawStyle::Wireframe => return all_edges(scene, &view, options),
         _ => regions(scene, &view, options)?,
@@ -146,6 +147,14 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
 fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
     let hidden_line::Options { tolerance, pen_order, .. } = options.lines;
     wireframe::draw(scene, view, &wireframe::Options { tolerance, pen_order }, &mut NoTrace)
+}
+
+/// What of a section's caps can be seen, to be filled or hatched among lines.
+fn caps(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
+    let options = DrawOptions { trapped: false, merge: Merge::Material, ..options.clone() };
+    let mut drawing = regions(scene, view, &options)?;
+    drawing.regions.retain(|r| r.kind == RegionKind::Cap);
+    Ok(drawing)
 }
 
 fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {

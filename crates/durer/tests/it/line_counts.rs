@@ -4,7 +4,7 @@
 
 use crate::line_oracle::{Edge, Oracle, Score, distance, drawn_twice, segments};
 use crate::line_scenes::{
-    Random, Triangle, city, cuboid, cylinder, placed, quad, random_boxes, soup, view,
+    Random, Triangle, city, cuboid, cylinder, placed, quad, random_boxes, soup, torus, view,
 };
 use durer::math::{DMat3, DMat4, DVec2, DVec3};
 use durer::scene::Scene;
@@ -204,21 +204,6 @@ fn scenes() -> Vec<(&'static str, Vec<Triangle>, DVec3)> {
         ("edge-on", cuboid([-1.0; 3], [1.0; 3]), DVec3::NEG_Y),
         ("cusps", torus(32, 16), DVec3::new(0.0, -1.0, 0.45)),
     ]
-}
-
-fn torus(around: usize, across: usize) -> Vec<Triangle> {
-    let at = |i: usize, k: usize| {
-        let turn = |n: usize, of: usize| (n % of) as f64 / of as f64 * std::f64::consts::TAU;
-        let ((s, c), (t, d)) = (turn(i, around).sin_cos(), turn(k, across).sin_cos());
-        DVec3::new(c * (2.0 + 0.8 * d), s * (2.0 + 0.8 * d), 0.8 * t)
-    };
-    let cells = (0..around).flat_map(|i| (0..across).map(move |k| (i, k)));
-    cells
-        .flat_map(|(i, k)| {
-            let [a, b, c, d] = [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)];
-            [[a, b, c], [a, c, d]]
-        })
-        .collect()
 }
 
 fn drawn(scene: &Scene, view: &View) -> Drawing {

@@ -105,3 +105,19 @@ pub fn city(side: usize) -> Vec<Triangle> {
     }
     triangles
 }
+
+/// A ring around z of radii 2 and 0.8.
+pub fn torus(around: usize, across: usize) -> Vec<Triangle> {
+    let at = |i: usize, k: usize| {
+        let turn = |n: usize, of: usize| (n % of) as f64 / of as f64 * std::f64::consts::TAU;
+        let ((s, c), (t, d)) = (turn(i, around).sin_cos(), turn(k, across).sin_cos());
+        DVec3::new(c * (2.0 + 0.8 * d), s * (2.0 + 0.8 * d), 0.8 * t)
+    };
+    let cells = (0..around).flat_map(|i| (0..across).map(move |k| (i, k)));
+    cells
+        .flat_map(|(i, k)| {
+            let [a, b, c, d] = [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect()
+}

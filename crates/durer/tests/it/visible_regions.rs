@@ -3,7 +3,7 @@
 use crate::scenes::{Numbers, instance, soup};
 use crate::surface_scenes::{Prepared, each, of_triangles};
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
-use durer::math::{DVec2, DVec3, Vec3};
+use durer::math::{DMat4, DVec2, DVec3, Vec3};
 use durer::scene::{Camera, Light, LightKind, Projection, Scene};
 use durer::shade::PreparedLights;
 use durer::target::drawing::{LineClass, Region, RegionKind};
@@ -13,6 +13,7 @@ use durer::visibility::region::weiler_atherton::{
     Options, VisibleMap, VisibleRegion, replay, solve,
 };
 use durer::visibility::region::{self, Fill, Merge, hatch};
+use durer::visibility::surface::Cull;
 
 fn solved(scene: &Scene, view: &View) -> VisibleMap {
     solve(scene, view, &Options::default(), &mut NoTrace).expect("solved")
@@ -386,6 +387,59 @@ fn visible_regions_hatched_by_tone() {
     assert!((length(RegionKind::Cap, 255) - 250.0).abs() < 5.0);
     assert_eq!(length(RegionKind::Surface, 255), 0.0);
     assert!(length(RegionKind::Surface, 100) < length(RegionKind::Surface, 30));
+}
+
+#[test]
+fn visible_regions_hatched_alike_share_their_lines() {
+    let region = |x: f64, grey: u8| Region {
+        kind: RegionKind::Surface,
+        rings: vec![[(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 1.0)].map(DVec2::from).to_vec()],
+        color: [grey, grey, grey, 255],
+        item: None,
+    };
+    let options = hatch::Options { spacing: 0.1, angle: 0.0, cross: true, ..Default::default() };
+    let lines = hatch::hatch(&[region(0.05, 0), region(1.05, 0)], &options);
+    let across = |l: &&durer::target::drawing::Line| (l.points[0].x - l.points[1].x).abs() < 1e-6;
+    let (second, first): (Vec<_>, Vec<_>) = lines.iter().partition(across);
+    // Through both; across, twenty columns.
+    assert!(first.iter().all(|l| (l.length() - 2.0).abs() < 1e-9), "{first:?}");
+    assert_eq!((first.len(), second.len()), (10, 20));
+    // A little lighter, and every second line is left of those across.
+    let lines = hatch::hatch(&[region(0.05, 41)], &options);
+    assert_eq!(lines.iter().filter(across).count(), 5, "{lines:?}");
+}
+
+#[test]
+fn visible_regions_are_painted_from_far_to_near() {
+    // The nearer one is met first from the left, and by number.
+    let near = square(-1.0, -1.0, 1.0, 1.5);
+    let far = square(0.0, -0.5, 0.0, 1.0);
+    let scene = of_triangles([near, far].as_flattened());
+    let view = View::new(from_above(4.0), 64, 64).expect("view");
+    let options = region::Options { merge: Merge::Face, ..Default::default() };
+    let lights = PreparedLights::new(&[], &view.camera());
+    let drawing = region::draw(&scene, &view, &lights, &options).expect("drawn");
+    let items: Vec<Option<u32>> = drawing.regions.iter().map(|r| r.item).collect();
+    let place = |item: u32| items.iter().position(|i| *i == Some(item));
+    let last_far = [2, 3].iter().filter_map(|i| place(*i)).max();
+    let first_near = [0, 1].iter().filter_map(|i| place(*i)).min();
+    assert!(last_far.is_some() && last_far < first_near, "{items:?}");
+}
+
+#[test]
+fn visible_regions_of_mirrored_instances_keep_their_fronts() {
+    let view = View::new(from_above(4.0), 64, 64).expect("view");
+    for sign in [1.0, -1.0] {
+        let mut scene = of_triangles(&square(-0.5, -0.5, 0.0, 1.0));
+        scene.instances[0].world_from_mesh = DMat4::from_scale(DVec3::new(sign, 1.0, 1.0));
+        let options = Options { cull: Cull::Back };
+        let map = solve(&scene, &view, &options, &mut NoTrace).expect("solved");
+        assert!(!map.regions(u64::from).is_empty(), "{sign}");
+        // A half turn shows the back.
+        scene.instances[0].world_from_mesh = DMat4::from_scale(DVec3::new(-sign, 1.0, -1.0));
+        let map = solve(&scene, &view, &options, &mut NoTrace).expect("solved");
+        assert!(map.regions(u64::from).is_empty(), "{sign}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Which edges are lines: silhouettes, creases, borders and the like.
 
 use super::page::{Projected, orient};
+use super::smooth_silhouette::Whole;
 use crate::math::DVec3;
 use crate::target::drawing::LineClass;
 use crate::visibility::object::{Bodies, Edges, Faces, Side};
@@ -88,14 +89,16 @@ const THIN: f64 = 1.0 / (1u64 << 20) as f64;
 const EDGE_ON: f64 = 2.0;
 
 impl Facing {
-    pub fn new(faces: &Faces, bodies: &Bodies, projected: &Projected) -> Self {
+    /// Normals are those of the whole triangles.
+    pub fn new(faces: &Faces, bodies: &Bodies, projected: &Projected, whole: Whole<'_>) -> Self {
         let thin = extent(faces) * THIN;
         let mut found = Self { turn: vec![0; faces.len()], normals: vec![[0.0; 3]; faces.len()] };
         for (item, t) in faces.triangles() {
             let points = t.map(|v| faces.points()[v as usize]);
             let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
             let i = item as usize;
-            if let Some(normal) = normal(points, thin) {
+            let of_whole = whole.corners(faces, item).filter(|_| !whole.sliver(item));
+            if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
                 found.normals[i] = (normal * sign).as_vec3().to_array();
             }
             found.turn[i] = match projected.corners(t) {
@@ -170,8 +173,8 @@ pub(super) struct Rules<'a> {
     pub classes: ClassSet,
     /// Cosine of the crease angle.
     pub crease: f32,
-    /// Whether silhouettes of smooth parts come from elsewhere.
-    pub smooth: bool,
+    /// Whether faces are divided along silhouettes: those run inside of polygons too.
+    pub divided: bool,
 }
 
 /// The material of each item; `None` where all have the same.
@@ -217,7 +220,8 @@ impl Rules<'_> {
             [_] => wanted(LineClass::Border).or_else(wire),
             [a, b] => {
                 if self.faces.same_polygon(a.item(), b.item()) {
-                    return None;
+                    let outline = self.divided && self.outlines(ends, a.item(), b.item());
+                    return outline.then_some(LineClass::Silhouette).and_then(wanted);
                 }
                 let against = (a.forward() == b.forward())
                     ^ self.bodies.turned(a.item())
@@ -259,12 +263,16 @@ impl Rules<'_> {
         if a == b {
             return None;
         }
-        let sharp = self.facing.angle_cosine(a, b) < self.crease;
-        let turns = self.facing.front(a) != self.facing.front(b) && (sharp || !self.smooth);
+        let turns = self.facing.front(a) != self.facing.front(b);
         if turns && self.classes.contains(LineClass::Silhouette) {
             return Some(LineClass::Silhouette);
         }
-        sharp.then_some(LineClass::Crease)
+        (self.facing.angle_cosine(a, b) < self.crease).then_some(LineClass::Crease)
+    }
+
+    fn outlines(&self, ends: [u32; 2], a: u32, b: u32) -> bool {
+        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
+        self.facing.front(a) != self.facing.front(b)
     }
 
     /// The triangle itself, or for one that is too thin to be turned any way, the neighbour

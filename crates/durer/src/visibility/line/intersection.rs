@@ -74,27 +74,29 @@ impl Node {
 /// A complete binary tree: node i has the children 2i + 1 and 2i + 2.
 struct Tree<'a> {
     faces: &'a Faces,
-    bodies: &'a Bodies,
     between: bool,
     nodes: Vec<Node>,
     /// Nodes from here on are leaves.
     first_leaf: u32,
+    /// The faces along the curve, and their boxes beside each other in memory.
     order: Vec<u32>,
+    boxes: Vec<Node>,
 }
 
 impl<'a> Tree<'a> {
-    fn new(faces: &'a Faces, bodies: &'a Bodies, between: bool) -> Self {
+    fn new(faces: &'a Faces, bodies: &Bodies, between: bool) -> Self {
         let order = morton_order(faces, bodies);
+        let boxes: Vec<Node> = order.iter().map(|&i| face_box(faces, bodies, i)).collect();
         let leaves = order.len().div_ceil(LEAF).max(1).next_power_of_two();
         let mut nodes = vec![Node::EMPTY; 2 * leaves - 1];
-        for (leaf, items) in order.chunks(LEAF).enumerate() {
-            let boxes = items.iter().map(|&item| face_box(faces, bodies, item));
-            nodes[leaves - 1 + leaf] = boxes.reduce(|a, b| a.union(&b)).unwrap_or(Node::EMPTY);
+        for (leaf, boxes) in boxes.chunks(LEAF).enumerate() {
+            let joined = boxes.iter().copied().reduce(|a, b| a.union(&b));
+            nodes[leaves - 1 + leaf] = joined.unwrap_or(Node::EMPTY);
         }
         for i in (0..leaves - 1).rev() {
             nodes[i] = nodes[2 * i + 1].union(&nodes[2 * i + 2]);
         }
-        Self { faces, bodies, between, nodes, first_leaf: leaves as u32 - 1, order }
+        Self { faces, between, nodes, first_leaf: leaves as u32 - 1, order, boxes }
     }
 
     /// Whether a pair of nodes may hold a pair of faces that is asked for.
@@ -130,14 +132,16 @@ impl<'a> Tree<'a> {
     }
 
     fn leaves(&self, (a, b): (u32, u32), found: &mut Vec<Meeting>) {
-        let items = |node: u32| {
+        let places = |node: u32| {
             let start = (node - self.first_leaf) as usize * LEAF;
-            self.order.get(start..(start + LEAF).min(self.order.len())).unwrap_or_default()
+            start..(start + LEAF).min(self.order.len())
         };
-        for (i, &x) in items(a).iter().enumerate() {
-            let others = if a == b { &items(b)[i + 1..] } else { items(b) };
-            for &y in others {
-                let apart = self.between && self.bodies.of(x) == self.bodies.of(y);
+        let of_b = &self.nodes[b as usize];
+        for i in places(a).filter(|&i| self.boxes[i].touches(of_b)) {
+            let others = if a == b { i + 1..places(b).end } else { places(b) };
+            for k in others.filter(|&k| self.boxes[i].touches(&self.boxes[k])) {
+                let apart = self.between && self.boxes[i].body == self.boxes[k].body;
+                let (x, y) = (self.order[i], self.order[k]);
                 if !apart && let Some(meeting) = self.pair(x.min(y), x.max(y)) {
                     found.push(meeting);
                 }
@@ -145,14 +149,11 @@ impl<'a> Tree<'a> {
         }
     }
 
+    /// Where two faces meet whose boxes touch.
     fn pair(&self, a: u32, b: u32) -> Option<Meeting> {
         let (ta, tb) = (self.faces.triangle(a)?, self.faces.triangle(b)?);
         let shared = ta.iter().filter(|v| tb.contains(v)).count();
         if shared > 1 {
-            return None;
-        }
-        let (na, nb) = (face_box(self.faces, self.bodies, a), face_box(self.faces, self.bodies, b));
-        if !na.touches(&nb) {
             return None;
         }
         let (ca, cb) = (self.faces.corners(a)?, self.faces.corners(b)?);

@@ -125,6 +125,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn slivers_that_a_cut_leaves_are_dropped() {
+        let line = |from: i32, to: i32| Piece {
+            ends: [GridPoint { x: from, y: 0 }, GridPoint { x: to, y: 0 }],
+            class: LineClass::Border,
+            invisibility: 0,
+            smooth: false,
+        };
+        let (long, short) = (line(0, 100_000), line(90_000, 100_050));
+        assert_eq!(drawn_once(vec![short, long], 10.0, 0.0, 64.0), [long]);
+        assert_eq!(drawn_once(vec![short, long], 10.0, 0.0, 10.0), [long, line(100_000, 100_050)]);
+    }
+
+    #[test]
     fn what_is_left_of_a_bundle_does_not_depend_on_the_order() {
         let line = |x: i32, y: i32| Piece {
             ends: [GridPoint { x: 0, y: 0 }, GridPoint { x, y }],

@@ -3,6 +3,8 @@
 //! All decisions in the plane are made with integers and are exact; what projects to one place up to
 //! rounding is at one place.
 
+use super::arrange::{How, arrange};
+use super::overlap::Piece;
 use crate::Result;
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::Scene;
@@ -195,18 +197,34 @@ impl Projected {
     }
 }
 
-/// The drawing of the lines that `lines` makes of the faces of a scene, if any of them can be seen.
+/// The drawing of the pieces that `pieces` makes of the faces of a scene, if any of them can be seen.
 pub(super) fn draw(
     scene: &Scene,
     view: &View,
-    lines: impl FnOnce(&Faces, &Projected) -> Vec<Line>,
+    how: How,
+    pieces: impl FnOnce(&Faces, &Projected) -> Vec<Piece>,
 ) -> Result<Drawing> {
     let faces = Faces::new(scene)?;
     let plane = PicturePlane::new(view);
     let window = plane.window();
-    let projected = Projected::new(&faces, plane);
-    let lines = projected.map(|p| lines(&faces, &p)).unwrap_or_default();
-    Ok(Drawing { window, lines, ..Drawing::default() })
+    let found = on_page(&faces, plane, |projected| pieces(&faces, projected));
+    drop(faces);
+    Ok(Drawing { window, lines: arranged(found, how), ..Drawing::default() })
+}
+
+/// What `pieces` makes of the faces on their page; all but these are let go before lines are made of them.
+pub(super) fn on_page(
+    faces: &Faces,
+    plane: PicturePlane,
+    pieces: impl FnOnce(&Projected) -> Vec<Piece>,
+) -> Option<(Page, Vec<Piece>)> {
+    let projected = Projected::new(faces, plane)?;
+    Some((projected.page, pieces(&projected)))
+}
+
+/// The lines of what [`on_page`] gives.
+pub(super) fn arranged(found: Option<(Page, Vec<Piece>)>, how: How) -> Vec<Line> {
+    found.map(|(page, pieces)| arrange(&page, pieces, how)).unwrap_or_default()
 }
 
 /// What the projected points span.

@@ -12,7 +12,8 @@ use super::page::GridPoint;
 use super::table::Table;
 use crate::target::drawing::LineClass;
 
-/// What a stub ended at may end in the open without it, so cutting is repeated.
+/// What a stub ended at may end in the open without it, and what was joined may go on further, so all
+/// is repeated.
 const ROUNDS: usize = 3;
 
 /// A stub of so few edges of the mesh may be [`COARSE_LENGTH`] times as long: on a coarse mesh an
@@ -22,6 +23,12 @@ const COARSE_LENGTH: f64 = 4.0;
 
 /// Gaps up to this part of a stub are closed, whichever line goes on in the other.
 const GAP: f64 = 0.3;
+
+/// Gaps up to this many stubs are closed where a line goes straight on beyond, and is longer than the gap.
+const STRAIGHT_GAP: f64 = 1.5;
+
+/// The cosine of the turn at either side of such a gap: 12°.
+const STRAIGHT: f64 = 0.978;
 
 /// What lies within this part of a stub meets on paper: a pen's stroke is as wide.
 const MEETS: f64 = 0.1;
@@ -33,15 +40,13 @@ const DUST: f64 = 0.3;
 /// The pieces without stubs up to `length` steps; what lies within `touch` steps touches.
 pub(super) fn without_stubs(mut pieces: Vec<Piece>, length: f64, touch: f64) -> Vec<Piece> {
     let touch = touch.max(4.0);
-    let gaps = match Lines::new(&pieces, length, touch) {
-        Some(mut lines) => lines.gaps(),
-        None => return pieces,
-    };
-    pieces.extend(gaps);
     for _ in 0..ROUNDS {
         let Some(mut lines) = Lines::new(&pieces, length, touch) else { break };
+        let gaps = lines.gaps();
+        pieces.extend_from_slice(&gaps);
+        let Some(mut lines) = Lines::new(&pieces, length, touch) else { break };
         let cuts = lines.stubs();
-        if cuts.is_empty() {
+        if cuts.is_empty() && gaps.is_empty() {
             break;
         }
         for cut in cuts {
@@ -78,6 +83,10 @@ struct Lines<'a> {
 struct Tip {
     end: u32,
     at: GridPoint,
+    /// Where its line comes from, some way back.
+    from: GridPoint,
+    /// The length of its line.
+    length: f64,
 }
 
 impl<'a> Lines<'a> {
@@ -100,14 +109,17 @@ impl<'a> Lines<'a> {
         Some(Self { pieces, walks, dust, table, length, touch })
     }
 
-    /// The open walks from both sides.
-    fn open_walks(&self) -> Vec<Vec<u32>> {
-        let open = self.walks.iter().filter(|w| !w.closed);
-        let ways = open.flat_map(|w| {
-            let back = w.ends.iter().rev().map(|e| e ^ 1).collect();
-            [w.ends.clone(), back]
-        });
-        ways.filter(|ends| self.may_end_anywhere(ends[0])).collect()
+    /// The open walks, each from both sides, of silhouettes and creases.
+    fn open_walks(&self) -> Vec<[Vec<u32>; 2]> {
+        let class = |w: &Walk| self.pieces[w.ends[0] as usize / 2].class;
+        let outlines = |w: &&Walk| matches!(class(w), LineClass::Silhouette | LineClass::Crease);
+        let open = self.walks.iter().filter(|w| !w.closed).filter(outlines);
+        let back = |w: &Walk| w.ends.iter().rev().map(|e| e ^ 1).collect();
+        open.map(|w| [w.ends.clone(), back(w)]).collect()
+    }
+
+    fn length_of(&self, ends: &[u32]) -> f64 {
+        ends.iter().map(|e| self.pieces[*e as usize / 2].length()).sum()
     }
 
     fn may_end_anywhere(&self, end: u32) -> bool {
@@ -119,9 +131,19 @@ impl<'a> Lines<'a> {
         let rings = self.walks.iter().filter(|w| w.closed).flat_map(|w| &w.ends);
         let pieces = rings.map(|e| *e as usize / 2);
         let mut cuts: Vec<Cut> = pieces.filter(|&i| self.dust[i]).map(Cut::All).collect();
-        for ends in self.open_walks() {
-            if self.is_in_the_open(&ends, self.touch.max(self.length * MEETS)) {
-                self.cut_back(&ends, &mut cuts);
+        let meets = self.touch.max(self.length * MEETS);
+        for ways in self.open_walks() {
+            // Sharp edges go on; what is short and alone comes from faces that are hardly turned.
+            let alone = self.length_of(&ways[0]) <= self.length
+                && ways.iter().all(|ends| self.is_in_the_open(ends, self.length));
+            if alone {
+                cuts.extend(ways[0].iter().map(|e| Cut::All(*e as usize / 2)));
+                continue;
+            }
+            for ends in &ways {
+                if self.may_end_anywhere(ends[0]) && self.is_in_the_open(ends, meets) {
+                    self.cut_back(ends, &mut cuts);
+                }
             }
         }
         cuts
@@ -211,11 +233,16 @@ impl<'a> Lines<'a> {
 
     /// Pieces between tips that meet, or lie near each other and go on in each other's direction.
     fn gaps(&mut self) -> Vec<Piece> {
-        let most = self.length * GAP;
+        let most = self.length * STRAIGHT_GAP;
         let mut tips = Vec::new();
-        for ends in self.open_walks() {
+        for ends in self.open_walks().into_iter().flatten() {
             if self.is_in_the_open(&ends, self.touch) {
-                tips.push(Tip { end: ends[0], at: point(self.pieces, ends[0]) });
+                let length = self.length_of(&ends);
+                let at = point(self.pieces, ends[0]);
+                let mut back = ends.iter().map(|e| point(self.pieces, e ^ 1));
+                let from = back.clone().find(|p| p.distance(at) >= self.length * GAP);
+                let from = from.or(back.next_back()).unwrap_or(at);
+                tips.push(Tip { end: ends[0], at, from, length });
             }
         }
         tips.sort_unstable_by_key(|t| (t.at, t.end));
@@ -241,18 +268,22 @@ impl<'a> Lines<'a> {
         found
     }
 
-    /// Whether one line goes on in the other: of one class, with turns below 60°.
+    /// Whether one line goes on in the other: of one class, with turns below 60°, or straight where it
+    /// is further.
     fn go_on(&self, a: &Tip, b: &Tip) -> bool {
         let of = |t: &Tip| &self.pieces[t.end as usize / 2];
         let (p, q) = (of(a), of(b));
         let same = (p.class, p.invisibility) == (q.class, q.invisibility);
         let [gx, gy] = b.at.minus(a.at).map(|d| d as f64);
+        let gap = a.at.distance(b.at);
+        let far = gap > self.length * GAP;
         let ahead = |t: &Tip, sign: f64| {
-            let [x, y] = t.at.minus(point(self.pieces, t.end ^ 1)).map(|d| d as f64 * sign);
+            let from = if far { t.from } else { point(self.pieces, t.end ^ 1) };
+            let [x, y] = t.at.minus(from).map(|d| d as f64 * sign);
             let cosine = (x * gx + y * gy) / ((x * x + y * y) * (gx * gx + gy * gy)).sqrt();
-            cosine > 0.5
+            if far { cosine > STRAIGHT && t.length > gap } else { cosine > 0.5 }
         };
-        let meet = a.at.distance(b.at) <= self.length * MEETS;
+        let meet = gap <= self.length * MEETS;
         let on = meet || (ahead(a, 1.0) && ahead(b, -1.0));
         same && a.end / 2 != b.end / 2 && a.at != b.at && on
     }
@@ -321,6 +352,35 @@ mod tests {
         pieces.push(Piece { class: LineClass::Crease, ..piece([far, 0], [far + 500, 500], true) });
         let found = without_stubs(pieces, 10_000.0, 10.0);
         assert_eq!(ends(&found)[0], [0, 0, far, 0]);
+    }
+
+    #[test]
+    fn dashes_of_one_line_are_joined() {
+        // An outline along a face that is nearly edge-on; sharp, as it is at a rim.
+        let dash = |k: i32, up: i32| piece([k * 30_000, up], [k * 30_000 + 18_000, up], false);
+        let dashes = [0, 1, 2, 3].map(|k| dash(k, 0)).to_vec();
+        let found = without_stubs(dashes.clone(), 10_000.0, 10.0);
+        assert_eq!(chains_of(&found), 1, "{found:?}");
+        // Further apart than the line is long, or aside, they are other lines.
+        let apart = vec![dash(0, 0), dash(2, 0)];
+        assert_eq!(chains_of(&without_stubs(apart, 10_000.0, 10.0)), 2);
+        let short = vec![piece([0, 0], [12_000, 0], false), piece([26_000, 0], [38_000, 0], false)];
+        assert_eq!(chains_of(&without_stubs(short, 10_000.0, 10.0)), 2);
+        let aside = vec![dash(0, 0), dash(1, 6000)];
+        assert_eq!(chains_of(&without_stubs(aside, 10_000.0, 10.0)), 2);
+    }
+
+    fn chains_of(pieces: &[Piece]) -> usize {
+        super::super::chain::chains(pieces).len()
+    }
+
+    #[test]
+    fn sharp_specks_are_left_out_where_nothing_is_near() {
+        let line = piece([0, 0], [900_000, 0], false);
+        let alone = piece([400_000, 50_000], [404_000, 54_000], false);
+        let near = piece([400_000, 4000], [404_000, 8000], false);
+        let found = without_stubs(vec![line, alone, near], 10_000.0, 10.0);
+        assert_eq!(found, [line, near]);
     }
 
     #[test]

@@ -88,7 +88,7 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
     options.how().check()?;
-    super::page::draw(scene, view, |faces, projected| {
+    super::page::draw(scene, view, options.how(), |faces, projected| {
         t.step(|| Step::Page(projected.page));
         let (_, edges) = Bodies::find(faces);
         let mut pieces = Vec::new();
@@ -100,7 +100,7 @@ pub fn draw(
             t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
             pieces.push(piece(ends));
         }
-        arrange(&projected.page, pieces, options.how())
+        pieces
     })
 }
 

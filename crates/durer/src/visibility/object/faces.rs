@@ -96,6 +96,35 @@ impl Faces {
         }
     }
 
+    /// The same with parts in place of some triangles, and of each triangle the item that it was. `parts`
+    /// are (item, vertices) in item order, `points` those of the faces and more. Parts of one polygon are
+    /// one polygon.
+    pub(in crate::visibility) fn refined(
+        &self,
+        points: Vec<DVec3>,
+        parts: impl Iterator<Item = (u32, [u32; 3])>,
+    ) -> (Self, Vec<u32>) {
+        let (mut triangles, mut origins) = (Vec::new(), Vec::new());
+        let mut parts = parts.peekable();
+        for (item, &t) in (0..).zip(&self.triangles) {
+            let before = triangles.len();
+            while let Some((_, part)) = parts.next_if(|p| p.0 == item) {
+                triangles.push(part);
+            }
+            if triangles.len() == before {
+                triangles.push(t);
+            }
+            origins.resize(triangles.len(), item);
+        }
+        let start = |item: u32| origins.partition_point(|&o| o < item) as u32;
+        let run =
+            |r: &FaceRun| FaceRun { items: start(r.items.start)..start(r.items.end), ..r.clone() };
+        let runs = self.runs.iter().map(run).collect();
+        let polygon = |&item: &u32| self.polygons.as_ref().map_or(item, |p| p[item as usize]);
+        let polygons = Some(origins.iter().map(polygon).collect());
+        (Self { points, triangles, runs, polygons }, origins)
+    }
+
     /// The number of triangles: one more than the largest item.
     pub fn len(&self) -> usize {
         self.triangles.len()

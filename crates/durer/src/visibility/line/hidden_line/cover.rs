@@ -144,3 +144,45 @@ fn absorb(sliver: f64, spans: &mut Vec<Span>) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::visibility::line::page::GridPoint;
+
+    fn vertex(x: i32, y: i32, depth: f64) -> Vertex {
+        Vertex { at: GridPoint { x, y }, depth }
+    }
+
+    #[test]
+    fn a_line_along_a_border_is_hidden_where_both_of_its_sides_are() {
+        let line = [vertex(0, 0, 9.0), vertex(1000, 0, 9.0)];
+        let face = |corners: [(i32, i32); 3]| Occluder {
+            item: 0,
+            corners: corners.map(|(x, y)| vertex(x, y, 1.0)),
+        };
+        let above = cover(&line, &face([(0, 0), (1000, 0), (0, 1000)]), 0.0).expect("a cover");
+        let below = cover(&line, &face([(0, 0), (0, -1000), (1000, 0)]), 0.0).expect("a cover");
+        assert_eq!([above, below].map(|c| (c.left, c.right)), [(true, false), (false, true)]);
+        let [p, q] = line;
+        let back = cover(&[q, p], &face([(0, 0), (1000, 0), (0, 1000)]), 0.0).expect("a cover");
+        assert_eq!((back.left, back.right), (false, true));
+        let mut found = Vec::new();
+        for (covers, hidden) in [(vec![above], 0), (vec![below], 0), (vec![above, below], 1)] {
+            spans(&covers, 0.0, true, &mut found);
+            assert_eq!(found, [Span { from: 0.0, to: 1.0, invisibility: hidden }]);
+        }
+    }
+
+    #[test]
+    fn slivers_go_to_the_longer_neighbour() {
+        let part = |from, to| Cover { item: 0, from, to, left: true, right: true };
+        let mut found = Vec::new();
+        let covers = [part(0.3, 0.3001), part(0.7, 1.0)];
+        spans(&covers, 1e-3, true, &mut found);
+        let ends: Vec<_> = found.iter().map(|s| (s.from, s.to, s.invisibility)).collect();
+        assert_eq!(ends, [(0.0, 0.7, 0), (0.7, 1.0, 1)]);
+        spans(&covers, 1e-5, true, &mut found);
+        assert_eq!(found.len(), 4);
+    }
+}

@@ -29,16 +29,18 @@ use super::edge_lines::{
 };
 use super::intersection::intersections;
 use super::overlap::Piece;
-use super::page::{GridPoint, Page, Projected, Vertex};
-use super::smooth_silhouette::{SmoothSilhouette, smooth_silhouettes};
+use super::page::{GridPoint, Page, Projected, Vertex, arranged, on_page};
+use super::smooth_silhouette::{Whole, divided};
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
+use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::{Bodies, Edges, Faces};
 use crate::{Error, Result, parallel};
+use std::ops::Range;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -66,8 +68,8 @@ pub struct Options {
     /// end is [`LineClass::Section`].
     pub cap_material: Option<usize>,
     /// Whether silhouettes are those of the smooth surface that the mesh stands for, where its normals
-    /// are at a right angle to the sight, and not the edges between faces. Such a line runs beside the
-    /// mesh's own outline, so faces that touch its triangle do not hide it.
+    /// are at a right angle to the sight, and not the edges between faces. The mesh is divided along
+    /// them, with its new vertices on the smooth surface, and all lines are those of the divided mesh.
     pub smooth: bool,
     /// Whether hidden lines are given too. Without them the work ends where a line is known to be
     /// hidden, and the drawing has visible lines only.
@@ -191,77 +193,123 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
     options.check()?;
-    super::page::draw(scene, view, |faces, projected| {
-        t.step(|| Step::Page(projected.page));
-        let (bodies, edges) = Bodies::find(faces);
-        let facing = Facing::new(faces, &bodies, projected);
-        let lines = lines(scene, faces, &bodies, edges, &facing, options, projected);
-        let segments: Vec<[Vertex; 2]> = lines.iter().map(|l| l.ends).collect();
-        let occluders = Occluders::new(faces, &bodies, &facing, projected, &segments);
-        let pieces = hide(&lines, &occluders, options, t);
-        arrange(&projected.page, pieces, options.how())
-    })
+    let (faces, plane) = (Faces::new(scene)?, PicturePlane::new(view));
+    let window = plane.window();
+    let found = if options.smooth {
+        let divided = divided(scene, faces, &plane);
+        let whole = Whole(Some(&divided));
+        on_page(&divided.faces, plane, |page| pieces(&divided.faces, whole, page, options, t))
+    } else {
+        on_page(&faces, plane, |page| pieces(&faces, Whole(None), page, options, t))
+    };
+    Ok(Drawing { window, lines: arranged(found, options.how()), ..Drawing::default() })
 }
 
-/// All lines, before it is known what of them can be seen.
-fn lines(
-    scene: &Scene,
+/// What can be seen, or is hidden, of all lines.
+fn pieces(
     faces: &Faces,
-    bodies: &Bodies,
-    edges: Edges,
-    facing: &Facing,
-    options: &Options,
+    whole: Whole<'_>,
     projected: &Projected,
-) -> Vec<FeatureLine> {
-    let rules = Rules {
-        faces,
-        edges: &edges,
-        facing,
-        bodies,
-        materials: materials(faces),
-        cap: options.cap_material.map(|m| material_number(Some(m))),
-        classes: options.classes,
-        crease: libm::cos(options.crease) as f32,
-        smooth: options.smooth,
-    };
-    let mut lines = feature_lines(&rules, projected);
-    drop(rules);
-    drop(edges);
-    if options.classes.contains(LineClass::Intersection) {
-        lines.extend(meeting_lines(faces, bodies, options.intersections, projected));
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Vec<Piece> {
+    t.step(|| Step::Page(projected.page));
+    let (bodies, edges) = Bodies::find(faces);
+    let facing = Facing::new(faces, &bodies, projected, whole);
+    let lines = Lines::new(faces, &bodies, edges, &facing, options, projected);
+    let all = lines.some(0..lines.len()).map(|l| l.ends);
+    let occluders = Occluders::new(faces, &bodies, &facing, projected, all);
+    drop((bodies, facing));
+    hide(&lines, &occluders, whole, options, t)
+}
+
+/// All lines, before it is known what of them can be seen. Edges are a third of the size of
+/// [`FeatureLine`], and there may be more of them than faces.
+struct Lines<'a> {
+    faces: &'a Faces,
+    projected: &'a Projected,
+    edges: Vec<EdgeLine>,
+    meetings: Vec<FeatureLine>,
+}
+
+impl<'a> Lines<'a> {
+    fn new(
+        faces: &'a Faces,
+        bodies: &Bodies,
+        edges: Edges,
+        facing: &Facing,
+        options: &Options,
+        projected: &'a Projected,
+    ) -> Self {
+        let rules = Rules {
+            faces,
+            edges: &edges,
+            facing,
+            bodies,
+            materials: materials(faces),
+            cap: options.cap_material.map(|m| material_number(Some(m))),
+            classes: options.classes,
+            crease: libm::cos(options.crease) as f32,
+            divided: options.smooth,
+        };
+        let of_edges = edge_lines(&rules);
+        drop(rules);
+        drop(edges);
+        let meetings = if options.classes.contains(LineClass::Intersection) {
+            meeting_lines(faces, bodies, options.intersections, projected)
+        } else {
+            Vec::new()
+        };
+        Self { faces, projected, edges: of_edges, meetings }
     }
-    if options.smooth && options.classes.contains(LineClass::Silhouette) {
-        lines.extend(smooth_lines(scene, faces, projected));
+
+    /// How many there are, with those that are points in the picture.
+    fn len(&self) -> usize {
+        self.edges.len() + self.meetings.len()
     }
-    lines
+
+    /// Those of a range that have an extent in the picture.
+    fn some(&self, range: Range<usize>) -> impl Iterator<Item = FeatureLine> + Clone {
+        let split = self.edges.len();
+        let edges = &self.edges[range.start.min(split)..range.end.min(split)];
+        let meetings = &self.meetings[range.start.max(split) - split..range.end.max(split) - split];
+        let line = |l: &EdgeLine| {
+            let ends = self.projected.edge(self.faces, l.ends)?;
+            Some(FeatureLine { smooth: l.smooth, ..FeatureLine::new(ends, l.class, l.items)? })
+        };
+        edges.iter().filter_map(line).chain(meetings.iter().copied())
+    }
 }
 
 /// The pieces of all lines.
 fn hide(
-    lines: &[FeatureLine],
+    lines: &Lines<'_>,
     occluders: &Occluders<'_>,
+    whole: Whole<'_>,
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Vec<Piece> {
-    let jobs: Vec<&[FeatureLine]> = lines.chunks(JOB).collect();
+    let count = lines.len();
+    let jobs: Vec<_> = (0..count).step_by(JOB).map(|i| i..(i + JOB).min(count)).collect();
     let page = occluders.page();
     let covers_of = |line: &FeatureLine, covers: &mut Vec<Cover>| {
         covers_of(line, occluders, page.touching, !options.hidden, covers);
     };
-    let hide = |lines: &[FeatureLine]| {
+    let hide = |range: Range<usize>| {
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
-        for line in lines {
-            covers_of(line, &mut covers);
+        for line in lines.some(range) {
+            covers_of(&line, &mut covers);
             let ends = line.ends.map(|v| v.at);
             cut(line.class, line.smooth, ends, &covers, options.hidden, &mut spans, &mut pieces);
         }
         pieces
     };
-    let pieces = parallel::map(jobs, hide).into_iter().flatten().collect();
-    for line in lines {
+    let pieces = joined(parallel::map(jobs, hide));
+    for line in lines.some(0..count) {
         t.step(|| {
             let mut covers = Vec::new();
-            covers_of(line, &mut covers);
+            covers_of(&line, &mut covers);
+            covers.iter_mut().for_each(|c| c.item = whole.item(c.item));
             let ends = line.ends.map(|v| page.plane_from_grid(v.at));
             Step::Line { class: line.class, smooth: line.smooth, ends, covers }
         });
@@ -269,17 +317,23 @@ fn hide(
     pieces
 }
 
+/// All parts in one list of just their size.
+fn joined<T>(parts: Vec<Vec<T>>) -> Vec<T> {
+    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    parts.into_iter().for_each(|part| all.extend(part));
+    all
+}
+
 /// Lines per job.
 const JOB: usize = 2048;
 
 /// A line before it is known what of it can be seen.
+#[derive(Clone, Copy)]
 struct FeatureLine {
     ends: [Vertex; 2],
     class: LineClass,
     /// The faces that it lies on.
     items: [u32; 2],
-    /// Faces with one of these vertices do not hide it; [`NO_ITEM`] is none.
-    around: [u32; 3],
     /// See [`Step::Line`].
     smooth: bool,
 }
@@ -289,25 +343,16 @@ impl FeatureLine {
     fn new(mut ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
         // One way round whatever the faces' order, so that cuts are rounded alike.
         ends.sort_unstable_by_key(|v| v.at);
-        let around = [NO_ITEM; 3];
-        let line = Self { ends, class, items, around, smooth: false };
+        let line = Self { ends, class, items, smooth: false };
         (ends[0].at != ends[1].at).then_some(line)
     }
 }
 
-/// Lines among the edges of the mesh that have an extent in the picture.
-fn feature_lines(rules: &Rules<'_>, projected: &Projected) -> Vec<FeatureLine> {
+/// Lines among the edges of the mesh.
+fn edge_lines(rules: &Rules<'_>) -> Vec<EdgeLine> {
     let count = rules.faces.points().len() as u32;
     let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
-    let of = |vertices| {
-        let lines = rules.lines(vertices).into_iter();
-        let line = |l: EdgeLine| {
-            let ends = projected.edge(rules.faces, l.ends)?;
-            Some(FeatureLine { smooth: l.smooth, ..FeatureLine::new(ends, l.class, l.items)? })
-        };
-        lines.filter_map(line).collect::<Vec<_>>()
-    };
-    parallel::map(jobs, of).into_iter().flatten().collect()
+    joined(parallel::map(jobs, |vertices| rules.lines(vertices)))
 }
 
 /// Lines where faces penetrate each other.
@@ -321,16 +366,6 @@ fn meeting_lines(
         FeatureLine::new(projected.segment(m.ends)?, LineClass::Intersection, m.items)
     };
     intersections(faces, bodies, which).into_iter().filter_map(line).collect()
-}
-
-/// Silhouettes across the faces.
-fn smooth_lines(scene: &Scene, faces: &Faces, projected: &Projected) -> Vec<FeatureLine> {
-    let line = |s: SmoothSilhouette| {
-        let ends = projected.segment(s.ends)?;
-        let line = FeatureLine::new(ends, LineClass::Silhouette, [s.item, NO_ITEM])?;
-        Some(FeatureLine { around: faces.triangle(s.item)?, smooth: true, ..line })
-    };
-    smooth_silhouettes(scene, faces, &projected.plane).into_iter().filter_map(line).collect()
 }
 
 /// What hides a line, by face. `enough` ends the search where the whole line is known to be hidden.
@@ -347,7 +382,7 @@ fn covers_of(
             return true;
         }
         let Some(face) = face() else { return true };
-        if line.items.contains(&face.item) || occluders.has_vertex(face.item, line.around) {
+        if line.items.contains(&face.item) {
             return true;
         }
         let Some(cover) = cover::cover(&line.ends, &face, touching) else { return true };

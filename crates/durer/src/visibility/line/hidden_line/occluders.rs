@@ -120,11 +120,11 @@ impl<'a> Occluders<'a> {
         bodies: &Bodies,
         facing: &Facing,
         projected: &'a Projected,
-        lines: &[[Vertex; 2]],
+        lines: impl Iterator<Item = [Vertex; 2]> + Clone,
     ) -> Self {
         let hides = hiding(faces, bodies, facing, projected);
         let count = hides.iter().filter(|h| **h).count();
-        let cells = Cells::new(bounds(lines), count);
+        let cells = Cells::new(bounds(lines.clone()), count);
         let mut marked = vec![false; cells.count()];
         for [p, q] in lines {
             cells.rows_of(&[p.at, q.at], |row, from, to| {
@@ -203,12 +203,6 @@ impl<'a> Occluders<'a> {
         &self.projected.page
     }
 
-    /// Whether a face has one of three vertices.
-    pub fn has_vertex(&self, item: u32, vertices: [u32; 3]) -> bool {
-        vertices != [u32::MAX; 3]
-            && self.faces.triangle(item).is_some_and(|t| t.iter().any(|v| vertices.contains(v)))
-    }
-
     /// Calls `f` once or more with each face that may hide a part of the line; in the order of cells
     /// and depths, until it says that it has seen enough.
     pub fn along(
@@ -253,8 +247,8 @@ fn hiding(faces: &Faces, bodies: &Bodies, facing: &Facing, projected: &Projected
 }
 
 /// The smallest and the largest coordinates.
-fn bounds(lines: &[[Vertex; 2]]) -> [GridPoint; 2] {
-    let mut points = lines.iter().flatten().map(|v| v.at);
+fn bounds(lines: impl Iterator<Item = [Vertex; 2]>) -> [GridPoint; 2] {
+    let mut points = lines.flatten().map(|v| v.at);
     let first = points.next().unwrap_or_default();
     points.fold([first, first], |[lo, hi], p| {
         [

@@ -1,0 +1,164 @@
+//! Every kind of mark in every writer: what stands in the file for each, to the byte where it is short.
+
+use durer::math::DVec2;
+use durer::target::drawing::Anchor;
+use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use durer_formats::drawing::{write_dxf, write_hpgl, write_pdf, write_svg};
+
+fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
+    list.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
+}
+
+fn stroke(list: &[(f64, f64)], closed: bool, pen: usize) -> Mark {
+    Mark::Stroke { points: points(list), closed, pen }
+}
+
+fn text(words: &str, anchor: Anchor) -> Mark {
+    Mark::Text { at: DVec2::new(50.0, 40.0), text: words.to_owned(), height: 5.0, anchor, pen: 0 }
+}
+
+/// A sheet of 100 × 80 with a black, a dashed and a half transparent red pen.
+fn sheet(marks: Vec<Mark>) -> Sheet {
+    let pen = |width, color, dashes| Pen { width, color, dashes };
+    Sheet {
+        title: "Marks".to_owned(),
+        size: DVec2::new(100.0, 80.0),
+        background: None,
+        pens: vec![
+            pen(0.5, [0, 0, 0, 255], Vec::new()),
+            pen(0.25, [0, 0, 0, 255], vec![3.0, 1.5]),
+            pen(0.7, [255, 0, 32, 128], Vec::new()),
+        ],
+        layers: vec![
+            SheetLayer { name: "first".to_owned(), marks },
+            SheetLayer { name: "second".to_owned(), marks: Vec::new() },
+        ],
+    }
+}
+
+fn written(write: impl Fn(&mut Vec<u8>) -> durer_formats::Result<()>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write(&mut bytes).expect("written");
+    bytes
+}
+
+fn utf8(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).expect("text")
+}
+
+#[test]
+fn svg_paths_are_relative_and_dots_are_dots() {
+    let marks = vec![
+        stroke(&[(1.0, 0.0), (2.0, 0.0), (2.0, 3.0), (4.0, 2.0), (4.5, 1.0)], true, 0),
+        stroke(&[(7.0, 8.0), (7.0, 8.0)], false, 0),
+        stroke(&[(0.0, 0.0), (5.0, 5.0)], false, 2),
+        Mark::Fill {
+            rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
+            color: [1, 2, 3, 255],
+        },
+    ];
+    let svg = utf8(written(|out| write_svg(out, &sheet(marks.clone()))));
+    for part in [
+        "d=\"M1 0h1v3l2-1 .5-1z\"",
+        "d=\"M7 8h0\"",
+        " stroke=\"#ff0020\" stroke-opacity=\".502\" stroke-width=\".7\" d=\"M0 0l5 5\"",
+        "<path fill=\"#010203\" stroke=\"none\" d=\"M0 0h1l-1 1z\"/>",
+    ] {
+        assert!(svg.contains(part), "{part} is not in\n{svg}");
+    }
+}
+
+#[test]
+fn hpgl_is_as_the_pen_moves() {
+    let marks = vec![
+        stroke(&[(1.0, 79.0), (2.0, 79.0), (2.0, 78.0)], true, 0),
+        // From where the pen is then, its end is nearer.
+        stroke(&[(90.0, 79.0), (5.0, 79.0)], false, 0),
+        stroke(&[(95.0, 70.0), (95.0, 70.0)], false, 0),
+    ];
+    let hpgl = utf8(written(|out| write_hpgl(out, &sheet(marks.clone()))));
+    let expected = "IN;\nSP1;\nPU40,40;PD80,40,80,80,40,40;\nPU200,40;PD3600,40;\n\
+                    PU3800,400;PD3800,400;\nPU0,0;\nSP0;\n";
+    assert_eq!(hpgl, expected);
+}
+
+#[test]
+fn dxf_entities_have_their_flags_weights_and_colours() {
+    let marks = vec![
+        stroke(&[(1.0, 2.0), (2.0, 2.0), (2.0, 3.0)], true, 0),
+        stroke(&[(1.0, 2.0), (2.0, 2.0)], false, 2),
+        text("2^3", Anchor::Start),
+        text("end", Anchor::End),
+        Mark::Fill {
+            rings: vec![points(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])],
+            color: [1, 2, 3, 255],
+        },
+    ];
+    let dxf = utf8(written(|out| write_dxf(out, &sheet(marks.clone()))));
+    let lines: Vec<&str> = dxf.lines().collect();
+    let pairs: Vec<(&str, &str)> =
+        lines.as_chunks::<2>().0.iter().map(|[code, value]| (code.trim(), *value)).collect();
+    let of = |kind: &str| -> Vec<Vec<(&str, &str)>> {
+        let starts = pairs.iter().enumerate().filter(|(_, p)| **p == ("0", kind));
+        let end =
+            |i: usize| pairs[i + 1..].iter().position(|p| p.0 == "0").map_or(0, |n| n + i + 1);
+        starts.map(|(i, _)| pairs[i..end(i)].to_vec()).collect()
+    };
+    let has = |entity: &[(&str, &str)], pair: (&str, &str)| entity.contains(&pair);
+    let polylines = of("LWPOLYLINE");
+    assert!(has(&polylines[0], ("70", "129")) && has(&polylines[1], ("70", "128")));
+    assert!(has(&polylines[0], ("370", "50")) && has(&polylines[1], ("370", "70")));
+    assert!(has(&polylines[0], ("20", "78.0")), "y is up: {:?}", polylines[0]);
+    let texts = of("TEXT");
+    assert!(has(&texts[0], ("1", "2^ 3")) && !texts[0].iter().any(|p| p.0 == "72"));
+    assert!(has(&texts[1], ("72", "2")) && has(&texts[1], ("11", "50.0")));
+    assert!(has(&of("HATCH")[0], ("420", &(0x01_02_03).to_string())));
+    let hidden = of("LTYPE").into_iter().find(|t| has(t, ("2", "HIDDEN"))).expect("line type");
+    assert!(has(&hidden, ("49", "3.0")) && has(&hidden, ("49", "-1.5")), "{hidden:?}");
+}
+
+/// The operators of a page.
+fn content(pdf: &[u8]) -> String {
+    let find = |from: usize, what: &[u8]| {
+        pdf[from..].windows(what.len()).position(|w| w == what).map(|i| from + i)
+    };
+    let start = find(0, b"stream\n").or_else(|| find(0, b"stream\r\n")).expect("a stream");
+    let start = start + pdf[start..].iter().position(|b| *b == b'\n').expect("its start") + 1;
+    let end = find(start, b"endstream").expect("its end");
+    utf8(miniz_oxide::inflate::decompress_to_vec_zlib(&pdf[start..end]).expect("deflated"))
+}
+
+#[test]
+fn pdf_changes_its_state_only_where_it_must() {
+    let marks = vec![
+        stroke(&[(1.0, 2.0), (2.0, 2.0), (2.0, 3.0)], true, 1),
+        stroke(&[(1.0, 2.0), (2.0, 2.0)], false, 2),
+        stroke(&[(3.0, 2.0), (4.0, 2.0)], false, 2),
+    ];
+    let pdf = written(|out| write_pdf(out, &sheet(marks.clone())));
+    let content = content(&pdf);
+    let count = |part: &str| content.matches(part).count();
+    // Dashes end where the next pen has none; the opacity is set once.
+    assert_eq!((count("[] 0 d"), count(" gs\n"), count(" RG\n")), (1, 1, 2), "{content}");
+    assert!(content.contains("2 3 l\nh\nS\n"), "{content}");
+    assert!(!String::from_utf8_lossy(&pdf).contains("/UserUnit"));
+    // Viewers list the topmost layer first.
+    let text = String::from_utf8_lossy(&pdf).into_owned();
+    let list = |name: &str| {
+        let from = text.find(name).expect("a list") + name.len();
+        let list = &text[from..from + text[from..].find(']').expect("its end")];
+        list.split("0 R").map(|id| id.trim_matches(|c| " [\n".contains(c)).to_owned()).collect()
+    };
+    let (on, mut order): (Vec<String>, Vec<String>) = (list("/ON"), list("/Order"));
+    order.retain(|id| !id.is_empty());
+    order.reverse();
+    assert_eq!(
+        on.iter().filter(|id| !id.is_empty()).collect::<Vec<_>>(),
+        order.iter().collect::<Vec<_>>()
+    );
+    assert_eq!(order.len(), 2);
+    // Pages longer than the format knows have a larger unit.
+    let long = Sheet { size: DVec2::new(6000.0, 80.0), ..sheet(Vec::new()) };
+    let pdf = written(|out| write_pdf(out, &long));
+    assert!(String::from_utf8_lossy(&pdf).contains("/UserUnit 2"));
+}
