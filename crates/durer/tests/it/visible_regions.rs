@@ -417,7 +417,7 @@ fn visible_regions_are_painted_from_far_to_near() {
     let scene = of_triangles([near, far].as_flattened());
     let view = View::new(from_above(4.0), 64, 64).expect("view");
     let options = region::Options { merge: Merge::Face, ..Default::default() };
-    let lights = PreparedLights::new(&[], &view.camera());
+    let lights = PreparedLights::new(&[], view.camera());
     let drawing = region::draw(&scene, &view, &lights, &options).expect("drawn");
     let items: Vec<Option<u32>> = drawing.regions.iter().map(|r| r.item).collect();
     let place = |item: u32| items.iter().position(|i| *i == Some(item));
