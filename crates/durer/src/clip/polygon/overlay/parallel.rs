@@ -5,19 +5,12 @@ use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Sorts by an order that no two different items are equal in.
-#[cfg(feature = "parallel")]
 pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
-    use rayon::prelude::*;
-    if rayon::current_num_threads() == 1 {
-        list.sort_unstable_by(compare);
-    } else {
-        list.par_sort_unstable_by(compare);
+    #[cfg(feature = "parallel")]
+    if crate::parallel::threads() > 1 {
+        use rayon::prelude::*;
+        return list.par_sort_unstable_by(compare);
     }
-}
-
-/// Sorts by an order that no two different items are equal in.
-#[cfg(not(feature = "parallel"))]
-pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
     list.sort_unstable_by(compare);
 }
 

@@ -51,6 +51,9 @@ impl Fragments {
     /// Brings the fragments of each pixel together, far ones first; of equally far ones the higher
     /// item first, so that the lower is seen.
     fn sort(&mut self) {
+        if self.list.is_empty() {
+            return;
+        }
         // They came triangle by triangle, so those of one item at one pixel follow each other.
         let mut next = [0; TILE_PIXELS + 1];
         for f in &self.list {
