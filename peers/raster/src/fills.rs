@@ -48,14 +48,33 @@ fn bez(scene: &Scene) -> Vec<vello_cpu::kurbo::BezPath> {
     scene.shapes.iter().map(path).collect()
 }
 
+/// What vello_cpu draws with and onto.
+struct Vello {
+    context: vello_cpu::RenderContext,
+    resources: vello_cpu::Resources,
+    pixmap: vello_cpu::Pixmap,
+}
+
+impl Vello {
+    /// A square target, one thread.
+    fn new(side: u32) -> Self {
+        let settings = vello_cpu::RenderSettings { num_threads: 0, ..Default::default() };
+        let side = side as u16;
+        Self {
+            context: vello_cpu::RenderContext::new_with(side, side, settings),
+            resources: vello_cpu::Resources::new(),
+            pixmap: vello_cpu::Pixmap::new(side, side),
+        }
+    }
+}
+
 fn vello(
     scene: &Scene,
     paths: &[vello_cpu::kurbo::BezPath],
     threshold: Option<u8>,
-    context: &mut vello_cpu::RenderContext,
-    resources: &mut vello_cpu::Resources,
-    pixmap: &mut vello_cpu::Pixmap,
+    target: &mut Vello,
 ) {
+    let Vello { context, resources, pixmap } = target;
     use vello_cpu::peniko::{Fill, color::AlphaColor};
     context.reset();
     context.set_aliasing_threshold(threshold);
@@ -120,10 +139,7 @@ pub fn anti_aliased(filter: &str) {
         let mut targets = [(); 3].map(|()| Pixels::new(side, side, [255; 4]));
         let [t0, t1, t2] = &mut targets;
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
-        let settings = vello_cpu::RenderSettings { num_threads: 0, ..Default::default() };
-        let mut context = vello_cpu::RenderContext::new_with(side as u16, side as u16, settings);
-        let mut resources = vello_cpu::Resources::new();
-        let mut pixmap = vello_cpu::Pixmap::new(side as u16, side as u16);
+        let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
         let slow = scene.name.starts_with("spikes");
         let rounds = if slow { 3 } else { 9 };
@@ -136,12 +152,7 @@ pub fn anti_aliased(filter: &str) {
                     Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, true, t1))),
                 ),
                 ("two", Box::new(|| two.install(|| durer(&scene, Overlap::Exact, true, t2)))),
-                (
-                    "vello",
-                    Box::new(|| {
-                        vello(&scene, &bez, None, &mut context, &mut resources, &mut pixmap)
-                    }),
-                ),
+                ("vello", Box::new(|| vello(&scene, &bez, None, &mut vello_target))),
                 (
                     "tiny-skia",
                     Box::new(|| {
@@ -177,7 +188,7 @@ pub fn anti_aliased(filter: &str) {
             .unwrap();
             image::save_buffer(
                 format!("{name}_vello.png"),
-                pixmap.data_as_u8_slice(),
+                vello_target.pixmap.data_as_u8_slice(),
                 side,
                 side,
                 image::ColorType::Rgba8,
@@ -202,10 +213,7 @@ pub fn aliased(filter: &str) {
         let side = scene.size;
         let mut target = Pixels::new(side, side, [255; 4]);
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
-        let settings = vello_cpu::RenderSettings { num_threads: 0, ..Default::default() };
-        let mut context = vello_cpu::RenderContext::new_with(side as u16, side as u16, settings);
-        let mut resources = vello_cpu::Resources::new();
-        let mut pixmap = vello_cpu::Pixmap::new(side as u16, side as u16);
+        let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
         let rounds = if scene.name.starts_with("spikes") { 3 } else { 9 };
         let m = medians(
@@ -218,7 +226,7 @@ pub fn aliased(filter: &str) {
                 (
                     "vello",
                     Box::new(|| {
-                        vello(&scene, &bez, Some(127), &mut context, &mut resources, &mut pixmap);
+                        vello(&scene, &bez, Some(127), &mut vello_target);
                     }),
                 ),
                 ("tiny-skia", Box::new(|| skia(&scene, &skia_paths, false, &mut skia_map))),

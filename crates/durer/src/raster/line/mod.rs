@@ -81,25 +81,37 @@ struct Course {
 impl Course {
     fn new(from: IVec2, to: IVec2, options: &Options) -> Self {
         let wide = |p: IVec2| (i64::from(p.x), i64::from(p.y));
-        let ((ax, ay), (bx, by)) = (wide(from), wide(to));
-        let steep = (by - ay).abs() > (bx - ax).abs();
+        let mut course = Self::between(wide(from), wide(to));
+        if let Some((low, high)) = options.window {
+            course.restrict(course.turned(wide(low)), course.turned(wide(high)));
+        }
+        course
+    }
+
+    /// The whole line between two pixels, column and row.
+    #[inline]
+    fn between(a: (i64, i64), b: (i64, i64)) -> Self {
+        let steep = (b.1 - a.1).abs() > (b.0 - a.0).abs();
         let turn = |(x, y): (i64, i64)| if steep { (y, x) } else { (x, y) };
-        let (a, b) = (turn((ax, ay)), turn((bx, by)));
+        let (a, b) = (turn(a), turn(b));
         let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
-        let mut course = Self {
+        let (steps, rise) = (b.0 - a.0, b.1 - a.1);
+        Self {
             steep,
             along: a.0,
             across: a.1,
-            steps: b.0 - a.0,
-            rise: (b.1 - a.1).abs(),
-            sign: (b.1 - a.1).signum(),
+            steps,
+            rise: rise.abs(),
+            sign: rise.signum(),
             first: 0,
-            last: b.0 - a.0,
-        };
-        if let Some((low, high)) = options.window {
-            course.restrict(turn(wide(low)), turn(wide(high)));
+            last: steps,
         }
-        course
+    }
+
+    /// Column and row as along and across.
+    #[inline]
+    fn turned(&self, (x, y): (i64, i64)) -> (i64, i64) {
+        if self.steep { (y, x) } else { (x, y) }
     }
 
     /// Twice the numerator of the distance across after `step` steps, rounded: floor(n / 2·steps) is that

@@ -6,7 +6,7 @@
 //! pixels). A piece of a line is entered with the fraction it has there, so the pixels are
 //! [`super::bresenham`]'s, all of them.
 
-use super::{Options, bresenham};
+use super::{Course, Options, bresenham};
 use crate::math::IVec2;
 use crate::target::Pixels;
 use crate::trace::NoTrace;
@@ -118,33 +118,11 @@ fn empty<T: Copy>(
     }
 }
 
-/// A line seen along its longer axis from the tile's corner, in the direction of rising coordinates.
-struct Course {
-    steep: bool,
-    along: i64,
-    across: i64,
-    steps: i64,
-    rise: i64,
-    sign: i64,
-}
-
-impl Course {
-    fn new(from: IVec2, to: IVec2, corner: IVec2) -> Self {
-        let seen =
-            |p: IVec2| (i64::from(p.x) - i64::from(corner.x), i64::from(p.y) - i64::from(corner.y));
-        let (a, b) = (seen(from), seen(to));
-        let steep = (b.1 - a.1).abs() > (b.0 - a.0).abs();
-        let turn = |p: (i64, i64)| if steep { (p.1, p.0) } else { p };
-        let (a, b) = (turn(a), turn(b));
-        let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
-        let (steps, rise) = (b.0 - a.0, b.1 - a.1);
-        Self { steep, along: a.0, across: a.1, steps, rise: rise.abs(), sign: rise.signum() }
-    }
-}
-
 /// Draws the part of a line within a tile, onto the tile's copy.
 fn in_tile<T: Copy>(line: &Line<T>, corner: IVec2, end: IVec2, canvas: &mut [T]) {
-    let course = Course::new(line.from, line.to, corner);
+    let seen =
+        |p: IVec2| (i64::from(p.x) - i64::from(corner.x), i64::from(p.y) - i64::from(corner.y));
+    let course = Course::between(seen(line.from), seen(line.to));
     if course.steps > EXACT_STEPS {
         let options = Options { window: Some((corner, end - 1)) };
         let plot = |p: IVec2| {
@@ -156,8 +134,7 @@ fn in_tile<T: Copy>(line: &Line<T>, corner: IVec2, end: IVec2, canvas: &mut [T])
         bresenham::draw(line.from, line.to, &options, plot, &mut NoTrace);
         return;
     }
-    let size = (i64::from(end.x - corner.x), i64::from(end.y - corner.y));
-    let size = if course.steep { (size.1, size.0) } else { size };
+    let size = course.turned(seen(end));
     // After k steps the distance across is the whole part of start + k · slope. Both are a little too large, by less
     // than the next multiple of 1/(2 · steps) is away.
     let one = (1_i64 << BITS) as f64;

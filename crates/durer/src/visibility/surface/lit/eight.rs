@@ -16,6 +16,26 @@ use fearless_simd_macros::simd;
 /// others pixel by pixel.
 const FEW_CHANGES: u32 = 2;
 
+/// Eight pixels in a row from (x, y), and which of them are to be shaded.
+#[derive(Clone, Copy)]
+struct Eight<'e> {
+    items: &'e [u32; 8],
+    /// All bits set, or none.
+    chosen: &'e [u32; 8],
+    x: i32,
+    y: i32,
+}
+
+impl Eight<'_> {
+    /// The lanes chosen, each with its item and pixel.
+    #[inline(always)]
+    fn pixels(self) -> impl Iterator<Item = (usize, u32, [i32; 2])> {
+        let Self { items, chosen, x, y } = self;
+        let lanes = (0..8).filter(move |&i| chosen[i] != 0);
+        lanes.map(move |i| (i, items[i], [x + i as i32, y]))
+    }
+}
+
 impl<'a> Lit<'a> {
     /// Linear RGB of up to eight pixels in a row from `x`: those with an item.
     ///
@@ -70,7 +90,7 @@ impl<'a> Lit<'a> {
         simd: S,
         info: &RunInfo<'a>,
         items: &[u32; 8],
-        at: [i32; 2],
+        [x, y]: [i32; 2],
         done: &mut [bool; 8],
         colors: &mut [[f32; 8]; 3],
     ) {
@@ -80,12 +100,13 @@ impl<'a> Lit<'a> {
                 (done[i], mine[i]) = (true, u32::MAX);
             }
         }
+        let eight = Eight { items, chosen: &mine, x, y };
         let shaded = if info.plain {
-            self.plain_x8(simd, info, items, &mine, at)
+            self.plain_x8(simd, info, eight)
         } else if let Some(coords) = info.looked_up {
-            self.looked_up_x8(simd, (info, coords), items, &mine, at)
+            self.looked_up_x8(simd, (info, coords), eight)
         } else {
-            self.textured_x8(simd, info, items, &mine, at)
+            self.textured_x8(simd, info, eight)
         };
         for (to, from) in colors.iter_mut().zip(&shaded) {
             fill_axis(*from, &mine, to);
@@ -98,22 +119,19 @@ impl<'a> Lit<'a> {
         &mut self,
         simd: S,
         info: &RunInfo<'a>,
-        items: &[u32; 8],
-        mine: &[u32; 8],
-        [x, y]: [i32; 2],
+        eight: Eight<'_>,
     ) -> [[f32; 8]; 3] {
         let mut changes = 0;
         for i in 1..8 {
-            changes += u32::from(items[i] != items[i - 1]);
+            changes += u32::from(eight.items[i] != eight.items[i - 1]);
         }
         if changes <= FEW_CHANGES {
-            let points = self.points_of_few(simd, info.run, items, mine, [x, y]);
+            let points = self.points_of_few(simd, info.run, eight);
             return shade_points(simd, &points, info.material, self.shared.lights, info.shading);
         }
         let mut gathered = Gathered::default();
-        for i in (0..8).filter(|&i| mine[i] != 0) {
-            let t = self.triangles.get(items[i], info.run);
-            gathered.set(simd, i, t, [x + i as i32, y]);
+        for (lane, item, pixel) in eight.pixels() {
+            gathered.set(simd, lane, self.triangles.get(item, info.run), pixel);
         }
         self.shade_gathered(simd, info, &gathered)
     }
@@ -125,14 +143,13 @@ impl<'a> Lit<'a> {
         &mut self,
         simd: S,
         run: usize,
-        items: &[u32; 8],
-        mine: &[u32; 8],
-        [x, y]: [i32; 2],
+        eight: Eight<'_>,
     ) -> Points<f32x8<S>> {
         let zero = f32x8::splat(simd, 0.0);
+        let Eight { items, chosen, x, y } = eight;
         let shown = u32x8::from_slice(simd, items);
         let (mut row, mut normal) = ([zero; 6], [zero; 3]);
-        let chosen = u32x8::from_slice(simd, mine).simd_ne(u32x8::splat(simd, 0));
+        let chosen = u32x8::from_slice(simd, chosen).simd_ne(u32x8::splat(simd, 0));
         let mut left = chosen.to_bitmask();
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 8];
@@ -158,23 +175,20 @@ impl<'a> Lit<'a> {
         &mut self,
         simd: S,
         (info, coords): (&RunInfo<'a>, &[Vec2]),
-        items: &[u32; 8],
-        mine: &[u32; 8],
-        [x, y]: [i32; 2],
+        eight: Eight<'_>,
     ) -> [[f32; 8]; 3] {
-        let one = *items == [items[0]; 8];
-        let (points, at) = if one {
-            let t = self.triangles.get(items[0], info.run);
+        let one = eight.items[0];
+        let (points, at) = if *eight.items == [one; 8] {
+            let (t, at) = (self.triangles.get(one, info.run), [eight.x, eight.y]);
             let corners = t.corners.map(|c| coords[c as usize]);
-            let points = points_x8(simd, t, [x, y], self.parallel_view);
-            (points, coordinates_of_one(simd, t, [x, y], corners))
+            let points = points_x8(simd, t, at, self.parallel_view);
+            (points, coordinates_of_one(simd, t, at, corners))
         } else {
             let (mut points, mut at) = (Gathered::default(), GatheredCoords::default());
-            for i in (0..8).filter(|&i| mine[i] != 0) {
-                let t = self.triangles.get(items[i], info.run);
-                let pixel = [x + i as i32, y];
-                points.set(simd, i, t, pixel);
-                at.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
+            for (lane, item, pixel) in eight.pixels() {
+                let t = self.triangles.get(item, info.run);
+                points.set(simd, lane, t, pixel);
+                at.set(lane, t, pixel, t.corners.map(|c| coords[c as usize]));
             }
             (points.points(simd, self.parallel_view), at.coordinates(simd))
         };
@@ -189,13 +203,11 @@ impl<'a> Lit<'a> {
         &mut self,
         simd: S,
         info: &RunInfo<'a>,
-        items: &[u32; 8],
-        mine: &[u32; 8],
-        [x, y]: [i32; 2],
+        eight: Eight<'_>,
     ) -> [[f32; 8]; 3] {
         let mut samples = Samples::default();
-        for i in (0..8).filter(|&i| mine[i] != 0) {
-            samples.set(i, &self.sample(items[i], x + i as i32, y));
+        for (lane, item, [x, y]) in eight.pixels() {
+            samples.set(lane, &self.sample(item, x, y));
         }
         Samples::shade(simd, &samples, self.shared.lights, info.shading)
     }
