@@ -4,6 +4,7 @@ use super::fragment::Face;
 use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::setup::ScreenTriangle;
+use fearless_simd::Simd;
 
 /// The triangles that touch a row anywhere, not only at pixels' centres.
 ///
@@ -11,13 +12,15 @@ use crate::visibility::surface::setup::ScreenTriangle;
 /// hides it. The picture does not depend on that order, only the work.
 pub struct Faces<'a> {
     input: &'a SurfaceInput<'a>,
-    /// Depth and index of each triangle, by first row.
-    waiting: Vec<u64>,
+    /// The triangles by first row.
+    waiting: Vec<Active>,
     /// Where each row's begin; one more than there are rows.
     starts: Vec<u32>,
     active: Vec<Active>,
     /// The active ones of the row before, while the next row's are put together.
     before: Vec<Active>,
+    /// Depth and number of those that begin in the row.
+    order: Vec<u64>,
     /// What was computed of those that were looked at, by place; some places are free.
     places: Vec<Face>,
     free: Vec<u32>,
@@ -54,11 +57,11 @@ impl<'a> Faces<'a> {
         for row in 2..starts.len() {
             starts[row] += starts[row - 1];
         }
-        let mut waiting = vec![0; starts.last().map_or(0, |&n| n as usize)];
+        let mut waiting = vec![Active::NONE; starts.last().map_or(0, |&n| n as usize)];
         for (index, t) in input.triangles.iter().enumerate() {
             if let Some(row) = first_row(t) {
                 let place = &mut starts[row + 1];
-                waiting[*place as usize] = u64::from(order(t.depth_min)) << 32 | index as u64;
+                waiting[*place as usize] = Active::new(t, index as u32);
                 *place += 1;
             }
         }
@@ -68,6 +71,7 @@ impl<'a> Faces<'a> {
             starts,
             active: Vec::new(),
             before: Vec::new(),
+            order: Vec::new(),
             places: Vec::new(),
             free: Vec::new(),
         }
@@ -75,13 +79,18 @@ impl<'a> Faces<'a> {
 
     /// Goes on to a row; rows come in order.
     pub fn advance(&mut self, y: i32) {
-        let Self { input, waiting, starts, active, before, free, .. } = self;
+        let Self { waiting, starts, active, before, order, free, .. } = self;
         std::mem::swap(active, before);
         active.clear();
         let [first, end] = [0, 1].map(|i| starts[y as usize + i] as usize);
-        let new = &mut waiting[first..end];
-        new.sort_unstable();
-        let mut new = new.iter().map(|&key| Active::new(input, key as u32)).peekable();
+        let new = &waiting[first..end];
+        // Depths are at least 0, so that their bits grow with them.
+        let key =
+            |(i, new): (usize, &Active)| u64::from((new.depth + 0.0).to_bits()) << 32 | i as u64;
+        order.clear();
+        order.extend(new.iter().enumerate().map(key));
+        order.sort_unstable();
+        let mut new = order.iter().map(|&key| new[key as u32 as usize]).peekable();
         for old in before.iter() {
             if old.last_row < y {
                 free.extend((old.place != NOWHERE).then_some(old.place));
@@ -108,11 +117,11 @@ impl<'a> Faces<'a> {
 
     /// What is known of one of them.
     #[inline(always)]
-    pub fn get(&mut self, number: usize) -> (&'a ScreenTriangle, &Face) {
+    pub fn get<S: Simd>(&mut self, simd: S, number: usize) -> (&'a ScreenTriangle, &Face) {
         let active = &mut self.active[number];
         let t = &self.input.triangles[active.triangle as usize];
         if active.place == NOWHERE {
-            let face = Face::new(t, active.triangle, self.input.run_of(t.item).coverage);
+            let face = Face::new(simd, t, active.triangle, self.input.run_of(t.item).coverage);
             active.place = match self.free.pop() {
                 Some(place) => {
                     self.places[place as usize] = face;
@@ -129,8 +138,10 @@ impl<'a> Faces<'a> {
 }
 
 impl Active {
-    fn new(input: &SurfaceInput<'_>, triangle: u32) -> Self {
-        let t = &input.triangles[triangle as usize];
+    const NONE: Self =
+        Self { depth: 0.0, columns: [0; 2], last_row: -1, triangle: 0, place: NOWHERE };
+
+    fn new(t: &ScreenTriangle, triangle: u32) -> Self {
         let ([left, right], [_, last_row]) = (touched(&t.x), touched(&t.y));
         Self { depth: t.depth_min, columns: [left, right + 1], last_row, triangle, place: NOWHERE }
     }
@@ -140,9 +151,4 @@ impl Active {
 fn touched([a, b, c]: &[i32; 3]) -> [i32; 2] {
     let (low, high) = (*a.min(b).min(c), *a.max(b).max(c));
     [low >> SUBPIXEL_BITS, (high - 1) >> SUBPIXEL_BITS]
-}
-
-/// A number that grows with the depth, which is at least 0.
-fn order(depth: f32) -> u32 {
-    (depth + 0.0).to_bits()
 }

@@ -1,10 +1,11 @@
 //! Fragments: what a triangle leaves in one pixel, in lists that share one pool.
 
-use super::coverage::{Areas, RowEdges, Slopes, slopes};
+use super::coverage::Areas;
+use super::edges::{Edges, Functions, Slopes};
 use super::faces::Active;
 use super::mask::{Direction, MaskTable};
-use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS};
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
+use fearless_simd::Simd;
 
 /// Faces with at most as many columns are looked for in the pixels before their edges are computed.
 const NARROW: i32 = 8;
@@ -31,7 +32,6 @@ pub struct Fragment {
     pub z_max: f32,
     /// Whether it lets something behind it be seen.
     pub blended: bool,
-    next: u32,
 }
 
 /// A triangle with all that its fragments have in common.
@@ -39,7 +39,6 @@ pub struct Fragment {
 pub struct Face {
     pub triangle: u32,
     pub coverage: Coverage,
-    edges: [Direction; 3],
     slopes: Slopes,
     /// Change of depth over half a pixel in both directions.
     half_depth: f32,
@@ -48,29 +47,20 @@ pub struct Face {
 }
 
 impl Face {
-    pub fn new(t: &ScreenTriangle, triangle: u32, coverage: Coverage) -> Self {
-        let edge = |i| {
-            let [a, b] = edge_slope(t, i);
-            Direction::new(a as f32, b as f32)
-        };
-        // Not by `map`, which would be a call.
-        let edges = [edge(0), edge(1), edge(2)];
+    #[inline(always)]
+    pub fn new<S: Simd>(simd: S, t: &ScreenTriangle, triangle: u32, coverage: Coverage) -> Self {
         let half_depth = 0.5 * (t.depth_dx.abs() + t.depth_dy.abs());
         let far = (t.depth_max >= 1.0).then(|| Direction::new(-t.depth_dx, -t.depth_dy));
-        Self { triangle, coverage, edges, slopes: slopes(t), half_depth, far }
+        Self { triangle, coverage, slopes: Slopes::new(simd, t), half_depth, far }
     }
-}
-
-/// What edge function `i` gains per grid step to the right and downwards; positive is inside.
-fn edge_slope(t: &ScreenTriangle, i: usize) -> [i64; 2] {
-    let j = (i + 1) % 3;
-    [i64::from(t.y[i] - t.y[j]), i64::from(t.x[j] - t.x[i])]
 }
 
 /// The fragments of a part of a row.
 pub struct Pool<'a> {
     table: &'a MaskTable,
     fragments: Vec<Fragment>,
+    /// The fragment of the same pixel that came before each.
+    nexts: Vec<u32>,
     /// The latest fragment of each pixel.
     heads: Vec<u32>,
     covers: Vec<Cover>,
@@ -84,16 +74,18 @@ impl<'a> Pool<'a> {
         Self {
             table,
             fragments: Vec::new(),
+            nexts: Vec::new(),
             heads: vec![END; width as usize],
             covers: vec![Cover::NONE; width as usize],
             max_fragments,
-            areas: Areas::default(),
+            areas: Areas::new(width),
         }
     }
 
     /// Forgets the fragments; those of pixels x0 … x1 − 1 are looked for next.
     pub fn clear(&mut self, [x0, x1]: [i32; 2]) {
         self.fragments.clear();
+        self.nexts.clear();
         self.heads[x0 as usize..x1 as usize].fill(END);
         self.covers[x0 as usize..x1 as usize].fill(Cover::NONE);
     }
@@ -126,21 +118,29 @@ impl<'a> Pool<'a> {
         self.heads[x as usize] == END
     }
 
-    /// The fragments of a pixel, latest first.
-    pub fn of_pixel(&self, x: i32) -> impl Iterator<Item = &Fragment> {
+    /// The numbers of a pixel's fragments, latest first.
+    #[inline(always)]
+    pub fn latest_first(&self, x: i32) -> impl Iterator<Item = u32> {
         let mut at = self.heads[x as usize];
         std::iter::from_fn(move || {
-            let fragment = self.fragments.get(at as usize)?;
-            at = fragment.next;
-            Some(fragment)
+            let &next = self.nexts.get(at as usize)?;
+            Some(std::mem::replace(&mut at, next))
         })
+    }
+
+    /// A fragment by its number.
+    #[inline(always)]
+    pub fn fragment(&self, number: u32) -> &Fragment {
+        &self.fragments[number as usize]
     }
 
     /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y, where `passes` says that it is
     /// there; calls `added` with the column of each. Says whether there was room for all of them.
     #[inline(always)]
-    pub fn add(
+    #[allow(clippy::too_many_arguments)]
+    pub fn add<S: Simd>(
         &mut self,
+        simd: S,
         t: &ScreenTriangle,
         face: &Face,
         y: i32,
@@ -148,29 +148,32 @@ impl<'a> Pool<'a> {
         mut passes: impl FnMut(i32) -> bool,
         mut added: impl FnMut(i32, &Fragment),
     ) -> bool {
-        let edges = RowEdges::new(t, &face.slopes, y);
+        let edges = Edges::new(simd, t);
+        let parts = edges.row(simd, &face.slopes, y);
         let part = columns[1] - columns[0];
-        let columns = edges.columns(columns);
+        let columns = parts.columns(columns);
         let Some(nearest) = nearest_depth(t, face, columns, y) else { return true };
         if self.hides(columns, nearest) {
             return true;
         }
-        let first = columns[0];
-        let areas = self.areas.of(&edges, columns);
-        let (edges, steps) = edges_at(t, first, y);
+        self.areas.begin(&parts, columns);
+        let functions = edges.functions(simd, columns[0], y);
         let [ox, oy] = t.origin();
-        for (i, &area) in areas.iter().enumerate().filter(|(_, area)| **area > 0.0) {
-            let x = first + i as i32;
-            let column = x as usize;
+        for x in columns[0]..columns[1] {
+            let (i, column) = ((x - columns[0]) as usize, x as usize);
+            let area = self.areas.next(i);
+            if area <= 0.0 {
+                continue;
+            }
             let depth = plane_depth(t, (x - ox) as f32, (y - oy) as f32);
             let z_min = (depth - face.half_depth).max(t.depth_min);
             if z_min > self.covers[column].hidden_from || z_min >= 1.0 || !passes(x) {
                 continue;
             }
             if self.fragments.len() >= self.max_fragments && part > 1 {
+                self.areas.end(i);
                 return false;
             }
-            let at = [0, 1, 2].map(|k| (edges[k] + steps[k] * i as i64) as f32);
             let z_max = (depth + face.half_depth).min(t.depth_max).max(z_min);
             let mut fragment = Fragment {
                 item: t.item,
@@ -179,18 +182,19 @@ impl<'a> Pool<'a> {
                 z_min,
                 z_max,
                 blended: face.coverage == Coverage::Blended,
-                next: self.heads[column],
                 mask: 0,
                 seen_by: 0,
             };
-            fragment.cover(self.table, face, at, depth);
+            fragment.cover(simd, self.table, face, &functions, i, depth);
             if !fragment.blended {
                 self.covers[column].add(fragment.mask, z_max, self.table.full());
             }
+            self.nexts.push(self.heads[column]);
             self.heads[column] = self.fragments.len() as u32;
             added(x, &fragment);
             self.fragments.push(fragment);
         }
+        self.areas.end((columns[1] - columns[0]) as usize);
         true
     }
 }
@@ -238,8 +242,17 @@ impl Fragment {
     /// Finds the mask from the edge functions and the depth at the pixel's centre; what is beyond
     /// the far plane goes.
     #[inline(always)]
-    fn cover(&mut self, table: &MaskTable, face: &Face, at: [f32; 3], depth: f32) {
-        self.mask = mask_of(table, face, at);
+    fn cover<S: Simd>(
+        &mut self,
+        simd: S,
+        table: &MaskTable,
+        face: &Face,
+        functions: &Functions<S>,
+        column: usize,
+        depth: f32,
+    ) {
+        let at = functions.at(simd, column);
+        self.mask = functions.mask(simd, &face.slopes, table, at);
         if let Some(far) = face.far {
             let before = self.mask & table.half_plane(&far, 1.0 - depth);
             let all = self.mask.count_ones().max(1);
@@ -247,7 +260,7 @@ impl Fragment {
             self.mask = before;
         }
         self.seen_by = match self.mask {
-            0 => nearest_sub_pixel(table, face, at),
+            0 => functions.nearest(simd, &face.slopes, table, at),
             mask => mask,
         };
     }
@@ -257,51 +270,4 @@ impl Fragment {
 #[inline(always)]
 pub fn plane_depth(t: &ScreenTriangle, dx: f32, dy: f32) -> f32 {
     t.depth + (t.depth_dx * dx + t.depth_dy * dy)
-}
-
-/// The edge functions at the centre of a pixel, in grid steps squared, divided by the grid steps of a
-/// pixel; and what they gain from pixel to pixel.
-#[inline(always)]
-fn edges_at(t: &ScreenTriangle, x: i32, y: i32) -> ([i64; 3], [i64; 3]) {
-    let center = |i: i32| i64::from(i) * i64::from(SUBPIXELS) + i64::from(HALF_PIXEL);
-    let (mut edges, mut steps) = ([0; 3], [0; 3]);
-    for i in 0..3 {
-        let [a, b] = edge_slope(t, i);
-        edges[i] = a * (center(x) - i64::from(t.x[i])) + b * (center(y) - i64::from(t.y[i]));
-        steps[i] = a * i64::from(SUBPIXELS);
-    }
-    (edges, steps)
-}
-
-/// The sub-pixels inside all three edges.
-#[inline(always)]
-fn mask_of(table: &MaskTable, face: &Face, at: [f32; 3]) -> u64 {
-    let inside = |i: usize| table.half_plane(&face.edges[i], at[i] * PER_GRID_STEP);
-    inside(0) & inside(1) & inside(2)
-}
-
-/// Edge functions have slopes per grid step; masks want them per pixel.
-const PER_GRID_STEP: f32 = 1.0 / SUBPIXELS as f32;
-
-/// The sub-pixel that lies deepest within a triangle too small for its mask.
-#[inline(always)]
-fn nearest_sub_pixel(table: &MaskTable, face: &Face, at: [f32; 3]) -> u64 {
-    let centers = table.centers();
-    let edge = [0, 1, 2].map(|i| {
-        let [a, b] = face.edges[i].slope;
-        [at[i] * PER_GRID_STEP * face.edges[i].scale, a, b]
-    });
-    // All of them first: that is eight at a time.
-    let mut depths = [0.0; 64];
-    for (depth, &[u, v]) in depths.iter_mut().zip(centers) {
-        let [d0, d1, d2] = edge.map(|[e, a, b]| e + (a * u + b * v));
-        *depth = d0.min(d1).min(d2);
-    }
-    let mut best = (f32::NEG_INFINITY, 0);
-    for (bit, &depth) in depths[..centers.len()].iter().enumerate() {
-        if depth > best.0 {
-            best = (depth, 1 << bit);
-        }
-    }
-    best.1
 }

@@ -6,6 +6,7 @@
 //! exact area says, those with the largest function.
 
 use super::Mask;
+use fearless_simd::{Simd, f32x4, prelude::*};
 
 /// Directions in a quadrant. Coarser ones turn edges by more than a sub-pixel's width.
 const DIRECTIONS: usize = 32;
@@ -13,26 +14,32 @@ const DIRECTIONS: usize = 32;
 /// Steps of e from −½ to ½: half of what tells neighbouring counts of 64 sub-pixels apart.
 const DISTANCES: usize = 128;
 
+/// Masks in the table; a power of two.
+const ENTRIES: usize = 2 * DIRECTIONS * DISTANCES;
+
 /// The masks of half planes for one size of mask.
 pub struct MaskTable {
     /// Sub-pixels along the side of a pixel.
     side: u32,
     centers: Vec<[f32; 2]>,
+    /// The same, eight at a time.
+    centers_x8: Vec<[[f32; 8]; 2]>,
     /// By direction, then distance; upper half plane of directions only.
-    masks: Vec<u64>,
+    masks: Box<[u64; ENTRIES]>,
 }
+
+/// The last place among a direction's masks. The first mask has no bits and the last has all of them,
+/// so what is beyond is right too.
+const LAST_DISTANCE: f32 = (DISTANCES - 1) as f32;
 
 /// A linear function on a pixel, divided by |a| + |b|: the direction's part.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Direction {
     /// Where the direction's masks begin in the table.
     start: u32,
-    /// Whether the table has the opposite direction, so that masks are turned over.
-    opposite: bool,
-    /// 1 / (|a| + |b|); 0 for a function without slope.
+    /// ±1 / (|a| + |b|), below 0 where the table has the opposite direction, so that masks are turned
+    /// over; 0 for a function without slope.
     pub scale: f32,
-    /// (a, b), divided by |a| + |b|.
-    pub slope: [f32; 2],
 }
 
 impl Direction {
@@ -44,27 +51,31 @@ impl Direction {
             return Self::default();
         }
         // A function and its opposite use the same masks, so that they never overlap or leave a gap.
-        let slope = [a / length, b / length];
         let opposite = b < 0.0 || (b == 0.0 && a < 0.0);
         let (a, b) = if opposite { (-a, -b) } else { (a, b) };
         // Along the diamond |a| + |b| = 1 from (1, 0) by (0, 1) to (−1, 0).
         let along = if a >= 0.0 { b / length } else { 2.0 - b / length };
         let index = ((along * DIRECTIONS as f32) as usize).min(2 * DIRECTIONS - 1);
-        Self { start: (index * DISTANCES) as u32, opposite, scale: 1.0 / length, slope }
+        let scale = 1.0 / length;
+        let scale = if opposite { -scale } else { scale };
+        Self { start: (index * DISTANCES) as u32, scale }
     }
 }
 
 impl MaskTable {
     pub fn new(mask: Mask) -> Self {
         let side = mask.side();
-        let mut masks = Vec::with_capacity(2 * DIRECTIONS * DISTANCES);
-        for index in 0..2 * DIRECTIONS {
+        let mut masks = Box::new([0; ENTRIES]);
+        for (index, masks) in masks.chunks_exact_mut(DISTANCES).enumerate() {
             let along = (index as f32 + 0.5) / DIRECTIONS as f32;
             let (a, b) =
                 if along <= 1.0 { (1.0 - along, along) } else { (1.0 - along, 2.0 - along) };
-            masks_of_direction(side, a, b, &mut masks);
+            masks_of_direction(side, a, b, masks);
         }
-        Self { side, centers: centers(side).collect(), masks }
+        let centers: Vec<[f32; 2]> = centers(side).collect();
+        let (eights, _) = centers.as_chunks::<8>();
+        let centers_x8 = eights.iter().map(|c| [0, 1].map(|axis| c.map(|p| p[axis]))).collect();
+        Self { side, centers, centers_x8, masks }
     }
 
     /// The mask with all bits.
@@ -78,11 +89,31 @@ impl MaskTable {
     #[inline(always)]
     pub fn half_plane(&self, direction: &Direction, center: f32) -> u64 {
         let e = center * direction.scale;
-        let canonical = if direction.opposite { -e } else { e };
-        // The first mask has no bits and the last has all of them, so what is beyond is right too.
-        let step = ((canonical + 0.5) * DISTANCES as f32).clamp(0.0, (DISTANCES - 1) as f32);
-        let mask = self.masks[direction.start as usize + step as usize];
-        if direction.opposite { !mask & self.full() } else { mask }
+        let step = ((e + 0.5) * DISTANCES as f32).clamp(0.0, LAST_DISTANCE);
+        self.mask(direction, step as i32)
+    }
+
+    /// The places among a direction's masks of functions that are divided and turned as the table
+    /// has them.
+    #[inline(always)]
+    pub fn distances<S: Simd>(&self, simd: S, canonical: f32x4<S>) -> [i32; 4] {
+        let (zero, last) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, LAST_DISTANCE));
+        let step = (canonical + 0.5) * DISTANCES as f32;
+        simd.cvt_i32_f32x4(step.max(zero).min(last)).into()
+    }
+
+    /// A mask of a direction.
+    #[inline(always)]
+    pub fn mask(&self, direction: &Direction, distance: i32) -> u64 {
+        let mask = self.masks[(direction.start as usize + distance as usize) % ENTRIES];
+        let turned = if direction.scale < 0.0 { self.full() } else { 0 };
+        mask ^ turned
+    }
+
+    /// The centres of the sub-pixels, from the pixel's, eight at a time: x and y.
+    #[inline(always)]
+    pub fn centers_x8(&self) -> &[[[f32; 8]; 2]] {
+        &self.centers_x8
     }
 
     /// The centres of the sub-pixels, from the pixel's, bit by bit.
@@ -97,15 +128,15 @@ fn centers(side: u32) -> impl Iterator<Item = [f32; 2]> {
     (0..side * side).map(move |bit| [at(bit % side), at(bit / side)])
 }
 
-/// Adds the masks of one direction, for e from −½ to ½.
-fn masks_of_direction(side: u32, a: f32, b: f32, masks: &mut Vec<u64>) {
+/// Makes the masks of one direction, for e from −½ to ½.
+fn masks_of_direction(side: u32, a: f32, b: f32, masks: &mut [u64]) {
     let mut order: Vec<(f32, u32)> =
         centers(side).map(|[u, v]| a * u + b * v).zip(0..side * side).collect();
     order.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
-    for step in 0..DISTANCES {
+    for (step, mask) in masks.iter_mut().enumerate() {
         let e = (step as f32 + 0.5) / DISTANCES as f32 - 0.5;
         let count = (area(a, b, e) * (side * side) as f32 + 0.5) as usize;
-        masks.push(order.iter().take(count).fold(0, |mask, &(_, bit)| mask | 1 << bit));
+        *mask = order.iter().take(count).fold(0, |mask, &(_, bit)| mask | 1 << bit);
     }
 }
 

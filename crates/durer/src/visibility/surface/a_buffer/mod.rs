@@ -14,10 +14,11 @@
 //! those at the pixels' centres, and masked surfaces are there or not by their alpha there.
 //!
 //! Cost: O(n log n + triangles · rows + fragments + Σ k²) for k fragments that overlap in a pixel.
-//! Memory: the triangles, the table (64 kB) and at most [`Options::max_fragments`] fragments of 56
+//! Memory: the triangles, the table (64 kB) and at most [`Options::max_fragments`] fragments of 44
 //! bytes: a row with more is made in parts, down to one pixel, whose list is never cut off.
 
 mod coverage;
+mod edges;
 mod faces;
 mod fragment;
 mod mask;
@@ -82,7 +83,7 @@ impl Mask {
 pub struct Options {
     /// How fine the masks are.
     pub mask: Mask,
-    /// Fragments kept at a time. Bounds memory to 56 bytes times this; a row with more is made in
+    /// Fragments kept at a time. Bounds memory to 44 bytes times this; a row with more is made in
     /// parts, so a low limit costs time and changes no pixel.
     pub max_fragments: usize,
     /// `None` = by material.
@@ -242,8 +243,9 @@ impl Rows<'_> {
 
     /// Collects the fragments of a part of a row; says whether there was room.
     #[inline(always)]
-    fn collect(
+    fn collect<S: Simd>(
         &mut self,
+        simd: S,
         y: i32,
         columns: [i32; 2],
         lit: &mut Lit<'_>,
@@ -255,7 +257,7 @@ impl Rows<'_> {
             if pool.rejects(faces.active(number), columns) {
                 continue;
             }
-            let (triangle, face) = faces.get(number);
+            let (triangle, face) = faces.get(simd, number);
             let item = triangle.item;
             let masked = face.coverage == Coverage::Masked;
             let passes = |x| !masked || lit.passes_mask(item, x, y);
@@ -263,7 +265,7 @@ impl Rows<'_> {
                 let (mask, area, depths) = (f.mask, f.area, [f.z_min, f.z_max]);
                 t.step(|| Step::Fragment { x, item, mask, area, depths });
             };
-            if !pool.add(triangle, face, y, columns, passes, added) {
+            if !pool.add(simd, triangle, face, y, columns, passes, added) {
                 return false;
             }
         }
@@ -288,7 +290,7 @@ impl Rows<'_> {
             if pool.is_empty(x) {
                 pixel.background = 1.0;
             } else {
-                pixel.begin(pool.of_pixel(x), pool.hidden_from(x), table.full(), self.in_pieces);
+                pixel.begin(pool, x, table.full(), self.in_pieces);
                 if pixel.is_blended() {
                     mixed.sums[x as usize] = blended(pixel, &place, lit, t);
                 } else {
@@ -321,7 +323,7 @@ fn part_of_row<S: Simd, T: Tracer<Step>>(
     lit: &mut Lit<'_>,
     t: &mut T,
 ) -> bool {
-    let done = rows.collect(y, columns, lit, t);
+    let done = rows.collect(simd, y, columns, lit, t);
     if done {
         rows.resolve(simd, y, columns, behind, lit, t);
     }

@@ -1,6 +1,6 @@
 //! From the fragments of a pixel to the share that each has in its colour.
 
-use super::fragment::{Fragment, plane_depth};
+use super::fragment::{Fragment, Pool, plane_depth};
 use super::mask::{Direction, MaskTable};
 use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -13,6 +13,8 @@ pub struct Pixel {
     pub fragments: Vec<Fragment>,
     /// The share of each, 0 … 1.
     pub shares: Vec<f32>,
+    /// The smallest depth and the number in the pool of each.
+    order: Vec<u64>,
     /// The sub-pixels at which each is seen.
     visible: Vec<u64>,
     /// Largest depth and mask of opaque fragments, while it is found what they hide.
@@ -33,27 +35,30 @@ pub struct Place<'a> {
 impl Pixel {
     /// Takes the fragments of a pixel: what lies wholly behind opaque fragments that cover all is
     /// dropped, pieces of one face become one fragment, the rest is sorted front to back.
-    /// Nothing behind `hidden_from` is seen; `in_pieces` says whether there are such pieces at all.
+    /// `in_pieces` says whether there are such pieces at all.
     #[inline(always)]
-    pub fn begin<'f>(
-        &mut self,
-        fragments: impl Iterator<Item = &'f Fragment>,
-        hidden_from: f32,
-        full: u64,
-        in_pieces: bool,
-    ) {
+    pub fn begin(&mut self, pool: &Pool<'_>, x: i32, full: u64, in_pieces: bool) {
+        let hidden_from = pool.hidden_from(x);
         self.shares.clear();
         self.visible.clear();
         self.fragments.clear();
-        self.fragments.extend(fragments.filter(|f| f.z_min <= hidden_from));
-        // They came front to back for the most part, and sorting likes that.
-        self.fragments.reverse();
+        self.order.clear();
+        for number in pool.latest_first(x) {
+            // Depths are at least 0, so that their bits grow with them.
+            let z_min = pool.fragment(number).z_min + 0.0;
+            if z_min <= hidden_from {
+                self.order.push(u64::from(z_min.to_bits()) << 32 | u64::from(number));
+            }
+        }
+        self.order.sort_unstable();
+        self.fragments.extend(self.order.iter().map(|&key| *pool.fragment(key as u32)));
         if self.fragments.len() < 2 {
             return;
         }
         if hidden_from.is_finite() {
             let hidden_from = self.nearest_cover(full);
-            self.fragments.retain(|f| f.z_min <= hidden_from);
+            let seen = self.fragments.partition_point(|f| f.z_min <= hidden_from);
+            self.fragments.truncate(seen);
         }
         if in_pieces {
             self.fragments.sort_unstable_by_key(|f| (f.item, f.triangle));
@@ -93,21 +98,17 @@ impl Pixel {
             self.background = 1.0 - only.area;
             return;
         }
-        let mut left = 1.0f32;
-        let mut covered = 0;
+        let (mut left, mut covered, mut twice) = (1.0f32, 0, 0);
+        for f in &self.fragments {
+            twice |= covered & f.mask;
+            covered |= f.mask;
+        }
         for i in 0..self.fragments.len() {
             let f = &self.fragments[i];
-            let mut visible = f.seen_by;
-            for (j, other) in self.fragments.iter().enumerate() {
-                let common = visible & other.mask;
-                if j != i && common != 0 {
-                    visible &= !(common & in_front(other, f, place));
-                }
-            }
+            let visible = self.seen_of(i, twice, place);
             let part = visible.count_ones() as f32 / f.seen_by.count_ones().max(1) as f32;
             let share = (f.area * part).min(left);
             left -= share;
-            covered |= f.mask;
             self.shares.push(share);
             self.visible.push(visible);
         }
@@ -116,6 +117,29 @@ impl Pixel {
             left = self.give_to_all(left);
         }
         self.background = left;
+    }
+
+    /// The sub-pixels at which a fragment is seen; `twice` are those that several cover.
+    #[inline(always)]
+    fn seen_of(&self, i: usize, twice: u64, place: &Place<'_>) -> u64 {
+        let f = &self.fragments[i];
+        // All that is wholly before it comes before it.
+        let before = self.fragments[..i].iter();
+        let hidden = before.fold(0, |masks, g| masks | if g.z_max < f.z_min { g.mask } else { 0 });
+        let mut visible = f.seen_by & !hidden;
+        // The rest is between fragments whose depths overlap.
+        if f.mask & twice & visible != 0 {
+            for (j, other) in self.fragments.iter().enumerate() {
+                if other.z_min > f.z_max {
+                    break;
+                }
+                let common = visible & other.mask;
+                if j != i && common != 0 {
+                    visible &= !(common & in_front(other, f, place));
+                }
+            }
+        }
+        visible
     }
 
     /// Where the masks leave no background, it gets no more than the areas leave; what small
@@ -285,7 +309,7 @@ fn in_front(a: &Fragment, b: &Fragment, place: &Place<'_>) -> u64 {
     };
     let ([za, ax, ay], [zb, bx, by]) = (plane(a), plane(b));
     let (ahead, direction) = (zb - za, Direction::new(bx - ax, by - ay));
-    if direction.scale > 0.0 && (bx - ax).abs() + (by - ay).abs() > f32::EPSILON * ahead.abs() {
+    if direction.scale != 0.0 && (bx - ax).abs() + (by - ay).abs() > f32::EPSILON * ahead.abs() {
         return place.table.half_plane(&direction, ahead);
     }
     let first = ahead > 0.0 || (ahead == 0.0 && a.item < b.item);
