@@ -43,6 +43,8 @@ pub struct ShadowMap {
     /// Size of a texel in world units, at w = 1 where the map is seen in perspective.
     texel: f32,
     perspective: bool,
+    /// The unit vector along which depths grow, or against it.
+    axis: Vec3,
     depths: Arc<Pixels<f32>>,
 }
 
@@ -68,20 +70,22 @@ impl ShadowMap {
         if !map_from_position.is_finite() || !texel.is_finite() {
             return Err(Error::parameter("shadow map's matrix", texel, "finite"));
         }
-        let texel = texel as f32;
-        Ok(Self { map_from_position, texel, perspective, depths: Arc::new(depths) })
+        let axis = map_from_position.row(2).truncate().normalize_or_zero();
+        let (texel, depths) = (texel as f32, Arc::new(depths));
+        Ok(Self { map_from_position, texel, perspective, axis, depths })
     }
 
     /// How much of the light reaches a point, 0 … 1; `None` where the map does not look.
     ///
-    /// `face` and `to_light` are unit vectors, `face` turned to the light's side.
-    pub fn reach(&self, position: Vec3, face: Vec3, to_light: Vec3) -> Option<f32> {
+    /// `face` is the unit normal of the surface, turned to the light's side.
+    pub fn reach(&self, position: Vec3, face: Vec3) -> Option<f32> {
         let seen = self.map_from_position * position.extend(1.0);
         if seen.w <= 0.0 {
             return None;
         }
         let texel = if self.perspective { self.texel * seen.w } else { self.texel };
-        let cosine = face.dot(to_light).clamp(0.0, 1.0);
+        // Texels lie side by side across the axis, wherever in the map the point is.
+        let cosine = face.dot(self.axis).clamp(-1.0, 1.0);
         let sine = (1.0 - cosine * cosine).sqrt();
         let moved = position + face * (texel * (SLOPE_BIAS * sine + BIAS));
         let p = self.map_from_position * moved.extend(1.0);
@@ -156,7 +160,7 @@ fn reach_one(maps: &[ShadowMap], [px, py, pz, nx, ny, nz, lx, ly, lz]: [f32; 9])
     if face.dot(l) <= 0.0 {
         return 1.0;
     }
-    maps.iter().find_map(|map| map.reach(position, face, l)).unwrap_or(1.0)
+    maps.iter().find_map(|map| map.reach(position, face)).unwrap_or(1.0)
 }
 
 #[cfg(test)]
@@ -180,7 +184,7 @@ mod tests {
     #[test]
     fn what_is_behind_the_nearest_is_dark_and_edges_are_weighted() {
         let map = map(vec![1.0, 0.5, 0.5, 1.0, 0.5, 0.5]);
-        let at = |x: f32, z: f32| map.reach(Vec3::new(x, 1.0, z), Vec3::Z, Vec3::Z);
+        let at = |x: f32, z: f32| map.reach(Vec3::new(x, 1.0, z), Vec3::Z);
         assert_eq!((at(2.5, 1.0), at(2.5, 6.0)), (Some(0.0), Some(1.0)));
         assert_eq!((at(0.5, 1.0), at(1.25, 1.0)), (Some(1.0), Some(0.25)));
         assert_eq!((at(-0.1, 1.0), at(3.0, 1.0)), (None, None));
@@ -196,7 +200,7 @@ mod tests {
         for i in 0..30 {
             // Moved off along the normal, all of these are still in the map.
             let x = 0.95 + i as f32 * 0.1;
-            assert_eq!(map.reach(Vec3::new(x, 1.0, x), normal, Vec3::Z), Some(1.0), "{x}");
+            assert_eq!(map.reach(Vec3::new(x, 1.0, x), normal), Some(1.0), "{x}");
         }
     }
 

@@ -111,6 +111,22 @@ fn maps_and_rays_agree_away_from_edges() {
 }
 
 #[test]
+fn nothing_shadows_itself_wherever_in_the_map_it_is() {
+    let mut floor = scene();
+    floor.instances.truncate(1);
+    for (name, kind) in lights() {
+        for shadow_map_side in [64, 256] {
+            let (width, height) = (240, 180);
+            let options = RenderOptions { width, height, shadow_map_side, ..options(kind, None) };
+            let [none, map] = [Shadows::None, Shadows::Map].map(|shadows| {
+                render(&floor, &RenderOptions { shadows, ..options.clone() }).expect("picture").0
+            });
+            assert!(none.color == map.color, "{name} {shadow_map_side}");
+        }
+    }
+}
+
+#[test]
 fn maps_go_with_every_method_and_shading() {
     let kind = lights()[0].1;
     for shading in [None, Some(Shading::Flat), Some(Shading::Gouraud)] {
