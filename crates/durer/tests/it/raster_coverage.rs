@@ -205,6 +205,33 @@ fn reversal_and_the_starting_vertex_change_nothing() {
     }
 }
 
+#[test]
+fn steps_smaller_than_pixels_may_be_taken_either_way_from_anywhere() {
+    let mut random = Random(16);
+    for (longest, count, side) in [(1.0, 60, 12), (4.0, 90, 24), (12.0, 400, 64), (3.0, 6000, 64)] {
+        for round in 0..40 {
+            let (mut at, mut heading) = (random.point(4.0, f64::from(side) - 4.0), 0.0);
+            let mut points = Vec::new();
+            for _ in 0..count {
+                // Smoothly bent courses and ones that jump about, by steps of all sizes.
+                heading += (random.next() - 0.5) * if round % 2 == 0 { 1.5 } else { 6.0 };
+                let step = longest * random.next() * random.next() * random.next();
+                at += DVec2::new(libm::cos(heading), libm::sin(heading)) * step;
+                at = at.clamp(DVec2::splat(-2.0), DVec2::splat(f64::from(side) + 2.0));
+                points.push(at);
+            }
+            for rule in RULES {
+                let picture = |p: &[DVec2]| mask(&Contours::polygon(p.to_vec()), side, side, rule);
+                let reference = picture(&points);
+                points.rotate_left(count / 3 + round);
+                assert!(picture(&points) == reference, "{longest} {count} {round}: turned on");
+                points.reverse();
+                assert!(picture(&points) == reference, "{longest} {count} {round}: reversed");
+            }
+        }
+    }
+}
+
 /// A star with its spikes in a circle, from one of its points on.
 fn star(center: DVec2, radius: f64, start: usize) -> Vec<DVec2> {
     let point = |i: usize| {

@@ -6,6 +6,7 @@
 use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::raster::clipped::pieces;
+use std::ops::Range;
 
 /// Bits below the pixel: fine enough that snapping moves no area by more than 2⁻¹⁷ of a pixel.
 pub(crate) const BITS: u32 = 16;
@@ -91,12 +92,24 @@ impl Edge {
         (self.flags & CHAINED_UPPER != 0, self.flags & CHAINED_LOWER != 0)
     }
 
+    /// Where the edge starts and where it ends in its path.
+    #[inline(always)]
+    fn course(&self) -> [(i32, i32); 2] {
+        let (upper, lower) = ((self.x0, self.y0), (self.x1, self.y1));
+        if self.flags & REVERSED != 0 { [lower, upper] } else { [upper, lower] }
+    }
+
+    /// Whether it stays within about a pixel.
+    #[inline(always)]
+    fn is_short(&self) -> bool {
+        share_pixel((self.x0, self.y0), (self.x1, self.y1))
+    }
+
     /// Chains the end at which the edge starts, or ends, in its path. On a border of pixels the edge and
     /// its neighbour may touch different ones, so such points do not count.
     fn chain(&mut self, start: bool) {
-        let upper = start == (self.flags & REVERSED == 0);
-        let (x, y) = if upper { (self.x0, self.y0) } else { (self.x1, self.y1) };
-        if x & (ONE - 1) != 0 && y & (ONE - 1) != 0 {
+        if !is_on_border(self.course()[usize::from(!start)]) {
+            let upper = start == (self.flags & REVERSED == 0);
             self.flags |= if upper { CHAINED_UPPER } else { CHAINED_LOWER };
         }
     }
@@ -120,6 +133,11 @@ impl Edge {
     }
 }
 
+/// Whether a 16.16 point lies on a border of pixels.
+fn is_on_border((x, y): (i32, i32)) -> bool {
+    x & (ONE - 1) == 0 || y & (ONE - 1) == 0
+}
+
 /// Whether two 16.16 points lie in the same pixel or on its border.
 fn share_pixel(a: (i32, i32), b: (i32, i32)) -> bool {
     let near = |a: i32, b: i32| (a >> BITS) == (b >> BITS) || (a - b).abs() <= 1;
@@ -132,20 +150,13 @@ pub(crate) struct EdgeBuilder<'a> {
     /// Size of the target in pixels.
     width: f64,
     height: f64,
-    /// The last edge's start and end in the direction of travel.
-    last: Option<((i32, i32), (i32, i32))>,
-    last_directions: u8,
-    /// Directions common to all edges since the chain last turned back.
-    run: u8,
-    /// The contour's first edge, start and end.
-    first: Option<((i32, i32), (i32, i32))>,
 }
 
 impl<'a> EdgeBuilder<'a> {
     /// A builder for a target of the given size in pixels, at most [`MAX_SIDE`] each way.
     pub fn new(edges: &'a mut Vec<Edge>, width: u32, height: u32) -> Self {
         let (width, height) = (f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)));
-        Self { edges, width, height, last: None, last_directions: 0, run: 0, first: None }
+        Self { edges, width, height }
     }
 
     /// Adds the contours, each closed; points that are not finite are left out.
@@ -156,7 +167,7 @@ impl<'a> EdgeBuilder<'a> {
     }
 
     fn contour(&mut self, points: &[DVec2]) {
-        (self.last, self.first) = (None, None);
+        let start = self.edges.len();
         let mut finite = points.iter().filter(|p| p.is_finite());
         let Some(first) = finite.next() else { return };
         let mut from = *first;
@@ -164,7 +175,7 @@ impl<'a> EdgeBuilder<'a> {
             self.line(from, *to);
             from = *to;
         }
-        self.close();
+        chain(&mut self.edges[start..]);
     }
 
     fn line(&mut self, a: DVec2, b: DVec2) {
@@ -190,38 +201,55 @@ impl<'a> EdgeBuilder<'a> {
     }
 
     fn edge(&mut self, from: (i32, i32), to: (i32, i32)) {
-        if from == to {
-            return;
+        if from != to {
+            self.edges.push(Edge::new(from, to));
         }
-        let mut edge = Edge::new(from, to);
-        let directions = edge.directions();
-        self.run = match self.last {
-            Some((start, end)) if end == from => {
-                let run = self.run & directions;
-                // Two edges with a common end cannot cross; more of them not while they run on in
-                // one direction.
-                if run != 0 || !share_pixel(start, from) {
-                    edge.chain(true);
-                }
-                if run != 0 { run } else { self.last_directions & directions }
-            }
-            _ => directions,
-        };
-        self.last_directions = directions;
-        self.last = Some((from, to));
-        self.first = self.first.or(self.last);
-        self.edges.push(edge);
     }
+}
 
-    /// Marks the closing edge where it and the first one are alone in their common pixel.
-    fn close(&mut self) {
-        let (Some(first), Some(last), Some(edge)) = (self.first, self.last, self.edges.last_mut())
-        else {
-            return;
-        };
-        let alone = !share_pixel(first.1, first.0) && !share_pixel(last.0, first.0);
-        if last.1 == first.0 && alone && first != last {
-            edge.chain(false);
+/// Chains the joints of a contour at which edges cannot meet but where they continue each other.
+///
+/// Joints with only short edges between them make a group, with the edges that lead to it and away from
+/// it. Two edges with a common end cannot cross; more of them not while all run on in one direction. That
+/// depends neither on where the contour starts nor on which way it runs.
+fn chain(edges: &mut [Edge]) {
+    let count = edges.len();
+    let is_joint = |edges: &[Edge], i: usize| {
+        edges[(i + count - 1) % count].course()[1] == edges[i % count].course()[0]
+    };
+    // Joint i is before edge i.
+    let begins = |i: &usize| !edges[*i].is_short() || !is_joint(edges, *i);
+    let Some(begin) = (0..count).find(begins).filter(|_| count > 1) else { return };
+    let mut first = begin + 1;
+    for i in first..=begin + count {
+        if !is_joint(edges, i) {
+            chain_group(edges, first..i);
+            first = i + 1;
+        } else if i == begin + count || !edges[i % count].is_short() {
+            chain_group(edges, first..i + 1);
+            first = i + 1;
+        }
+    }
+}
+
+/// Chains a group of joints, counted on beyond the contour's closing one.
+fn chain_group(edges: &mut [Edge], joints: Range<usize>) {
+    let count = edges.len();
+    let directions = || {
+        let around = joints.start.saturating_sub(1)..joints.end;
+        around.fold(u8::MAX, |common, i| common & edges[i % count].directions())
+    };
+    if joints.is_empty() || (joints.len() > 1 && directions() == 0) {
+        return;
+    }
+    let wraps = joints.contains(&count) && !is_on_border(edges[0].course()[0]);
+    for joint in joints {
+        // The edge that comes later in the order of the edges does not count at their joint, and up to
+        // the closing joint none does before which the first edge has come.
+        if wraps && joint <= count {
+            edges[joint - 1].chain(false);
+        } else {
+            edges[joint % count].chain(true);
         }
     }
 }
