@@ -6,7 +6,9 @@ use crate::mesh::Mesh;
 use crate::picture::Picture;
 use crate::scene::{self, Place};
 use durer::math::{DMat4, DVec3, Vec3};
-use durer::pipeline::{Background, Cull, Lighting, RenderOptions, Samples, Shading, render};
+use durer::pipeline::{
+    Background, Cull, Lighting, RenderOptions, Samples, Shading, SurfaceMethod, render,
+};
 use durer::scene::{
     Camera, Instance, Light, LightKind, Material, Part, Projection, Scene, ShadingModel,
 };
@@ -18,6 +20,10 @@ pub struct Durer {
     scene: Scene,
     place: Place,
     samples: Samples,
+    /// The way to find visible surfaces.
+    pub algorithm: SurfaceMethod,
+    /// Pixels across and down.
+    pub size: [u32; 2],
     pool: rayon::ThreadPool,
     last: Framebuffer,
 }
@@ -37,7 +43,7 @@ impl Durer {
             ..Default::default()
         };
         let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
-        let scene = Scene {
+        let scene_of = Scene {
             meshes: vec![durer_mesh],
             instances: vec![instance],
             materials: vec![material()],
@@ -45,7 +51,10 @@ impl Durer {
         };
         let samples = if samples == 4 { Samples::Four } else { Samples::One };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        Ok(Self { scene, place: Place::of(mesh), samples, pool, last: Framebuffer::new(0, 0) })
+        let (place, last) = (Place::of(mesh), Framebuffer::new(0, 0));
+        let size = [scene::WIDTH as u32, scene::HEIGHT as u32];
+        let algorithm = SurfaceMethod::ZBuffer;
+        Ok(Self { scene: scene_of, place, samples, algorithm, size, pool, last })
     }
 
     /// Draws one turn of frames; the medians of the timed ones.
@@ -78,8 +87,9 @@ impl Durer {
         let direction = -(right * x + up * y + back * z);
         let light = |kind, color| Light { kind, color };
         RenderOptions {
-            width: scene::WIDTH as u32,
-            height: scene::HEIGHT as u32,
+            width: self.size[0],
+            height: self.size[1],
+            algorithm: self.algorithm,
             shading: Some(Shading::Phong),
             // Without a light from everywhere durer would add one; the ambient term is emission here.
             lighting: Lighting::Given(vec![

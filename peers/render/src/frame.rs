@@ -8,6 +8,7 @@ use crate::mesh::{self, Mesh};
 use crate::options::Options;
 use crate::picture::Picture;
 use crate::{Result, llvmpipe, table};
+use durer::pipeline::SurfaceMethod;
 use std::path::{Path, PathBuf};
 
 /// Measures all meshes with 1 and 4 samples and prints a table.
@@ -29,7 +30,7 @@ pub fn run(options: &Options) -> Result<()> {
     let names = if options.names.is_empty() { &all[..] } else { &options.names };
     let mut remarks = Vec::new();
     for name in names {
-        let mesh = mesh::sphere(name)?;
+        let mesh = mesh::named(name)?;
         for samples in [1, 4].into_iter().filter(|s| options.samples.is_none_or(|o| o == *s)) {
             let mut contest = Contest::new(name, &mesh, samples, temp.path())?;
             for _ in 0..options.rounds {
@@ -83,7 +84,12 @@ impl<'a> Contest<'a> {
             let euc = Contender::Euc(Box::new(Euc::new(mesh)));
             contenders.push(("euc 0.5, 1 thread", 0, euc, Vec::new()));
         }
-        let bmesh = folder.join(format!("{name}.bmesh"));
+        if samples == 4 {
+            let mut way = Durer::new(mesh, samples, 1)?;
+            way.algorithm = SurfaceMethod::ABuffer;
+            contenders.push(("durer, A-buffer", 0, Contender::Durer(Box::new(way)), Vec::new()));
+        }
+        let bmesh = folder.join("mesh.bmesh");
         if let Some(harness) = llvmpipe::harness() {
             mesh::write_bmesh(&bmesh, mesh)?;
             let one = Contender::Llvmpipe(harness.clone(), 0);

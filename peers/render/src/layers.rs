@@ -27,7 +27,7 @@ pub fn run(options: &Options) -> Result<()> {
     };
     table::head(&["100 quads", "durer CPU ms", "llvmpipe CPU ms", "its CPU / durer's"]);
     for mode in MODES {
-        let (scene, view) = (quads(mode), view());
+        let (scene, view) = (quads(mode, LAYERS), view());
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
         for _ in 0..options.rounds {
             ours.push(turn(&scene, &view)?);
@@ -45,7 +45,7 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 /// The median of three frames, after one that does not count.
-fn turn(scene: &Scene, view: &RenderOptions) -> Result<Cost> {
+pub fn turn(scene: &Scene, view: &RenderOptions) -> Result<Cost> {
     let mut costs = Vec::new();
     for frame in 0..4 {
         let (result, cost) = measure(|| render(scene, view));
@@ -57,7 +57,8 @@ fn turn(scene: &Scene, view: &RenderOptions) -> Result<Cost> {
     Ok(median_cost(&costs))
 }
 
-fn view() -> RenderOptions {
+/// How the quads are seen.
+pub fn view() -> RenderOptions {
     let height = 2.0;
     let camera = Camera {
         eye: DVec3::Z * 2.0,
@@ -76,13 +77,14 @@ fn view() -> RenderOptions {
     }
 }
 
-fn quads(mode: &str) -> Scene {
+/// So many quads in an order.
+pub fn quads(mode: &str, layers: usize) -> Scene {
     let half = (scene::WIDTH as f32 / scene::HEIGHT as f32, 1.0);
     let mut mesh = Mesh::default();
     let mut coordinates = Vec::new();
-    for layer in 0..LAYERS {
-        let near = if mode == "f2b" { LAYERS - layer } else { layer };
-        let z = -0.9 + 1.8 * near as f32 / LAYERS as f32;
+    for layer in 0..layers {
+        let near = if mode == "f2b" { layers - layer } else { layer };
+        let z = -0.9 + 1.8 * near as f32 / layers as f32;
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         {
             mesh.positions.push(Vec3::new(x * half.0, y * half.1, z));
@@ -91,7 +93,7 @@ fn quads(mode: &str) -> Scene {
         }
     }
     mesh.tex_coords.push(coordinates);
-    mesh.parts = vec![Part { range: 0..2 * LAYERS as u32, material: Some(0), name: String::new() }];
+    mesh.parts = vec![Part { range: 0..2 * layers as u32, material: Some(0), name: String::new() }];
     let blend = mode == "blend";
     let material = Material {
         model: ShadingModel::Unlit,

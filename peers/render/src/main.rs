@@ -6,6 +6,7 @@ mod durer_peer;
 mod euc_peer;
 mod f3d;
 mod frame;
+mod growth;
 mod layers;
 mod llvmpipe;
 mod mesh;
@@ -26,14 +27,16 @@ usage: durer-peers-render process [FILE…] [--rounds N] [--meshes DIR] [--png D
        durer-peers-render frame [MESH…] [--rounds N] [--samples 1|4] [--png DIR]
        durer-peers-render methods [FILE.stl…] [--rounds N]
        durer-peers-render layers [--rounds N]
+       durer-peers-render growth DIR [--rounds N]
        durer-peers-render make DIR
 
 process   whole process, model file in, 1024 × 1024 PNG out: durer and f3d
 frame     1920 × 1080 frames in process: durer, euc, and llvmpipe where LLVMPIPE_BENCH names its harness;
-          MESH is sphere13k, sphere69k or sphere1m
+          MESH is sphere13k, sphere69k, sphere1m or an STL file
 methods   durer's ways to find visible surfaces, 1024 × 1024, beside each other
 layers    100 full-screen quads, textured, in three orders: durer and llvmpipe, each with its threads in
           the calling process
+growth    a frame's cost by triangles, pixels, overdraw and threads, as charts in DIR
 make      writes the meshes as STL, GLB and BMESH";
 
 fn main() -> ExitCode {
@@ -55,6 +58,7 @@ fn run() -> Result<()> {
         "frame" => frame::run(&options),
         "methods" => methods::run(&options),
         "layers" => layers::run(&options),
+        "growth" => growth::run(&options),
         "make" => mesh::make(options.names.first().ok_or(USAGE)?.as_ref()),
         _ => Err(USAGE.into()),
     }

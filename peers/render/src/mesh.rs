@@ -24,9 +24,33 @@ pub const SIZES: [(&str, u32, u32); 3] =
 pub fn sphere(name: &str) -> Result<Mesh> {
     let size = SIZES.iter().find(|s| s.0 == name);
     let &(_, around, down) = size.ok_or_else(|| format!("{name}: there is no such mesh"))?;
+    Ok(displaced(around, down))
+}
+
+/// A displaced sphere with so many meridians and parallels.
+pub fn displaced(around: u32, down: u32) -> Mesh {
     let points: Vec<[f64; 3]> =
         (0..=down).flat_map(|i| (0..around).map(move |j| point(i, j, around, down))).collect();
     let triangles = triangles(around, down);
+    let normals = normals(&points, &triangles);
+    let positions = points.iter().map(|p| p.map(|x| x as f32)).collect();
+    Mesh { positions, normals, triangles }
+}
+
+/// The mesh of a name in [`SIZES`], or of an STL file with a normal for each face.
+pub fn named(name: &str) -> Result<Mesh> {
+    if !name.ends_with(".stl") {
+        return sphere(name);
+    }
+    let scene = crate::methods::read_stl(name.as_ref())?;
+    let points: Vec<[f64; 3]> = scene
+        .meshes
+        .iter()
+        .flat_map(|m| &m.positions)
+        .map(|p| p.to_array().map(f64::from))
+        .collect();
+    let triangles: Vec<[u32; 3]> =
+        (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let normals = normals(&points, &triangles);
     let positions = points.iter().map(|p| p.map(|x| x as f32)).collect();
     Ok(Mesh { positions, normals, triangles })

@@ -38,7 +38,7 @@ pub fn run(options: &Options) -> Result<()> {
 }
 
 /// The triangles of a binary STL file.
-fn read_stl(path: &Path) -> Result<Scene> {
+pub fn read_stl(path: &Path) -> Result<Scene> {
     let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))?;
     let number = |b: &[u8]| b.try_into().map_or(0.0, f32::from_le_bytes);
     let corner = |b: &[u8]| Vec3::new(number(&b[..4]), number(&b[4..8]), number(&b[8..]));

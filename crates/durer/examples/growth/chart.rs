@@ -13,26 +13,54 @@ const BLACK: Color = [20, 20, 30, 255];
 pub struct Chart {
     canvas: Canvas,
     curves: usize,
+    /// The power of ten at the axis.
+    floor: f64,
+    /// Between places along the axis.
+    step: f64,
+}
+
+/// What the axes show.
+pub struct Axis {
+    /// The smallest value there is.
+    pub least: f64,
+    /// What the places along the axis are called.
+    pub places: Vec<String>,
 }
 
 impl Chart {
-    /// Two axes, and a line of text below.
-    pub fn new(title: &str) -> Result<Self> {
+    /// Two axes, and a line of text below. Upwards go the powers of ten.
+    pub fn new(title: &str, axis: Axis) -> Result<Self> {
         let canvas = Canvas::new(SIZE[0], SIZE[1], Default::default())?;
-        let mut chart = Self { canvas, curves: 0 };
-        let axes = [(50., 20.), (50., 300.), (380., 300.)];
+        let floor = libm::floor(libm::log10(axis.least.max(1e-9)));
+        let step = 300.0 / (axis.places.len().max(2) - 1) as f64;
+        let mut chart = Self { canvas, curves: 0, floor, step };
+        let axes = [(50., 20.), (50., 290.), (380., 290.)];
         chart.line(&Path::polyline(axes.map(DVec2::from)), BLACK)?;
-        chart.text(title, DVec2::new(50.0, 328.0), BLACK)?;
+        for power in 0..=4 {
+            let value = libm::exp10(floor + f64::from(power));
+            let y = chart.up(value);
+            chart.line(&Path::polyline([DVec2::new(46.0, y), DVec2::new(50.0, y)]), BLACK)?;
+            chart.text(&format!("{value}"), DVec2::new(8.0, y + 3.0), BLACK)?;
+        }
+        for (i, place) in axis.places.iter().enumerate() {
+            let x = 60.0 + step * i as f64;
+            chart.text(place, DVec2::new(x - 2.5 * place.len() as f64, 306.0), BLACK)?;
+        }
+        chart.text(title, DVec2::new(50.0, 330.0), BLACK)?;
         Ok(chart)
     }
 
-    /// A curve at equal distances in x; upwards the logarithm of the values, 100 at the axis.
+    /// Where a value stands.
+    fn up(&self, value: f64) -> f64 {
+        290.0 - 60.0 * (libm::log10(value) - self.floor)
+    }
+
+    /// A curve at equal distances in x; upwards the logarithm of the values.
     pub fn curve(&mut self, name: &str, values: &[f64]) -> Result<()> {
         let k = self.curves;
         self.curves += 1;
         let ink = [(k * 97 % 200) as u8, (k * 151 % 180) as u8, (k * 61 % 220) as u8, 255];
-        let up = |v: &f64| 300.0 - 60.0 * (libm::log10(*v) - 2.0);
-        let place = |(i, v)| DVec2::new(60.0 + 100.0 * i as f64, up(v));
+        let place = |(i, v): (usize, &f64)| DVec2::new(60.0 + self.step * i as f64, self.up(*v));
         self.line(&Path::polyline(values.iter().enumerate().map(place)), ink)?;
         self.text(name, DVec2::new(395.0, 40.0 + 26.0 * k as f64), ink)
     }

@@ -5,7 +5,7 @@
 mod chart;
 mod terrain;
 
-use chart::Chart;
+use chart::{Axis, Chart};
 use durer::visibility::surface::method::SurfaceMethod;
 use durer_formats::png::{Compression, write_color};
 use terrain::{steps, terrain};
@@ -18,7 +18,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("pixels", [32, 64, 128, 256].map(|side| (16, side))),
     ] {
         let title = format!("{name}, four times as many each time; up: steps, tenfold");
-        let mut chart = Chart::new(&title)?;
+        let places = sizes.map(|(n, side)| match name {
+            "triangles" => (2 * n * n).to_string(),
+            _ => format!("{side} x {side}"),
+        });
+        let axis = Axis { least: 100.0, places: places.to_vec() };
+        let mut chart = Chart::new(&title, axis)?;
         for &method in SurfaceMethod::ALL.iter().filter(|m| **m != SurfaceMethod::ZBuffer) {
             let counts = sizes.iter().map(|&(n, side)| steps(method, &terrain(n), side));
             let counts = counts.collect::<durer::Result<Vec<f64>>>()?;

@@ -170,7 +170,11 @@ fn dashed(source: BezPath, stroke: &Stroke, style: &mut kurbo::Stroke, tolerance
     let source = if count < MAX_MEASURED { source } else { chords(&source, length, tolerance) };
     dashes.iter_mut().for_each(|d| *d *= scale);
     let small = Affine::scale(scale) * source;
-    let dashed: BezPath = kurbo::dash(small.into_iter(), offset * scale, &dashes).collect();
+    let start = small.elements().first().copied();
+    let mut dashed = kurbo::dash(small.into_iter(), offset * scale, &dashes).peekable();
+    // Where a dash ends within rounding of the start, what follows comes without its first point.
+    let start = start.filter(|_| !matches!(dashed.peek(), None | Some(PathEl::MoveTo(_))));
+    let dashed: BezPath = start.into_iter().chain(dashed).collect();
     Affine::scale(1.0 / scale) * dashed
 }
 
