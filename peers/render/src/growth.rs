@@ -30,18 +30,20 @@ pub fn run(options: &Options) -> Result<()> {
     let pixels = each_samples(|samples| {
         [0.25, 0.5, 1.0, 2.0, 4.0]
             .map(|by| {
-                let side = format!("{} x {}", (1920.0 * by) as u32, (1080.0 * by) as u32);
+                let side = format!("{:.1}M", 2.0736 * by * by);
                 Ok((side, frame(&spheres[2], samples, 1, by, rounds)?))
             })
             .into_iter()
             .collect()
     })?;
     draw(folder, "pixels", "pixels, 65k triangles; up: CPU ms", &pixels, |c| c.cpu)?;
-    let overdraw = ["b2f", "f2b", "blend"].map(|order| {
+    let orders =
+        [("b2f", "back to front"), ("f2b", "front to back"), ("blend", "half transparent")];
+    let overdraw = orders.map(|(order, name)| {
         let costs = [1, 4, 16, 64].map(|count| -> Result<Place> {
             Ok((count.to_string(), quads(order, count, rounds)?))
         });
-        Ok((order, costs.into_iter().collect::<Result<Vec<_>>>()?))
+        Ok((name, costs.into_iter().collect::<Result<Vec<_>>>()?))
     });
     let overdraw = overdraw.into_iter().collect::<Result<Vec<_>>>()?;
     draw(folder, "overdraw", "textured screens one before another; up: CPU ms", &overdraw, |c| {
@@ -88,9 +90,10 @@ fn draw(
 ) -> Result<()> {
     let values = |places: &[Place]| places.iter().map(|p| part(&p.1) * 1e3).collect::<Vec<f64>>();
     let all: Vec<f64> = curves.iter().flat_map(|c| values(&c.1)).collect();
-    let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+    let range =
+        [all.iter().copied().fold(f64::MAX, f64::min), all.iter().copied().fold(0.0, f64::max)];
     let places = curves.first().map_or(&[][..], |c| &c.1).iter().map(|p| p.0.clone()).collect();
-    let mut chart = Chart::new(title, Axis { least, places })?;
+    let mut chart = Chart::new(title, Axis { range, places })?;
     for (curve, places) in curves {
         for (at, cost) in places {
             let ms = |v: f64| format!("{:.2}", v * 1e3);

@@ -15,14 +15,16 @@ pub struct Chart {
     curves: usize,
     /// The power of ten at the axis.
     floor: f64,
+    /// Pixels of the chart for each.
+    decade: f64,
     /// Between places along the axis.
     step: f64,
 }
 
 /// What the axes show.
 pub struct Axis {
-    /// The smallest value there is.
-    pub least: f64,
+    /// The smallest and the largest value there are.
+    pub range: [f64; 2],
     /// What the places along the axis are called.
     pub places: Vec<String>,
 }
@@ -31,20 +33,23 @@ impl Chart {
     /// Two axes, and a line of text below. Upwards go the powers of ten.
     pub fn new(title: &str, axis: Axis) -> Result<Self> {
         let canvas = Canvas::new(SIZE[0], SIZE[1], Default::default())?;
-        let floor = libm::floor(libm::log10(axis.least.max(1e-9)));
+        let [least, most] = axis.range.map(|value| libm::log10(value.max(1e-9)));
+        let floor = libm::floor(least);
+        let decades = (libm::ceil(most) - floor).max(1.0);
         let step = 300.0 / (axis.places.len().max(2) - 1) as f64;
-        let mut chart = Self { canvas, curves: 0, floor, step };
+        let mut chart = Self { canvas, curves: 0, floor, decade: 260.0 / decades, step };
         let axes = [(50., 20.), (50., 290.), (380., 290.)];
         chart.line(&Path::polyline(axes.map(DVec2::from)), BLACK)?;
-        for power in 0..=4 {
+        for power in 0..=decades as i32 {
             let value = libm::exp10(floor + f64::from(power));
             let y = chart.up(value);
             chart.line(&Path::polyline([DVec2::new(46.0, y), DVec2::new(50.0, y)]), BLACK)?;
-            chart.text(&format!("{value}"), DVec2::new(8.0, y + 3.0), BLACK)?;
+            let text = format!("{value}");
+            chart.text(&text, DVec2::new(42.0 - 6.5 * text.len() as f64, y + 4.0), BLACK)?;
         }
         for (i, place) in axis.places.iter().enumerate() {
             let x = 60.0 + step * i as f64;
-            chart.text(place, DVec2::new(x - 2.5 * place.len() as f64, 306.0), BLACK)?;
+            chart.text(place, DVec2::new(x - 3.0 * place.len() as f64, 306.0), BLACK)?;
         }
         chart.text(title, DVec2::new(50.0, 330.0), BLACK)?;
         Ok(chart)
@@ -52,7 +57,7 @@ impl Chart {
 
     /// Where a value stands.
     fn up(&self, value: f64) -> f64 {
-        290.0 - 60.0 * (libm::log10(value) - self.floor)
+        290.0 - self.decade * (libm::log10(value) - self.floor)
     }
 
     /// A curve at equal distances in x; upwards the logarithm of the values.

@@ -22,14 +22,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "triangles" => (2 * n * n).to_string(),
             _ => format!("{side} x {side}"),
         });
-        let axis = Axis { least: 100.0, places: places.to_vec() };
-        let mut chart = Chart::new(&title, axis)?;
+        let mut curves = Vec::new();
         for &method in SurfaceMethod::ALL.iter().filter(|m| **m != SurfaceMethod::ZBuffer) {
             let counts = sizes.iter().map(|&(n, side)| steps(method, &terrain(n), side));
             let counts = counts.collect::<durer::Result<Vec<f64>>>()?;
             println!("{name} {method}: {counts:?}");
-            chart.curve(method.name(), &counts)?;
+            curves.push((method.name(), counts));
         }
+        let all = curves.iter().flat_map(|(_, counts)| counts.iter().copied());
+        let range = [all.clone().fold(f64::MAX, f64::min), all.fold(0.0, f64::max)];
+        let mut chart = Chart::new(&title, Axis { range, places: places.to_vec() })?;
+        curves.iter().try_for_each(|(name, counts)| chart.curve(name, counts))?;
         let file = std::fs::File::create(format!("{folder}/growth_{name}.png"))?;
         write_color(file, &chart.picture()?, Compression::Small)?;
     }

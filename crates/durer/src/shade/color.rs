@@ -132,8 +132,8 @@ pub fn encode_srgb8(linear: f32) -> u8 {
 ///
 /// Cost: one look-up per channel.
 #[inline(always)]
-pub fn encode_opaque_x8<S: Simd>(simd: S, channels: &[[f32; 8]; 3]) -> [[u8; 4]; 8] {
-    let [r, g, b] = channels;
+pub fn encode_opaque_x8<S: Simd>(simd: S, channels: &[[f32; 8]; 4]) -> [[u8; 4]; 8] {
+    let [r, g, b, _] = channels;
     let (r, g, b) = (codes_x8(simd, r), codes_x8(simd, g), codes_x8(simd, b));
     let packed = r | (g << 8u32) | (b << 16u32) | (255 << 24);
     let packed: [u32; 8] = packed.into();
@@ -280,7 +280,7 @@ mod tests {
                 let r: [f32; 8] = std::array::from_fn(|i| eight[i]);
                 let g = r.map(|v| v * 0.5);
                 let codes = fearless_simd::dispatch!(level, simd =>
-                    encode_opaque_x8(simd, &[r, g, [0.5; 8]]));
+                    encode_opaque_x8(simd, &[r, g, [0.5; 8], [0.5; 8]]));
                 let half = encode_srgb8(0.5);
                 let one = |i: usize| [encode_srgb8(r[i]), encode_srgb8(g[i]), half, 255];
                 assert_eq!(codes, std::array::from_fn(one), "{eight:?}");

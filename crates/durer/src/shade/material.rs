@@ -121,12 +121,12 @@ impl<'a> PreparedMaterial<'a> {
     pub fn looked_up_together(&self, shading: Shading) -> Option<usize> {
         let set = self.slots().next()?.set;
         let suits = |slot: &Slot<'_>| slot.set == set && slot.texture.suits_lanes();
-        let together = self.is_lit_together(shading) && self.normal_slot.is_none();
+        let together = self.has_one_exponent(shading) && self.normal_slot.is_none();
         (together && self.slots().all(suits)).then_some(set)
     }
 
-    /// Linear red, green and blue of eight points, each bit for bit what [`shade`] gives; the material
-    /// must be [looked up together](Self::looked_up_together). Cost: O(lights) and eight samples per
+    /// Linear red, green and blue of eight points and their alpha, each bit for bit what [`shade`] gives, but
+    /// that colours without alpha are not black; the material must be [looked up together](Self::looked_up_together). Cost: O(lights) and eight samples per
     /// texture.
     #[simd]
     pub fn shade_x8<S: Simd>(
@@ -136,14 +136,23 @@ impl<'a> PreparedMaterial<'a> {
         at: &TexCoords<f32x8<S>>,
         lights: &PreparedLights,
         shading: Shading,
-    ) -> Vec3Lane<f32x8<S>> {
+    ) -> (Vec3Lane<f32x8<S>>, f32x8<S>) {
         let like = points.position.x;
         let mut base = Vec3Lane::splat(like, this.base_color.truncate());
+        let mut alpha = like.splat(this.base_color.w);
         if let Some(texel) = sampled_x8(simd, &this.base_color_slot, at) {
             base = base.times(texel.color());
+            alpha = alpha * texel.0[3];
         }
+        let alpha = match this.alpha_mode {
+            AlphaMode::Blend => {
+                let most = alpha.if_above(1.0, like.splat(1.0), alpha);
+                alpha.if_above(0.0, most, like.splat(0.0))
+            }
+            _ => like.splat(1.0),
+        };
         if shading == Shading::Unlit {
-            return tone::display(base);
+            return (tone::display(base), alpha);
         }
         let frame = face_viewer(points.view, points.geometric_normal, points.normal);
         let texels = Texels {
@@ -153,7 +162,7 @@ impl<'a> PreparedMaterial<'a> {
             specular: sampled_x8(simd, &this.specular_slot, at),
         };
         let inputs = this.inputs(like, base, &texels, shading);
-        formula::display(&frame, points.position, &inputs, None, lights, shading)
+        (formula::display(&frame, points.position, &inputs, None, lights, shading), alpha)
     }
 
     /// The formula the material was written for.
@@ -161,10 +170,15 @@ impl<'a> PreparedMaterial<'a> {
         self.model.into()
     }
 
-    /// Whether the material is opaque and without textures, so that [`super::shade_points`] may be used
+    /// Whether the material has one alpha and no textures, so that [`super::shade_points`] may be used
     /// on meshes without vertex colours.
     pub fn is_plain(&self) -> bool {
-        !self.textured && self.alpha_mode == AlphaMode::Opaque
+        !self.textured && matches!(self.alpha_mode, AlphaMode::Opaque | AlphaMode::Blend)
+    }
+
+    /// The alpha of all points of a [plain](Self::is_plain) material.
+    pub fn plain_alpha(&self) -> f32 {
+        self.coverage(self.base_color.w)
     }
 
     /// Whether any slot has a texture, so that texture coordinates are needed.
@@ -273,12 +287,16 @@ impl<'a> PreparedMaterial<'a> {
     /// Whether samples of the material may be lit by [`super::Samples`]: nothing shines through, and
     /// what the formula takes for all of them at once is one number.
     pub fn is_lit_together(&self, shading: Shading) -> bool {
-        let one_exponent = match shading {
+        self.has_one_exponent(shading) && self.alpha_mode != AlphaMode::Blend
+    }
+
+    /// Whether what the formula takes for eight points at once is one number.
+    fn has_one_exponent(&self, shading: Shading) -> bool {
+        match shading {
             Shading::MetallicRoughness | Shading::Unlit => true,
             Shading::Phong => self.model != ShadingModel::MetallicRoughness,
             Shading::Flat | Shading::Gouraud => false,
-        };
-        one_exponent && self.alpha_mode != AlphaMode::Blend
+        }
     }
 
     /// A point with what the textures say of it, to be lit with others.

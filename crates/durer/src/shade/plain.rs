@@ -24,7 +24,7 @@ pub struct Points<L> {
 /// Linear red, green and blue of several samples, each bit for bit what [`super::shade`] gives.
 ///
 /// The material must be [plain](PreparedMaterial::is_plain): textures and vertex colours are not
-/// looked at, alpha is 1. Cost: O(lights), a tenth of [`super::shade`] per sample where eight lanes are
+/// looked at, alpha is [`PreparedMaterial::plain_alpha`]. Cost: O(lights), a tenth of [`super::shade`] per sample where eight lanes are
 /// native.
 #[simd]
 pub fn shade_points<S: Simd>(

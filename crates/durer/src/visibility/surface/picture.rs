@@ -167,11 +167,11 @@ fn color_row<S: Simd>(
     for (eight, (out, of_out)) in out.chunks_mut(8).zip(items.chunks(8)).enumerate() {
         let mut items = [NO_ITEM; 8];
         items[..of_out.len()].copy_from_slice(of_out);
-        let mut colors = [[0.0; 8]; 3];
+        let mut colors = [[0.0; 8]; 4];
         if items != [NO_ITEM; 8] {
             Lit::colors_x8(simd, lit, &items, x + 8 * eight as i32, y, &mut colors);
         }
-        let [r, g, b] = colors;
+        let [r, g, b, _] = colors;
         for (i, to) in out.iter_mut().enumerate() {
             *to = match items[i] {
                 NO_ITEM => behind,

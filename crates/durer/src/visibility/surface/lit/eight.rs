@@ -1,7 +1,7 @@
 //! Lighting visible items eight pixels at a time, where their materials allow it.
 
 use super::{Lit, RunInfo};
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
 use crate::shade::{Points, PreparedMaterial, Sample, Samples, shade_points};
 use crate::target::NO_ITEM;
@@ -37,7 +37,7 @@ impl Eight<'_> {
 }
 
 impl<'a> Lit<'a> {
-    /// Linear RGB of up to eight pixels in a row from `x`: those with an item.
+    /// Linear RGBA, straight alpha, of up to eight pixels in a row from `x`: those with an item.
     ///
     /// Where the material allows it they are lit eight at a time, else one by one; the bits are the same.
     #[simd]
@@ -47,7 +47,7 @@ impl<'a> Lit<'a> {
         items: &[u32; 8],
         x: i32,
         y: i32,
-        colors: &mut [[f32; 8]; 3],
+        colors: &mut [[f32; 8]; 4],
     ) {
         let mut done = [false; 8];
         for i in 0..8 {
@@ -58,11 +58,11 @@ impl<'a> Lit<'a> {
             if info.plain && i == 0 && *items == [items[0]; 8] {
                 return this.one_triangle_x8(simd, &info, items[0], [x, y], colors);
             }
-            if info.plain || info.together {
+            if info.plain || info.together || info.looked_up.is_some() {
                 this.run_x8(simd, &info, items, [x, y], &mut done, colors);
             } else {
                 let color = this.color(items[i], x + i as i32, y);
-                set_lane(colors, i, color.truncate());
+                set_lane(colors, i, color);
             }
         }
     }
@@ -75,12 +75,14 @@ impl<'a> Lit<'a> {
         info: &RunInfo<'a>,
         item: u32,
         [x, y]: [i32; 2],
-        colors: &mut [[f32; 8]; 3],
+        colors: &mut [[f32; 8]; 4],
     ) {
         let parallel = self.parallel_view;
         let t = self.triangles.get(item, info.run);
         let points = points_x8(simd, t, [x, y], parallel);
-        *colors = shade_points(simd, &points, info.material, self.shared.lights, info.shading);
+        let lights = self.shared.lights;
+        let [r, g, b] = shade_points(simd, &points, info.material, lights, info.shading);
+        *colors = [r, g, b, [info.material.plain_alpha(); 8]];
     }
 
     /// Shades all of eight pixels whose items belong to one run.
@@ -92,7 +94,7 @@ impl<'a> Lit<'a> {
         items: &[u32; 8],
         [x, y]: [i32; 2],
         done: &mut [bool; 8],
-        colors: &mut [[f32; 8]; 3],
+        colors: &mut [[f32; 8]; 4],
     ) {
         let mut mine = [0; 8];
         for i in 0..8 {
@@ -102,11 +104,13 @@ impl<'a> Lit<'a> {
         }
         let eight = Eight { items, chosen: &mine, x, y };
         let shaded = if info.plain {
-            self.plain_x8(simd, info, eight)
+            let [r, g, b] = self.plain_x8(simd, info, eight);
+            [r, g, b, [info.material.plain_alpha(); 8]]
         } else if let Some(coords) = info.looked_up {
             self.looked_up_x8(simd, (info, coords), eight)
         } else {
-            self.textured_x8(simd, info, eight)
+            let [r, g, b] = self.textured_x8(simd, info, eight);
+            [r, g, b, [1.0; 8]]
         };
         for (to, from) in colors.iter_mut().zip(&shaded) {
             fill_axis(*from, &mine, to);
@@ -176,7 +180,7 @@ impl<'a> Lit<'a> {
         simd: S,
         (info, coords): (&RunInfo<'a>, &[Vec2]),
         eight: Eight<'_>,
-    ) -> [[f32; 8]; 3] {
+    ) -> [[f32; 8]; 4] {
         let one = eight.items[0];
         let (points, at) = if *eight.items == [one; 8] {
             let (t, at) = (self.triangles.get(one, info.run), [eight.x, eight.y]);
@@ -193,8 +197,9 @@ impl<'a> Lit<'a> {
             (points.points(simd, self.parallel_view), at.coordinates(simd))
         };
         let (material, lights) = (info.material, self.shared.lights);
-        let color = PreparedMaterial::shade_x8(simd, material, &points, &at, lights, info.shading);
-        [color.x.into(), color.y.into(), color.z.into()]
+        let (color, alpha) =
+            PreparedMaterial::shade_x8(simd, material, &points, &at, lights, info.shading);
+        [color.x.into(), color.y.into(), color.z.into(), alpha.into()]
     }
 
     /// Shades the chosen of eight pixels, of a run that is lit together.
@@ -282,10 +287,10 @@ pub struct Queue {
 }
 
 #[inline(always)]
-fn set_lane(lanes: &mut [[f32; 8]; 3], lane: usize, v: Vec3) {
-    lanes[0][lane] = v.x;
-    lanes[1][lane] = v.y;
-    lanes[2][lane] = v.z;
+fn set_lane(lanes: &mut [[f32; 8]; 4], lane: usize, v: Vec4) {
+    for (channel, value) in lanes.iter_mut().zip(v.to_array()) {
+        channel[lane] = value;
+    }
 }
 
 /// The points of a triangle at eight pixels in a row.

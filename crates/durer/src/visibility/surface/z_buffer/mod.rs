@@ -10,6 +10,7 @@
 //! pixel.
 
 mod bins;
+mod blended;
 mod front_to_back;
 mod rasterize;
 mod resolve;
@@ -29,10 +30,11 @@ use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
+use blended::Fragments;
 use fearless_simd::dispatch;
 use front_to_back::FrontToBack;
 use rasterize::{AllPass, FragmentTest, rasterize};
-use resolve::{Area, Fragments, MaskTest, Output, resolve};
+use resolve::{Area, MaskTest, Output, resolve};
 use tile::{SamplePlane, TILE};
 
 /// The facts.

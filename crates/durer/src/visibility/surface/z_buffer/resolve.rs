@@ -1,12 +1,12 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
+use super::blended::{Fragments, resolve_blended};
 use super::rasterize::FragmentTest;
-use super::tile::{SamplePlane, TILE, TILE_PIXELS};
+use super::tile::{SamplePlane, TILE};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x8, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::lit::Lit;
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -15,91 +15,7 @@ use fearless_simd::{Simd, u32x8};
 use fearless_simd_macros::simd;
 
 /// Samples that a pixel has at most.
-const MOST_SAMPLES: usize = 16;
-
-/// A fragment of a blended surface, in tile-local pixels.
-#[derive(Debug, Clone, Copy, Default)]
-struct Fragment {
-    pixel: u32,
-    item: u32,
-    /// Depth at the first covered sample.
-    depth: f32,
-    /// Bit i: sample i is covered and not hidden.
-    samples: u32,
-}
-
-/// Collects the fragments of blended surfaces that nothing opaque hides.
-pub struct Fragments {
-    list: Vec<Fragment>,
-    /// Room for sorting.
-    by_pixel: Vec<Fragment>,
-    offsets: &'static [[i32; 2]],
-    tile: [i32; 2],
-}
-
-impl Fragments {
-    pub fn new(offsets: &'static [[i32; 2]]) -> Self {
-        Self { list: Vec::new(), by_pixel: Vec::new(), offsets, tile: [0; 2] }
-    }
-
-    /// Forgets all fragments and begins with another tile.
-    pub fn clear(&mut self, tile: [i32; 2]) {
-        self.list.clear();
-        self.tile = tile;
-    }
-
-    /// Brings the fragments of each pixel together, far ones first; of equally far ones the higher
-    /// item first, so that the lower is seen.
-    fn sort(&mut self) {
-        if self.list.is_empty() {
-            return;
-        }
-        // They came triangle by triangle, so those of one item at one pixel follow each other.
-        let mut next = [0; TILE_PIXELS + 1];
-        for f in &self.list {
-            next[f.pixel as usize + 1] += 1;
-        }
-        for pixel in 0..TILE_PIXELS {
-            next[pixel + 1] += next[pixel];
-        }
-        self.by_pixel.resize(self.list.len(), Fragment::default());
-        for f in &self.list {
-            let slot = &mut next[f.pixel as usize];
-            self.by_pixel[*slot] = *f;
-            *slot += 1;
-        }
-        std::mem::swap(&mut self.list, &mut self.by_pixel);
-        // The samples of one item at one pixel become one fragment.
-        self.list.dedup_by(|next, kept| {
-            let same = (next.pixel, next.item) == (kept.pixel, kept.item);
-            if same {
-                kept.samples |= next.samples;
-                kept.depth = kept.depth.min(next.depth);
-            }
-            same
-        });
-        for of_pixel in self.list.chunk_by_mut(|a, b| a.pixel == b.pixel) {
-            of_pixel.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(b.item.cmp(&a.item)));
-        }
-    }
-}
-
-impl FragmentTest for Fragments {
-    /// Takes note of the fragment and lets nothing be written.
-    fn passes(&mut self, t: &ScreenTriangle, x: i32, y: i32, sample: usize) -> bool {
-        let origin = t.origin();
-        let [ox, oy] = self.offsets[sample].map(|o| o as f32 / 256.0);
-        let dx = (self.tile[0] + x - origin[0]) as f32 + ox;
-        let dy = (self.tile[1] + y - origin[1]) as f32 + oy;
-        self.list.push(Fragment {
-            pixel: (y * TILE + x) as u32,
-            item: t.item,
-            depth: t.depth_at(dx, dy),
-            samples: 1 << sample,
-        });
-        false
-    }
-}
+pub(super) const MOST_SAMPLES: usize = 16;
 
 /// Lets the fragments of masked surfaces pass where they are.
 pub struct MaskTest<'t, 'a> {
@@ -142,13 +58,8 @@ pub fn resolve<S: Simd>(
     output: &mut Output<'_>,
 ) {
     resolve_opaque(simd, planes, mixed, lit, area, output);
-    fragments.sort();
-    for of_pixel in fragments.list.chunk_by(|a, b| a.pixel == b.pixel) {
-        let (x, y) = (of_pixel[0].pixel as i32 % TILE, of_pixel[0].pixel as i32 / TILE);
-        if x < area.size[0] && y < area.size[1] {
-            let color = blended(planes, of_pixel, lit, area, [x, y]);
-            output.color[y as usize * output.stride + x as usize] = encode(color);
-        }
+    if fragments.any() {
+        resolve_blended(simd, planes, fragments, lit, area, output);
     }
 }
 
@@ -219,7 +130,7 @@ fn resolve_eight<S: Simd>(
     if *whole == [NO_ITEM; 8] {
         return out.fill(behind);
     }
-    let mut colors = [[0.0; 8]; 3];
+    let mut colors = [[0.0; 8]; 4];
     Lit::colors_x8(simd, lit, whole, x, y, &mut colors);
     let encoded = encode_opaque_x8(simd, &colors);
     if whole.iter().all(|&item| item != NO_ITEM) {
@@ -289,7 +200,7 @@ fn add_shares<S: Simd, const N: usize>(
 
 /// The items at all samples of a pixel, and how many samples there are.
 #[inline(always)]
-fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
+pub(super) fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
     let (mut items, mut count) = ([NO_ITEM; MOST_SAMPLES], 0);
     for plane in planes {
         for &item in plane.items(pixel) {
@@ -298,70 +209,4 @@ fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], u
         }
     }
     (items, count)
-}
-
-/// The colour at each sample of a pixel; each item is lit once.
-fn sample_colors(
-    planes: &[SamplePlane],
-    index: usize,
-    lit: &mut Lit<'_>,
-    behind: Vec4,
-    [x, y]: [i32; 2],
-) -> ([Vec4; MOST_SAMPLES], usize) {
-    let mut colors = [behind; MOST_SAMPLES];
-    let (items, count) = sample_items(planes, index);
-    for (i, &item) in items[..count].iter().enumerate() {
-        if item == NO_ITEM {
-            continue;
-        }
-        let earlier = (0..i).find(|&j| items[j] == item);
-        colors[i] = match earlier {
-            Some(j) => colors[j],
-            None => lit.color(item, x, y).truncate().extend(1.0),
-        };
-    }
-    (colors, count)
-}
-
-fn average(colors: &[Vec4]) -> Vec4 {
-    let sum = colors.iter().fold(Vec4::ZERO, |sum, &c| sum + c);
-    // The number of samples is a power of two, so this is exact.
-    sum * (1.0 / colors.len() as f32)
-}
-
-/// A pixel with blended surfaces, composed at each sample.
-fn blended(
-    planes: &[SamplePlane],
-    fragments: &[Fragment],
-    lit: &mut Lit<'_>,
-    area: &Area<'_>,
-    [x, y]: [i32; 2],
-) -> Vec4 {
-    let (x, y) = (area.tile[0] + x, area.tile[1] + y);
-    let index = fragments[0].pixel as usize;
-    let behind = premultiply((area.background)(y));
-    let (mut colors, count) = sample_colors(planes, index, lit, behind, [x, y]);
-    // What is in front is asked first, for what next to nothing comes through of need not be lit.
-    let mut through = [1.0; MOST_SAMPLES];
-    let mut seen = Vec::with_capacity(fragments.len());
-    for fragment in fragments.iter().rev() {
-        let over = premultiply(lit.color(fragment.item, x, y));
-        seen.push((over, fragment.samples));
-        for (i, through) in through[..count].iter_mut().enumerate() {
-            if fragment.samples >> i & 1 == 1 {
-                *through *= 1.0 - over.w;
-            }
-        }
-        if through[..count].iter().all(|&through| through <= LEAST_THROUGH) {
-            break;
-        }
-    }
-    for (over, samples) in seen.into_iter().rev() {
-        for (i, under) in colors[..count].iter_mut().enumerate() {
-            if samples >> i & 1 == 1 {
-                *under = over + *under * (1.0 - over.w);
-            }
-        }
-    }
-    average(&colors[..count])
 }
