@@ -142,7 +142,7 @@ impl<'a> PreparedMaterial<'a> {
         let mut alpha = like.splat(this.base_color.w);
         if let Some(texel) = sampled_x8(simd, &this.base_color_slot, at) {
             base = base.times(texel.color());
-            alpha = alpha * texel.0[3];
+            alpha *= texel.0[3];
         }
         let alpha = match this.alpha_mode {
             AlphaMode::Blend => {

@@ -221,7 +221,7 @@ fn chain(edges: &mut [Edge]) {
     let begins = |i: &usize| !edges[*i].is_short() || !is_joint(edges, *i);
     let Some(begin) = (0..count).find(begins).filter(|_| count > 1) else { return };
     let mut first = begin + 1;
-    for i in first..=begin + count {
+    for i in begin + 1..=begin + count {
         if !is_joint(edges, i) {
             chain_group(edges, first..i);
             first = i + 1;
