@@ -231,7 +231,8 @@ impl VisibleMap {
 
     /// What is visible, where neighbours whose items have one key are one region.
     ///
-    /// Regions are in the order of their first edges in the map: from left to right, roughly.
+    /// Regions are in the order of their first edges in the map: from left to right, roughly. Slivers that
+    /// vanish with the vertices left out of straight lines, less than a grid step wide, are not among them.
     pub fn regions(&self, key: impl Fn(u32) -> u64) -> Vec<VisibleRegion> {
         let item = |face: u32| self.faces[face as usize].item;
         let mut keys: Vec<u64> = self.shown.iter().flatten().map(|s| key(item(s.1))).collect();
@@ -241,7 +242,8 @@ impl VisibleMap {
         let label = |shown: &Option<(DVec2, u32)>| shown.map_or(NOTHING, |s| rank(key(item(s.1))));
         let labels: Vec<u32> = self.shown.iter().map(label).collect();
         let patches = merge::patches(&self.map, &labels);
-        patches.list.iter().map(|patch| self.region(patch)).collect()
+        let regions = patches.list.iter().map(|patch| self.region(patch));
+        regions.filter(|region| region.area() > 0.0).collect()
     }
 
     fn region(&self, patch: &Patch) -> VisibleRegion {
