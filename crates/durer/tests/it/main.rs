@@ -39,6 +39,7 @@ mod raster_source;
 mod raster_stroke;
 mod raster_triangle;
 mod scenes;
+mod section_caps;
 mod shading;
 mod shadows;
 mod smooth_outlines;
