@@ -43,6 +43,9 @@ pub struct DrawingArgs {
     #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
     pub pen: Option<Pens>,
     /// Whether areas are hatched instead of filled [default: shade for .hpgl, else none]
+    ///
+    /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. The caps
+    /// of a --section are hatched among lines anyway; `none` fills them.
     #[arg(long, value_name = "HOW")]
     pub hatch: Option<Hatch>,
     /// Which neighbouring areas become one [default: shade; face for .geojson]
