@@ -1,169 +1,189 @@
-//! Which faces can have to do with what is seen of a section's caps: the caps, and what reaches before them.
+//! What can be seen of a section's caps, without solving the rest of the picture.
 //!
-//! Over a grid of cells it is known how far the farthest cap reaches, and of ever larger cells the farthest
-//! of all in them (a hierarchical z-buffer, after Greene, Kass and Miller 1993, of farthest depths). A face
-//! that lies behind that in the few cells that its bounds touch hides no cap. O(n) for n faces.
+//! All that a section leaves lies on one side of each of its planes. So nothing lies before a cap that is seen
+//! from the other side, and all that the picture shows over a cap lies before it that is seen from this
+//! one: what is seen of it is its polygon less the union of all other faces. Of those only the outline takes
+//! part: where two faces share a side in the picture and lie on both sides of it, that cancels, and what is left
+//! has the same winding numbers. O(n log n) for n faces, and an overlay of the outlines.
 
 use super::Options;
-use super::weiler_atherton::edges::CLEARLY;
+use super::paint::colors;
+use super::shadow::{LIT, World};
 use super::weiler_atherton::faces::{Face, Frame, Place, Projector, float, surfaces};
 use crate::Result;
-use crate::math::DVec2;
+use crate::clip::polygon::overlay::{self, overlay};
+use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
+use crate::math::{Plane, Rect};
 use crate::scene::Scene;
+use crate::shade::PreparedLights;
+use crate::target::drawing::{Drawing, Region, RegionKind};
+use crate::trace::NoTrace;
 use crate::view::View;
+use crate::visibility::surface::setup::Run;
 
-/// Cells along the longer side of what the caps span.
-const CELLS: u64 = 256;
-
-/// The caps of a scene in the picture, and the faces that may hide some of them.
-pub fn with_what_may_hide_them(
+/// The visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected part a
+/// region of kind [`RegionKind::Cap`]. Of the options only the material and the culling count.
+///
+/// The scene must be what [`crate::view::section::cut`] gives: caps with faces on both of their sides are
+/// not told from others.
+///
+/// # Errors
+/// As [`super::draw`].
+pub fn draw_caps(
     scene: &Scene,
     view: &View,
-    frame: &Frame,
+    lights: &PreparedLights,
     options: &Options,
-) -> Result<Vec<Face>> {
-    let Some(material) = options.cap_material else { return Ok(Vec::new()) };
+) -> Result<Drawing> {
+    scene.check()?;
+    let frame = Frame::new(view);
+    let half = frame.half() * frame.unit;
+    let drawing = Drawing { window: Rect::new(-half, half).ok(), ..Drawing::default() };
+    let Some(material) = options.cap_material else { return Ok(drawing) };
     let (caps, others): (Vec<_>, Vec<_>) =
         surfaces(scene)?.into_iter().partition(|run| run.material == Some(material));
-    let mut projector = Projector::new(scene, view, frame, options.cull);
-    let mut faces = Vec::new();
-    caps.iter().for_each(|run| projector.project(run, |face| faces.push(face)));
-    let Some(farthest) = Farthest::new(&faces) else { return Ok(faces) };
-    for run in &others {
-        projector.project(run, |face| {
-            if farthest.may_be_hidden_by(&face) {
-                faces.push(face);
+    let mut projector = Projector::new(scene, view, &frame, options.cull);
+    let world = World::new(scene)?;
+    let caps: Vec<Cap> = caps
+        .iter()
+        .filter_map(|run| {
+            let mut faces = Vec::new();
+            projector.project(run, |face| faces.push(face));
+            Cap::new(&world, run, view, faces)
+        })
+        .collect();
+    let Some(first) = caps.first() else { return Ok(drawing) };
+    let color = colors(scene, view, lights, &[(first.faces[0].item, LIT)]).first().copied();
+    let mut sides = Vec::new();
+    if let Some(around) = Bounds::of(caps.iter().filter(|c| c.from_within).flat_map(|c| &c.faces)) {
+        let mut add = |face: Face| {
+            if around.overlaps(&face) {
+                sides.extend(face.sides());
             }
-        });
+        };
+        others.iter().for_each(|run| projector.project(run, &mut add));
     }
-    Ok(faces)
+    let before = outlines(sides);
+    let mut visible = Shapes::new();
+    for (i, cap) in caps.iter().enumerate() {
+        let other_caps = caps.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, cap)| cap);
+        visible.append(&cap.visible(&before, other_caps)?);
+    }
+    // Where bodies go through each other their caps do, too.
+    let visible = combined(&visible, &Shapes::new(), BooleanOp::Union)?;
+    let color = color.unwrap_or_default();
+    let regions = visible.polygons().map(|polygon| {
+        let plane_units = |ring: &[_]| ring.iter().map(|p| *p * frame.unit).collect();
+        let rings = polygon.rings().map(plane_units).collect();
+        Region { kind: RegionKind::Cap, rings, color, item: None }
+    });
+    Ok(Drawing { regions: regions.collect(), ..drawing })
 }
 
-/// How far the caps reach.
-struct Farthest {
-    /// What the caps span; the grid begins at its lower left corner.
-    min: Place,
-    max: Place,
-    /// Cells of the finest level are 2^shift grid steps wide and high.
-    shift: u32,
-    /// Depths by cell, from the finest level to the one of a single cell.
-    levels: Vec<Level>,
+/// The caps of one mesh at one plane.
+struct Cap {
+    /// At least one.
+    faces: Vec<Face>,
+    plane: Plane,
+    /// Whether it is seen from the side on which the model lies.
+    from_within: bool,
 }
 
-struct Level {
-    columns: usize,
-    rows: usize,
-    depths: Vec<f64>,
+impl Cap {
+    /// `None` where nothing is in the picture, or nothing has a plane.
+    fn new(world: &World<'_>, run: &Run, view: &View, faces: Vec<Face>) -> Option<Self> {
+        let area = |f: &&Face| f.doubled_area();
+        // The plane of the largest is the most certain.
+        let plane = world.plane(faces.iter().max_by_key(area)?.item)?;
+        let from_within = world.side_of_mesh(run, &plane) == world.side_of_eye(view, &plane);
+        Some(Self { faces, plane, from_within })
+    }
+
+    /// What outlines, and other caps, leave of it.
+    fn visible<'a>(&self, before: &Shapes, caps: impl Iterator<Item = &'a Self>) -> Result<Shapes> {
+        let own = outlines(self.faces.iter().flat_map(Face::sides).collect());
+        if !self.from_within {
+            return Ok(own);
+        }
+        let parallel = |c: &&Self| c.plane.normal.dot(self.plane.normal).abs() > PARALLEL;
+        let others = caps.filter(|c| !parallel(c)).flat_map(|c| &c.faces);
+        let mut before = before.clone();
+        before.append(&outlines(others.flat_map(Face::sides).collect()));
+        combined(&own, &before, BooleanOp::Difference)
+    }
 }
 
-impl Farthest {
-    /// `None` where there are no caps.
-    fn new(caps: &[Face]) -> Option<Self> {
-        let mut boxes = caps.iter().map(Face::bounds);
-        let first = boxes.next()?;
-        let (min, max) = boxes.fold(first, |(lo, hi), (min, max)| {
+/// The cosine above which planes are parallel: of parallel caps none lies before the other, for what is beyond
+/// either plane is cut away.
+const PARALLEL: f64 = 1.0 - 1e-12;
+
+fn combined(a: &Shapes, b: &Shapes, op: BooleanOp) -> Result<Shapes> {
+    // The grid of the faces.
+    let rule = overlay::Options::with_rule(FillRule::NonZero);
+    let options = overlay::Options { grid: Some(1.0), ..rule };
+    Ok(overlay(a, b, op, &options, &mut NoTrace)?.shapes)
+}
+
+/// The smallest and the largest x and y of faces.
+struct Bounds(Place, Place);
+
+impl Bounds {
+    fn of<'a>(faces: impl Iterator<Item = &'a Face>) -> Option<Self> {
+        let join = |(lo, hi): (Place, Place), (min, max): (Place, Place)| {
             let lo = Place { x: lo.x.min(min.x), y: lo.y.min(min.y) };
             (lo, Place { x: hi.x.max(max.x), y: hi.y.max(max.y) })
-        });
-        let span = |a: i32, b: i32| (i64::from(b) - i64::from(a)) as u64;
-        let (width, height) = (span(min.x, max.x), span(min.y, max.y));
-        let shift = (width.max(height) / CELLS + 1).next_power_of_two().ilog2();
-        let (columns, rows) = ((width >> shift) as usize + 1, (height >> shift) as usize + 1);
-        let finest = Level { columns, rows, depths: vec![f64::NEG_INFINITY; columns * rows] };
-        let mut farthest = Self { min, max, shift, levels: vec![finest] };
-        caps.iter().for_each(|cap| farthest.enter(cap));
-        while let Some(coarser) = farthest.levels.last().and_then(Level::coarser) {
-            farthest.levels.push(coarser);
-        }
-        Some(farthest)
-    }
-
-    fn enter(&mut self, cap: &Face) {
-        let ((left, bottom), (right, top)) = self.cells(cap.bounds());
-        let size = (1u64 << self.shift) as f64;
-        for row in bottom..=top {
-            let Some((from, to)) = self.span(cap, row) else { continue };
-            for column in from.max(left)..=to.min(right) {
-                let corner = float(self.min) + DVec2::new(column as f64, row as f64) * size;
-                let rise = (cap.plane.slope * size).max(DVec2::ZERO).element_sum();
-                let far = (cap.plane.depth(corner) + rise).min(cap.far) + CLEARLY * cap.error;
-                let level = &mut self.levels[0];
-                let depth = &mut level.depths[row * level.columns + column];
-                *depth = depth.max(far);
-            }
-        }
-    }
-
-    /// The first and the last column of a row of cells that a face may touch.
-    fn span(&self, face: &Face, row: usize) -> Option<(usize, usize)> {
-        let size = (1u64 << self.shift) as f64;
-        // A step of margin makes up for rounding.
-        let bottom = f64::from(self.min.y) + row as f64 * size - 1.0;
-        let top = bottom + size + 2.0;
-        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (a, b) in face.sides() {
-            let (a, b) = if a.y <= b.y { (float(a), float(b)) } else { (float(b), float(a)) };
-            if b.y < bottom || a.y > top {
-                continue;
-            }
-            for y in [bottom.max(a.y), top.min(b.y)] {
-                let flat = b.y == a.y;
-                let ends = if flat {
-                    [a.x, b.x]
-                } else {
-                    [a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)); 2]
-                };
-                from = from.min(ends[0].min(ends[1]));
-                to = to.max(ends[0].max(ends[1]));
-            }
-        }
-        let column = |x: f64| ((x - f64::from(self.min.x)) / size).max(0.0) as usize;
-        (from <= to).then(|| (column(from - 1.0), column(to + 1.0)))
-    }
-
-    /// The cells of two corners at the finest level; those outside are moved in.
-    fn cells(&self, (min, max): (Place, Place)) -> ((usize, usize), (usize, usize)) {
-        let index = |v: i32, low: i32, count: usize| {
-            let offset = (i64::from(v) - i64::from(low)).max(0) >> self.shift;
-            (offset as usize).min(count - 1)
         };
-        let Level { columns, rows, .. } = self.levels[0];
-        let cell = |p: Place| (index(p.x, self.min.x, columns), index(p.y, self.min.y, rows));
-        (cell(min), cell(max))
+        faces.map(Face::bounds).reduce(join).map(|(min, max)| Self(min, max))
     }
 
-    /// Whether some of the caps may lie behind a face.
-    fn may_be_hidden_by(&self, face: &Face) -> bool {
+    fn overlaps(&self, face: &Face) -> bool {
         let (min, max) = face.bounds();
-        if max.x < self.min.x || max.y < self.min.y || min.x > self.max.x || min.y > self.max.y {
-            return false;
-        }
-        let ((left, bottom), (right, top)) = self.cells((min, max));
-        // So coarse that few cells are to be looked at.
-        let wide = (right - left).max(top - bottom);
-        let level = (wide.max(1).ilog2() as usize).min(self.levels.len() - 1);
-        let Level { columns, depths, .. } = &self.levels[level];
-        let near = face.near - CLEARLY * face.error;
-        (bottom >> level..=top >> level).any(|row| {
-            let cells = row * columns + (left >> level)..=row * columns + (right >> level);
-            depths[cells].iter().any(|&far| near < far)
-        })
+        min.x <= self.1.x && self.0.x <= max.x && min.y <= self.1.y && self.0.y <= max.y
     }
 }
 
-impl Level {
-    /// The level of cells twice as wide and high; `None` above the last.
-    fn coarser(&self) -> Option<Self> {
-        if self.depths.len() < 2 {
-            return None;
+/// Closed walks with the winding numbers of all faces whose sides these are.
+fn outlines(sides: Vec<(Place, Place)>) -> Shapes {
+    let mut sides = uncancelled(sides);
+    sides.sort_unstable();
+    // Those that begin at one point are taken in order: where the first of them is, the next to be taken.
+    let mut next: Vec<usize> = (0..sides.len()).collect();
+    let first_at = |p: Place| sides.partition_point(|s| s.0 < p);
+    let mut walks = Shapes::new();
+    for (index, &(start, _)) in sides.iter().enumerate() {
+        let mut first = first_at(start);
+        if next[first] > index {
+            continue;
         }
-        let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
-        let mut depths = vec![f64::NEG_INFINITY; columns * rows];
-        for (i, &depth) in self.depths.iter().enumerate() {
-            let (column, row) = (i % self.columns / 2, i / self.columns / 2);
-            let coarse = &mut depths[row * columns + column];
-            *coarse = coarse.max(depth);
+        let mut ring = Vec::new();
+        // As many sides begin at each point as end there, so a walk comes back to where it began.
+        while let Some(at) = next.get_mut(first) {
+            let Some(&(a, b)) = sides.get(*at).filter(|s| s.0 == sides[first].0) else { break };
+            *at += 1;
+            ring.push(float(a));
+            if b == start {
+                break;
+            }
+            first = first_at(b);
         }
-        Some(Self { columns, rows, depths })
+        walks.push_ring(ring);
+        walks.end_polygon();
     }
+    walks
+}
+
+/// The sides that are not undone by others that run back.
+fn uncancelled(sides: Vec<(Place, Place)>) -> Vec<(Place, Place)> {
+    let mut sides: Vec<(Place, Place, bool)> =
+        sides.into_iter().map(|(a, b)| (a.min(b), a.max(b), a < b)).collect();
+    sides.sort_unstable();
+    let mut left = Vec::new();
+    for same in sides.chunk_by(|s, t| (s.0, s.1) == (t.0, t.1)) {
+        let (a, b, _) = same[0];
+        let forward = same.iter().filter(|s| s.2).count();
+        let back = same.len() - forward;
+        let side = if forward > back { (a, b) } else { (b, a) };
+        left.extend(std::iter::repeat_n(side, forward.abs_diff(back)));
+    }
+    left
 }

@@ -11,18 +11,20 @@ mod shadow;
 mod trap;
 pub mod weiler_atherton;
 
+pub use caps::draw_caps;
+
 use crate::Result;
 use crate::math::Rect;
 use crate::scene::Scene;
 use crate::shade::PreparedLights;
-use crate::target::drawing::{Drawing, RegionKind};
+use crate::target::drawing::Drawing;
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Cull;
 use paint::Paint;
 use shadow::{Lamps, World};
 use weiler_atherton::faces::{Face, Frame};
-use weiler_atherton::{VisibleMap, merge};
+use weiler_atherton::merge;
 
 /// Which neighbours become one region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -89,42 +91,12 @@ pub fn draw(
     let more = |frame: &Frame, faces: &[Face]| lamps.edges(frame, faces);
     let map = weiler_atherton::divide(scene, view, &how, more, &mut NoTrace)?;
     let paint = Paint::new(scene, view, lights, options, &world, &lamps, &map);
-    Ok(painted(&map, &paint, options))
-}
-
-/// The visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint and without shadows.
-///
-/// The same as the regions of kind [`RegionKind::Cap`] that [`draw`] gives, but only faces that may hide
-/// some of a cap take part, so it costs little where nothing does.
-///
-/// # Errors
-/// As [`draw`].
-pub fn draw_caps(
-    scene: &Scene,
-    view: &View,
-    lights: &PreparedLights,
-    options: &Options,
-) -> Result<Drawing> {
-    scene.check()?;
-    let options = &Options { fill: Fill::Disjoint, shadows: false, ..*options };
-    let world = World::new(scene)?;
-    let lamps = Lamps::new(&world, view, lights, options.shadows)?;
-    let frame = Frame::new(view);
-    let faces = caps::with_what_may_hide_them(scene, view, &frame, options)?;
-    let map = weiler_atherton::divide_by(frame, faces, |_, _| Vec::new(), &mut NoTrace);
-    let paint = Paint::new(scene, view, lights, options, &world, &lamps, &map);
-    let mut drawing = painted(&map, &paint, options);
-    drawing.regions.retain(|r| r.kind == RegionKind::Cap);
-    Ok(drawing)
-}
-
-fn painted(map: &VisibleMap, paint: &Paint, options: &Options) -> Drawing {
     let patches = merge::patches(&map.map, &paint.labels);
     let half = map.frame.half() * map.frame.unit;
-    Drawing {
+    Ok(Drawing {
         window: Rect::new(-half, half).ok(),
-        regions: paint.regions(map, &patches, options),
-        lines: paint.shadow_lines(map),
+        regions: paint.regions(&map, &patches, options),
+        lines: paint.shadow_lines(&map),
         labels: Vec::new(),
-    }
+    })
 }

@@ -167,6 +167,11 @@ impl Face {
         plane.slope.is_finite().then_some(Self { corners, plane, depths, near, far, error, item })
     }
 
+    /// Twice its area in squared grid steps; exact.
+    pub fn doubled_area(&self) -> i64 {
+        cross(self.corners[0], self.corners[1], self.corners[2])
+    }
+
     /// Depth over a point of the grid, within that of the corners.
     #[inline(always)]
     pub fn depth(&self, p: DVec2) -> f64 {

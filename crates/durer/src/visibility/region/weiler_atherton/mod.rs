@@ -178,17 +178,7 @@ pub(super) fn divide(
 ) -> Result<VisibleMap> {
     scene.check()?;
     let frame = Frame::new(view);
-    let faces = faces::project(scene, view, &frame, options.cull)?;
-    Ok(divide_by(frame, faces, more, t))
-}
-
-/// The same for faces that are in the picture.
-pub(super) fn divide_by(
-    frame: Frame,
-    mut faces: Vec<Face>,
-    more: impl Fn(&Frame, &[Face]) -> Vec<edges::Edge>,
-    t: &mut impl Tracer<Step>,
-) -> VisibleMap {
+    let mut faces = faces::project(scene, view, &frame, options.cull)?;
     faces.sort_by(|f, g| f.near.total_cmp(&g.near).then(f.item.cmp(&g.item)));
     let cells = Cells::new(&faces);
     let mut edges = edges::sides(&faces, &cells);
@@ -208,7 +198,7 @@ pub(super) fn divide_by(
         Step::Map { vertices, edges, faces }
     });
     let shown = look(&map, &faces, &cells);
-    VisibleMap { frame, faces, cells, map, shown }
+    Ok(VisibleMap { frame, faces, cells, map, shown })
 }
 
 /// Faces of the map that one task looks at.
