@@ -266,7 +266,8 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         aspect: aspect(args),
         lines: hidden_line::Options {
             classes: drawing.lines.unwrap_or(default.classes),
-            crease: drawing.crease.to_radians(),
+            crease: drawing.crease.from.to_radians(),
+            crease_end: drawing.crease.to.to_radians(),
             // Programs get all there is; on paper hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
             intersections: drawing.intersections.into(),
