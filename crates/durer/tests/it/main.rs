@@ -38,6 +38,7 @@ mod raster_seed_fill;
 mod raster_source;
 mod raster_stroke;
 mod raster_triangle;
+mod region_details;
 mod scenes;
 mod section_caps;
 mod shading;

@@ -2,7 +2,7 @@
 
 use crate::line_scenes::{Random, cuboid, random_boxes, soup, torus, view};
 use durer::math::{DVec2, DVec3, Plane};
-use durer::scene::Scene;
+use durer::scene::{Instance, Scene};
 use durer::shade::PreparedLights;
 use durer::target::drawing::{Drawing, Region, RegionKind};
 use durer::view::View;
@@ -76,6 +76,17 @@ fn section_caps_alone_are_those_of_the_picture() {
     let above = view(DVec3::new(2.0, 2.0, 1.0), DVec3::new(0.1, -0.3, 1.0), 8.0, true);
     let inside = assert_same("open box", &open, &up, &above);
     assert!(inside > 2.0 && inside < 15.0, "{inside}");
+    // Two bodies whose caps lie in one plane, on each other in part: neither hides the other.
+    let box_of = |x: f64| {
+        let mut open = cuboid([x, 0.0, 0.0], [x + 4.0, 4.0, 2.0]);
+        open.retain(|t| t.iter().any(|p| p.z < 2.0));
+        open
+    };
+    let mut pair = soup(&box_of(0.0));
+    pair.meshes.extend(soup(&box_of(3.0)).meshes);
+    pair.instances.push(Instance { mesh: 1, ..pair.instances[0].clone() });
+    let both = assert_same("two boxes", &pair, &up, &above);
+    assert!(both > 6.0, "{both}");
     let mut seen = 0;
     for (name, scene) in [("boxes", &boxes), ("torus", &ring)] {
         let center = scene.bounding_sphere().expect("a sphere");
