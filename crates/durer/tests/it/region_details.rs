@@ -36,14 +36,19 @@ fn told(drawing: &Drawing) -> Vec<(RegionKind, [u8; 4], f64)> {
 
 #[test]
 fn shadows_fall_on_the_side_that_the_light_is_on_alone() {
-    // A plate below the floor, in light from below: from above its shadow is not to be seen.
-    let mut triangles = floor(0.0, 3.0);
-    triangles.extend(floor(-1.0, 1.0));
+    // A plate below the floor, in light from below: from above its shadow is not to be seen, were it
+    // as large as the floor.
     let up = DVec3::new(0.1, 0.05, 1.0);
-    let above = shadowed(&triangles, DVec3::new(0.2, 0.1, 1.0), up);
     let unlit = |r: &Region| r.kind == RegionKind::Surface && is_black(r);
-    assert!(above.regions.iter().all(unlit), "{:?}", told(&above));
-    assert_eq!(above.length(|l| l.class == LineClass::Shadow), 0.0);
+    for size in [4.0, 1.0] {
+        let triangles = [floor(0.0, 3.0), floor(-1.0, size)].concat();
+        let above = shadowed(&triangles, DVec3::new(0.02, 0.01, 1.0), up);
+        assert!(above.regions.iter().any(unlit));
+        let of_floor = |r: &&Region| size < 3.0 || unlit(r);
+        assert!(above.regions.iter().filter(of_floor).all(unlit), "{:?}", told(&above));
+        assert_eq!(above.length(|l| l.class == LineClass::Shadow), 0.0);
+    }
+    let triangles = [floor(0.0, 3.0), floor(-1.0, 1.0)].concat();
     // From below it is; and what light reaches is not black.
     let below = shadowed(&triangles, DVec3::new(2.0, 0.1, -1.0), up);
     let (dark, lit): (Vec<&Region>, Vec<_>) =

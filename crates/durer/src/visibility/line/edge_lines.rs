@@ -109,7 +109,7 @@ impl Facing {
             let points = t.map(|v| faces.points()[v as usize]);
             let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
             let i = item as usize;
-            let of_whole = whole.corners(faces, item).filter(|_| !whole.sliver(item));
+            let of_whole = whole.corners(faces, item);
             if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
                 found.normals[i] = (normal * sign).as_vec3().to_array();
             }
