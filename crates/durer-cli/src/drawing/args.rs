@@ -19,8 +19,11 @@ pub struct DrawingArgs {
     #[arg(long, value_name = "HOW", default_value = "drop")]
     pub hidden: Hidden,
     /// Edges whose faces turn by more degrees are drawn as creases
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
-    pub crease: f64,
+    ///
+    /// With TO, e.g. 40,25, a crease that has begun goes on, though its edges get blunter, as long as they
+    /// turn by more than TO degrees and it goes straight on: for sculpted models, whose edges fade.
+    #[arg(long, value_name = "FROM[,TO]", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
+    pub crease: Crease,
     /// Which lines are drawn, joined by commas [default: all but wire and shadow]
     ///
     /// silhouette, crease, border, non-manifold, material, intersection, section, shadow, wire; `all` is
@@ -43,6 +46,9 @@ pub struct DrawingArgs {
     #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
     pub pen: Option<Pens>,
     /// Whether areas are hatched instead of filled [default: shade for .hpgl, else none]
+    ///
+    /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. The caps
+    /// of a --section are hatched among lines anyway; `none` fills them.
     #[arg(long, value_name = "HOW")]
     pub hatch: Option<Hatch>,
     /// Which neighbouring areas become one [default: shade; face for .geojson]
@@ -125,10 +131,29 @@ fn parsed<T: std::str::FromStr<Err = durer::Error>>(text: &str) -> Result<T, Str
     text.parse().map_err(|e: durer::Error| e.to_string())
 }
 
-fn crease(text: &str) -> Result<f64, String> {
-    let inside = |n: &f64| (0.0..=180.0).contains(n);
-    values::number(text)
-        .and_then(|n| Some(n).filter(inside).ok_or("it must lie between 0 and 180 degrees".into()))
+/// `--crease`, in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crease {
+    /// Edges are creases from here.
+    pub from: f64,
+    /// Creases go on down to here.
+    pub to: f64,
+}
+
+fn crease(text: &str) -> Result<Crease, String> {
+    let wrong =
+        || "it must lie between 0 and 180 degrees; or two angles, FROM,TO, TO not above FROM";
+    let angle = |text: &str| {
+        let inside = |n: &f64| (0.0..=180.0).contains(n);
+        values::number(text).and_then(|n| Some(n).filter(inside).ok_or(wrong().into()))
+    };
+    match text.split_once(',') {
+        None => angle(text).map(|from| Crease { from, to: from }),
+        Some((from, to)) => {
+            let found = Crease { from: angle(from)?, to: angle(to)? };
+            Some(found).filter(|c| c.to <= c.from).ok_or(wrong().into())
+        }
+    }
 }
 
 fn stubs(text: &str) -> Result<f64, String> {

@@ -90,6 +90,12 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
                        disjoint, or --hatch none";
         return Err(Failure::Usage(message.to_owned()));
     }
+    let asked = args.drawing.hatch == Some(Hatch::Shade);
+    if asked && args.drawing.style == Some(DrawStyle::Wireframe) {
+        let message = "--hatch shade: a wireframe shows no areas; use --style hidden-line, regions, \
+                       regions+lines or shadows";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     if args.drawing.sheet.is_none() {
         return Ok(());
     }
@@ -166,7 +172,8 @@ pub fn render(
     let mut report = PictureReport { cameras: seen_from, ..PictureReport::default() };
     for camera in cameras {
         let cap_material = subject.cap_material;
-        let options = DrawOptions { cap_material, ..draw_options(args, kind, style, camera) };
+        let shown = with_tones(style, args.drawing.hatch);
+        let options = DrawOptions { cap_material, ..draw_options(args, kind, shown, camera) };
         let drawing =
             pipeline::draw(subject.scene, &options).map_err(|e| Failure::Usage(e.to_string()))?;
         drawings.push(drawing);
@@ -190,6 +197,14 @@ pub fn render(
     write(args, kind, target, &laid, &drawings, &mut report, start)?;
     report.files = vec![target.to_string()];
     Ok(report)
+}
+
+/// Whoever wants lines hatched by shade needs to know the areas between them.
+fn with_tones(style: DrawStyle, hatch: Option<Hatch>) -> DrawStyle {
+    match (style, hatch) {
+        (DrawStyle::HiddenLine, Some(Hatch::Shade)) => DrawStyle::RegionsAndLines,
+        _ => style,
+    }
 }
 
 fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
@@ -251,7 +266,8 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         aspect: aspect(args),
         lines: hidden_line::Options {
             classes: drawing.lines.unwrap_or(default.classes),
-            crease: drawing.crease.to_radians(),
+            crease: drawing.crease.from.to_radians(),
+            crease_end: drawing.crease.to.to_radians(),
             // Programs get all there is; on paper hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
             intersections: drawing.intersections.into(),

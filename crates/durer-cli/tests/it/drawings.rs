@@ -104,6 +104,10 @@ fn options_that_do_not_fit_say_what_does() {
         ("-o a.png --fill disjoint", "give --style"),
         ("-o a.hpgl --style regions --fill trapped", "use --fill disjoint"),
         ("-o a.svg --style regions --hatch shade --fill trapped", "--hatch none"),
+        (
+            "-o a.svg --style wireframe --hatch shade",
+            "hidden-line, regions, regions+lines or shadows",
+        ),
     ];
     for (options, part) in cases {
         folder.run(&format!("render cube.obj {options}")).fails(2, part);
@@ -130,6 +134,44 @@ fn sections_have_lines_of_their_own() {
     let drawing = ended.json()["models"][0]["pictures"][0]["drawing"].clone();
     assert_eq!(drawing["regions"], 1);
     assert!(drawing["lines"].as_array().unwrap().iter().all(|l| l["class"] != "hatch"));
+    // Programs get what of the caps can be seen as areas.
+    folder.must("render cube.obj -o cut.geojson --section 0,-1,0,0 --view top");
+    let drawing: serde_json::Value = serde_json::from_slice(&folder.read("cut.geojson")).unwrap();
+    let features = drawing["features"].as_array().unwrap().iter();
+    let caps: Vec<_> = features.filter(|f| f["properties"]["class"] == "cap").collect();
+    let [cap] = caps[..] else { panic!("{} caps", caps.len()) };
+    assert_eq!(
+        (&cap["geometry"]["type"], &cap["properties"]["visible"]),
+        (&"Polygon".into(), &true.into())
+    );
+    let ring: Vec<[f64; 2]> =
+        serde_json::from_value(cap["geometry"]["coordinates"][0].clone()).unwrap();
+    let doubled: f64 = ring.windows(2).map(|w| w[0][0] * w[1][1] - w[1][0] * w[0][1]).sum();
+    assert!((doubled - 8.0).abs() < 1e-6, "{doubled}");
+}
+
+#[test]
+fn hidden_line_drawings_are_hatched_where_that_is_asked_for() {
+    let folder = Folder::with_models();
+    let drawn = |options: &str| {
+        let ended = folder.must(&format!("render cube.obj {options} --json"));
+        ended.json()["models"][0]["pictures"][0]["drawing"].clone()
+    };
+    let length = |drawing: &serde_json::Value, class: &str| -> f64 {
+        let lines = drawing["lines"].as_array().unwrap().iter().filter(|l| l["class"] == class);
+        lines.map(|l| l["visible"]["length"].as_f64().unwrap()).sum()
+    };
+    let (plain, hatched) = (drawn("-o a.svg"), drawn("-o a.svg --hatch shade"));
+    assert_eq!((&hatched["style"], &hatched["regions"]), (&"hidden-line".into(), &0.into()));
+    assert_eq!(length(&plain, "hatch"), 0.0);
+    assert!(length(&hatched, "hatch") > 10.0);
+    for class in ["silhouette", "crease"] {
+        assert_eq!(length(&hatched, class), length(&plain, class), "{class}");
+    }
+    let both = drawn("-o a.svg --style regions+lines --hatch shade");
+    assert_eq!(hatched["lines"], both["lines"]);
+    // Plotters hatch areas without being asked, but a line drawing stays one.
+    assert_eq!(length(&drawn("-o a.hpgl"), "hatch"), 0.0);
 }
 
 #[test]

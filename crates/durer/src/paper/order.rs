@@ -106,3 +106,20 @@ impl Grid {
         best.map(|(_, i, last)| Turn { index: i as usize, backwards: last })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pen_goes_on_from_the_end_that_it_came_to() {
+        let stroke = |a: f64, b: f64| (DVec2::new(a, 0.0), DVec2::new(b, 0.0));
+        let strokes =
+            [stroke(31.0, 40.0), stroke(20.0, 11.0), stroke(0.0, 10.0), stroke(21.0, 30.0)];
+        let turns: Vec<(usize, bool)> =
+            nearest_first(&strokes, DVec2::ZERO).iter().map(|t| (t.index, t.backwards)).collect();
+        assert_eq!(turns, [(2, false), (1, true), (3, false), (0, false)]);
+        let turns = nearest_first(&strokes, DVec2::new(50.0, 0.0));
+        assert!(turns.iter().map(|t| t.backwards).eq([true, true, false, true]));
+    }
+}

@@ -4,7 +4,7 @@ use super::Lighting;
 use crate::math::DVec3;
 use crate::scene::{Camera, Projection, Scene};
 use crate::shade::PreparedLights;
-use crate::target::drawing::{Drawing, Line, LineClass, RegionKind};
+use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::line::{ClassSet, hidden_line, wireframe};
@@ -152,28 +152,33 @@ fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawin
 /// What of a section's caps can be seen, to be filled or hatched among lines.
 fn caps(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
     let options = DrawOptions { trapped: false, merge: Merge::Material, ..options.clone() };
-    let mut drawing = regions(scene, view, &options)?;
-    drawing.regions.retain(|r| r.kind == RegionKind::Cap);
-    Ok(drawing)
+    region::draw_caps(scene, view, &lights(scene, &options), &region_options(&options))
 }
 
 fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
-    let lights = match &options.lighting {
+    let lights = lights(scene, options);
+    let mut drawing = region::draw(scene, view, &lights, &region_options(options))?;
+    // Fills show where shadows end; their outlines are drawn where they are asked for.
+    drawing.lines.retain(|l| options.lines.classes.contains(l.class));
+    Ok(drawing)
+}
+
+fn lights(scene: &Scene, options: &DrawOptions) -> PreparedLights {
+    match &options.lighting {
         Lighting::Auto => PreparedLights::of(scene, &options.camera),
         Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
-    };
+    }
+}
+
+fn region_options(options: &DrawOptions) -> region::Options {
     let reach = REACH * seen_height(&options.camera);
-    let region_options = region::Options {
+    region::Options {
         cull: options.cull,
         merge: options.merge,
         fill: if options.trapped { Fill::Trapped { reach } } else { Fill::Disjoint },
         shadows: options.style == DrawStyle::Shadows,
         cap_material: options.cap_material,
-    };
-    let mut drawing = region::draw(scene, view, &lights, &region_options)?;
-    // Fills show where shadows end; their outlines are drawn where they are asked for.
-    drawing.lines.retain(|l| options.lines.classes.contains(l.class));
-    Ok(drawing)
+    }
 }
 
 /// The height of the picture in the plane through the target, model units.

@@ -37,16 +37,60 @@ fn where_materials_meet_there_is_a_line() {
     assert!((length(&found, LineClass::Border) - 12.0).abs() < 1e-5, "{:?}", found.lines);
 }
 
+/// A roof along x whose ridge turns by these angles, in degrees, one after the other.
+fn ridge(angles: &[f64]) -> Vec<Triangle> {
+    let eaves = |i: usize, y: f64| {
+        let slope = (angles[i.min(angles.len() - 1)] / 2.0).to_radians().tan();
+        DVec3::new(i as f64, y, -slope)
+    };
+    let mut triangles = Vec::new();
+    for i in 0..angles.len() {
+        let [a, b] = [i, i + 1].map(|i| DVec3::new(i as f64, 0.0, 0.0));
+        let [l, r] = [1.0, -1.0].map(|y| eaves(i, y));
+        let [next_l, next_r] = [1.0, -1.0].map(|y| eaves(i + 1, y));
+        triangles.extend([[a, b, l], [b, next_l, l], [b, a, r], [b, r, next_r]]);
+    }
+    triangles
+}
+
+#[test]
+fn creases_that_get_blunter_go_on_where_that_is_asked_for() {
+    let mut roof = ridge(&[60.0, 50.0, 35.0, 30.0, 20.0]);
+    let view = view(DVec3::new(2.5, 0.0, 0.0), DVec3::Z, 8.0, false);
+    let crease_length = |roof: &[Triangle], end: f64| {
+        let options = Options { crease_end: end.to_radians(), ..Options::default() };
+        length(
+            &draw(&soup(roof), &view, &options, &mut NoTrace).expect("drawing"),
+            LineClass::Crease,
+        )
+    };
+    let near = |found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-3, "{found} instead of {expected}");
+    };
+    for _ in 0..2 {
+        near(crease_length(&roof, 180.0), 2.0);
+        near(crease_length(&roof, 40.0), 2.0);
+        near(crease_length(&roof, 32.0), 3.0);
+        near(crease_length(&roof, 25.0), 4.0);
+        near(crease_length(&roof, 10.0), 5.0);
+        roof.reverse();
+    }
+    // Where nothing begins, nothing goes on.
+    near(crease_length(&ridge(&[35.0, 30.0, 35.0]), 25.0), 0.0);
+}
+
 #[test]
 fn triangles_without_a_height_make_no_creases() {
     // A sheet whose diagonal passes through a vertex of one side only; what closes the gap is a line.
     let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
         .map(|[x, y]: [f64; 2]| DVec3::new(x, y, 0.0));
-    let m = DVec3::ZERO;
-    let sheet: Vec<Triangle> = vec![[a, b, m], [b, c, m], [a, c, d], [a, m, c]];
-    let found = drawn(&soup(&sheet), &above());
-    let classes: Vec<_> = found.lines.iter().map(|l| l.class).collect();
-    assert_eq!(classes, [LineClass::Border]);
+    // On it, or as far from it as numbers with 24 bits may put it: upright, and turned over.
+    for m in [DVec3::ZERO, DVec3::new(0.0, 0.0, 4e-7), DVec3::new(-2e-7, 2e-7, -4e-7)] {
+        let sheet: Vec<Triangle> = vec![[a, b, m], [b, c, m], [a, c, d], [a, m, c]];
+        let found = drawn(&soup(&sheet), &above());
+        let classes: Vec<_> = found.lines.iter().map(|l| l.class).collect();
+        assert_eq!(classes, [LineClass::Border], "{m}");
+    }
 }
 
 #[test]

@@ -78,3 +78,18 @@ fn lines_that_pass_behind_a_smooth_outline_end_on_it() {
         );
     }
 }
+
+#[test]
+fn outlines_of_balls_are_one_line_whatever_the_mesh() {
+    let (mut drawings, mut pieces) = (0, 0);
+    for n in [7, 10, 13, 18, 25] {
+        for (x, y, z) in [(1.0, -1.7, 0.9), (0.3, -2.0, 0.2), (0.05, -0.1, 1.0), (-2.0, 0.7, -1.1)]
+        {
+            let drawing = smooth(&ball(n), &view(DVec3::ZERO, DVec3::new(x, y, z), 4.0, false));
+            drawings += 1;
+            pieces += drawing.lines.len();
+        }
+    }
+    // Near a pole one edge of a facet may stick out.
+    assert!(pieces < drawings + 3, "{pieces} in {drawings} drawings");
+}

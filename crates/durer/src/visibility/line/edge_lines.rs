@@ -71,6 +71,18 @@ pub(super) struct EdgeLine {
     pub items: [u32; 2],
     /// Whether the surface is not sharp there.
     pub smooth: bool,
+    pub sharpness: Sharpness,
+}
+
+/// How much the faces at an edge are turned against each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sharpness {
+    /// Hardly.
+    Blunt,
+    /// Enough for a crease that began elsewhere to go on.
+    Weak,
+    /// Enough for a crease.
+    Sharp,
 }
 
 /// How faces are turned, for all that asks.
@@ -97,7 +109,7 @@ impl Facing {
             let points = t.map(|v| faces.points()[v as usize]);
             let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
             let i = item as usize;
-            let of_whole = whole.corners(faces, item).filter(|_| !whole.sliver(item));
+            let of_whole = whole.corners(faces, item);
             if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
                 found.normals[i] = (normal * sign).as_vec3().to_array();
             }
@@ -173,6 +185,8 @@ pub(super) struct Rules<'a> {
     pub classes: ClassSet,
     /// Cosine of the crease angle.
     pub crease: f32,
+    /// Cosine of the angle down to which a crease goes on; at least `crease`.
+    pub crease_end: f32,
     /// Whether faces are divided along silhouettes: those run inside of polygons too.
     pub divided: bool,
 }
@@ -193,56 +207,75 @@ pub(super) fn material_number(material: Option<usize>) -> u32 {
 }
 
 impl Rules<'_> {
-    /// The lines among the edges whose smaller vertex lies in a range, in the order of the edges.
+    /// The lines among the edges whose smaller vertex lies in a range, in the order of the edges. Weak
+    /// creases are among them, whether or not they go on from others.
     pub fn lines(&self, vertices: std::ops::Range<u32>) -> Vec<EdgeLine> {
         let mut lines = Vec::new();
         for (ends, sides) in self.edges.from_vertices(vertices) {
-            if let Some(class) = self.class(ends, sides) {
+            if let (Some(class), sharpness) = self.class(ends, sides) {
                 let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
                 let items = [item(0), item(1)];
                 let smooth = class == LineClass::Silhouette && !self.is_sharp(ends, items);
-                lines.push(EdgeLine { ends, class, items, smooth });
+                lines.push(EdgeLine { ends, class, items, smooth, sharpness });
             }
         }
         lines
     }
 
+    fn wanted(&self, class: LineClass) -> Option<LineClass> {
+        self.classes.contains(class).then_some(class)
+    }
+
+    /// What an edge is that is nothing else.
+    pub fn wire(&self) -> Option<LineClass> {
+        self.wanted(LineClass::Wire)
+    }
+
     /// The first wanted class that an edge belongs to.
-    fn class(&self, ends: [u32; 2], sides: &[Side]) -> Option<LineClass> {
-        let wanted = |class| self.classes.contains(class).then_some(class);
-        let wire = || wanted(LineClass::Wire);
+    fn class(&self, ends: [u32; 2], sides: &[Side]) -> (Option<LineClass>, Sharpness) {
+        let blunt = |class: Option<LineClass>| (class, Sharpness::Blunt);
         if self.ends_a_cap(sides)
-            && let Some(section) = wanted(LineClass::Section)
+            && let Some(section) = self.wanted(LineClass::Section)
         {
-            return Some(section);
+            return blunt(Some(section));
         }
         match sides {
-            [_] => wanted(LineClass::Border).or_else(wire),
+            [_] => blunt(self.wanted(LineClass::Border).or_else(|| self.wire())),
             [a, b] => {
                 if self.faces.same_polygon(a.item(), b.item()) {
                     let outline = self.divided && self.outlines(ends, a.item(), b.item());
-                    return outline.then_some(LineClass::Silhouette).and_then(wanted);
+                    let silhouette = outline.then_some(LineClass::Silhouette);
+                    return blunt(silhouette.and_then(|c| self.wanted(c)));
                 }
                 let against = (a.forward() == b.forward())
                     ^ self.bodies.turned(a.item())
                     ^ self.bodies.turned(b.item());
                 if against {
-                    return wanted(LineClass::NonManifold).or_else(wire);
+                    return blunt(self.wanted(LineClass::NonManifold).or_else(|| self.wire()));
                 }
-                self.smooth_or_sharp(ends, a.item(), b.item())
-                    .and_then(wanted)
-                    .or_else(|| {
-                        let differ = |m: &Vec<u32>| m[a.item() as usize] != m[b.item() as usize];
-                        self.materials
-                            .as_ref()
-                            .is_some_and(differ)
-                            .then_some(LineClass::Material)
-                            .and_then(wanted)
-                    })
-                    .or_else(wire)
+                self.class_of_two(ends, a.item(), b.item())
             }
-            _ => wanted(LineClass::NonManifold).or_else(wire),
+            _ => blunt(self.wanted(LineClass::NonManifold).or_else(|| self.wire())),
         }
+    }
+
+    /// The same between two triangles of one surface.
+    fn class_of_two(&self, ends: [u32; 2], a: u32, b: u32) -> (Option<LineClass>, Sharpness) {
+        let (turns, sharpness) = self.turn(ends, a, b);
+        let outline = turns.then_some(LineClass::Silhouette).and_then(|c| self.wanted(c));
+        let crease =
+            |least| (sharpness == least).then_some(LineClass::Crease).and_then(|c| self.wanted(c));
+        let differ = |m: &Vec<u32>| m[a as usize] != m[b as usize];
+        let border = || {
+            let differs = self.materials.as_ref().is_some_and(differ);
+            differs.then_some(LineClass::Material).and_then(|c| self.wanted(c))
+        };
+        let class = outline
+            .or_else(|| crease(Sharpness::Sharp))
+            .or_else(border)
+            .or_else(|| crease(Sharpness::Weak))
+            .or_else(|| self.wire());
+        (class, sharpness)
     }
 
     /// Whether some of the triangles are of a cap and some are not.
@@ -258,16 +291,21 @@ impl Rules<'_> {
         self.facing.angle_cosine(a, b) < self.crease
     }
 
-    fn smooth_or_sharp(&self, ends: [u32; 2], a: u32, b: u32) -> Option<LineClass> {
+    /// Whether one of two triangles shows its front and one its back, and how sharp the edge is.
+    fn turn(&self, ends: [u32; 2], a: u32, b: u32) -> (bool, Sharpness) {
         let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
         if a == b {
-            return None;
+            return (false, Sharpness::Blunt);
         }
-        let turns = self.facing.front(a) != self.facing.front(b);
-        if turns && self.classes.contains(LineClass::Silhouette) {
-            return Some(LineClass::Silhouette);
-        }
-        (self.facing.angle_cosine(a, b) < self.crease).then_some(LineClass::Crease)
+        let cosine = self.facing.angle_cosine(a, b);
+        let sharpness = if cosine < self.crease {
+            Sharpness::Sharp
+        } else if cosine < self.crease_end {
+            Sharpness::Weak
+        } else {
+            Sharpness::Blunt
+        };
+        (self.facing.front(a) != self.facing.front(b), sharpness)
     }
 
     fn outlines(&self, ends: [u32; 2], a: u32, b: u32) -> bool {

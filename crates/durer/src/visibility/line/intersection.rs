@@ -45,65 +45,71 @@ const LEAF: usize = 4;
 /// A body's number in a node that has several.
 const MIXED: u32 = u32::MAX;
 
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    min: [f32; 3],
-    max: [f32; 3],
-    /// The body of all faces below, or [`MIXED`].
-    body: u32,
+/// A box: its smallest coordinates, its largest with their signs turned, and two zeros. So one kind of
+/// comparison tells whether two boxes touch, and processors make eight at once.
+type Bounds = [f32; 8];
+
+/// Nothing touches it.
+const NOTHING: Bounds = [
+    f32::INFINITY,
+    f32::INFINITY,
+    f32::INFINITY,
+    f32::INFINITY,
+    f32::INFINITY,
+    f32::INFINITY,
+    0.0,
+    0.0,
+];
+
+fn union(a: &Bounds, b: &Bounds) -> Bounds {
+    std::array::from_fn(|k| a[k].min(b[k]))
 }
 
-impl Node {
-    const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3], body: MIXED };
+/// What the coordinates of boxes that touch this one are at most.
+fn reach(of: &Bounds) -> Bounds {
+    [-of[3], -of[4], -of[5], -of[0], -of[1], -of[2], 0.0, 0.0]
+}
 
-    fn union(&self, other: &Self) -> Self {
-        let mut joined = *self;
-        for k in 0..3 {
-            joined.min[k] = self.min[k].min(other.min[k]);
-            joined.max[k] = self.max[k].max(other.max[k]);
-        }
-        joined.body = if self.body == other.body { self.body } else { MIXED };
-        joined
-    }
-
-    fn touches(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
-    }
+#[inline(always)]
+fn touches(bounds: &Bounds, reach: &Bounds) -> bool {
+    (0..8).fold(true, |all, k| all & (bounds[k] <= reach[k]))
 }
 
 /// A complete binary tree: node i has the children 2i + 1 and 2i + 2.
 struct Tree<'a> {
     faces: &'a Faces,
     between: bool,
-    nodes: Vec<Node>,
+    nodes: Vec<Bounds>,
+    /// The body of all faces below each node, or [`MIXED`]; empty where bodies do not matter.
+    bodies: Vec<u32>,
     /// Nodes from here on are leaves.
     first_leaf: u32,
-    /// The faces along the curve, and their boxes beside each other in memory.
+    /// The faces along the curve, and their boxes and bodies beside each other in memory.
     order: Vec<u32>,
-    boxes: Vec<Node>,
+    boxes: Vec<Bounds>,
+    body_of: Vec<u32>,
 }
 
 impl<'a> Tree<'a> {
     fn new(faces: &'a Faces, bodies: &Bodies, between: bool) -> Self {
         let order = morton_order(faces, bodies);
-        let boxes: Vec<Node> = order.iter().map(|&i| face_box(faces, bodies, i)).collect();
+        let boxes: Vec<Bounds> = order.iter().map(|&i| face_box(faces, i)).collect();
+        let body_of: Vec<u32> = match between {
+            true => order.iter().map(|&i| bodies.of(i).unwrap_or(MIXED)).collect(),
+            false => Vec::new(),
+        };
         let leaves = order.len().div_ceil(LEAF).max(1).next_power_of_two();
-        let mut nodes = vec![Node::EMPTY; 2 * leaves - 1];
-        for (leaf, boxes) in boxes.chunks(LEAF).enumerate() {
-            let joined = boxes.iter().copied().reduce(|a, b| a.union(&b));
-            nodes[leaves - 1 + leaf] = joined.unwrap_or(Node::EMPTY);
-        }
-        for i in (0..leaves - 1).rev() {
-            nodes[i] = nodes[2 * i + 1].union(&nodes[2 * i + 2]);
-        }
-        Self { faces, between, nodes, first_leaf: leaves as u32 - 1, order, boxes }
+        let nodes = raised(&boxes, leaves, NOTHING, union);
+        let same = |a: &u32, b: &u32| if a == b { *a } else { MIXED };
+        let bodies = if between { raised(&body_of, leaves, MIXED, same) } else { Vec::new() };
+        Self { faces, between, nodes, bodies, first_leaf: leaves as u32 - 1, order, boxes, body_of }
     }
 
     /// Whether a pair of nodes may hold a pair of faces that is asked for.
     fn may_meet(&self, a: u32, b: u32) -> bool {
-        let (na, nb) = (&self.nodes[a as usize], &self.nodes[b as usize]);
-        let same_body = self.between && na.body == nb.body && na.body != MIXED;
-        !same_body && na.touches(nb)
+        let of = |node: u32| self.bodies[node as usize];
+        let same_body = self.between && of(a) == of(b) && of(a) != MIXED;
+        !same_body && touches(&self.nodes[a as usize], &reach(&self.nodes[b as usize]))
     }
 
     /// What a pair of nodes divides into; leaves stay.
@@ -137,55 +143,134 @@ impl<'a> Tree<'a> {
             start..(start + LEAF).min(self.order.len())
         };
         let of_b = &self.nodes[b as usize];
-        for i in places(a).filter(|&i| self.boxes[i].touches(of_b)) {
+        for i in places(a) {
+            let reach = reach(&self.boxes[i]);
+            if !touches(of_b, &reach) {
+                continue;
+            }
+            let mut face = None;
             let others = if a == b { i + 1..places(b).end } else { places(b) };
-            for k in others.filter(|&k| self.boxes[i].touches(&self.boxes[k])) {
-                let apart = self.between && self.boxes[i].body == self.boxes[k].body;
+            for k in others.filter(|&k| touches(&self.boxes[k], &reach)) {
+                if self.between && self.body_of[i] == self.body_of[k] {
+                    continue;
+                }
                 let (x, y) = (self.order[i], self.order[k]);
-                if !apart && let Some(meeting) = self.pair(x.min(y), x.max(y)) {
-                    found.push(meeting);
+                let face = face.get_or_insert_with(|| Sided::new(self.faces, x));
+                let other = Sided::new(self.faces, y);
+                if let (Some(one), Some(other)) = (face, other)
+                    && one.may_meet(&other)
+                {
+                    let (first, second) = if x < y { (&*one, &other) } else { (&other, &*one) };
+                    let items = [x.min(y), x.max(y)];
+                    let ends = meeting(first.corners, second.corners);
+                    found.extend(ends.map(|ends| Meeting { ends, items }));
                 }
             }
         }
     }
+}
 
-    /// Where two faces meet whose boxes touch.
-    fn pair(&self, a: u32, b: u32) -> Option<Meeting> {
-        let (ta, tb) = (self.faces.triangle(a)?, self.faces.triangle(b)?);
-        let shared = ta.iter().filter(|v| tb.contains(v)).count();
-        if shared > 1 {
-            return None;
+/// The nodes of a complete binary tree over leaves of [`LEAF`] values each.
+fn raised<T: Copy>(values: &[T], leaves: usize, none: T, join: impl Fn(&T, &T) -> T) -> Vec<T> {
+    let mut nodes = vec![none; 2 * leaves - 1];
+    for (leaf, values) in values.chunks(LEAF).enumerate() {
+        nodes[leaves - 1 + leaf] =
+            values.iter().copied().reduce(|a, b| join(&a, &b)).unwrap_or(none);
+    }
+    for i in (0..leaves - 1).rev() {
+        nodes[i] = join(&nodes[2 * i + 1], &nodes[2 * i + 2]);
+    }
+    nodes
+}
+
+/// A face with what tells quickly on which side of it a point lies.
+struct Sided {
+    vertices: [u32; 3],
+    corners: [DVec3; 3],
+    /// The product of two sides.
+    normal: DVec3,
+    /// How far its product with a vector can be wrong, for vectors no longer than 1 along the axes.
+    error: f64,
+}
+
+/// Of a determinant of three vectors, each no longer than 1 along the axes: six products of three factors, each
+/// rounded eight times at most, are off by 48 · 2⁻⁵³ together; this is twice as much.
+const ROUNDING: f64 = 1e-14;
+
+impl Sided {
+    #[inline(always)]
+    fn new(faces: &Faces, item: u32) -> Option<Self> {
+        let vertices = faces.triangle(item)?;
+        let corners = vertices.map(|v| faces.points()[v as usize]);
+        let (u, v) = (corners[1] - corners[0], corners[2] - corners[0]);
+        let error = ROUNDING * u.abs().max_element() * v.abs().max_element();
+        Some(Self { vertices, corners, normal: u.cross(v), error })
+    }
+
+    /// As [`side`]: its sign is exact.
+    #[inline(always)]
+    fn side(&self, p: DVec3) -> f64 {
+        let from = p - self.corners[0];
+        let volume = self.normal.dot(from);
+        if volume.abs() > self.error * from.abs().max_element() {
+            -volume
+        } else {
+            side(&self.corners, p)
         }
-        let (ca, cb) = (self.faces.corners(a)?, self.faces.corners(b)?);
-        // Neighbours at a vertex are the most of all pairs, and few of them meet elsewhere too: the
-        // two other corners of one would have to lie on different sides of the other.
-        if shared == 1 && (one_sided(ta, &ca, tb, &cb) || one_sided(tb, &cb, ta, &ca)) {
-            return None;
+    }
+
+    /// Whether the two may meet in more than a vertex or side that they share.
+    #[inline(always)]
+    fn may_meet(&self, other: &Self) -> bool {
+        let mut shared = (0..3).flat_map(|i| (0..3).map(move |k| (i, k)));
+        let mut shared = shared.by_ref().filter(|&(i, k)| self.vertices[i] == other.vertices[k]);
+        match (shared.next(), shared.next()) {
+            (None, _) => !self.is_beside(other) && !other.is_beside(self),
+            (Some(at), None) => self.may_meet_beyond(at, other),
+            _ => false,
         }
-        let ends = meeting(ca, cb)?;
-        Some(Meeting { ends, items: [a, b] })
+    }
+
+    /// Whether all corners of another face lie on one side.
+    #[inline(always)]
+    fn is_beside(&self, other: &Self) -> bool {
+        let [a, b, c] = other.corners;
+        let first = self.side(a);
+        let same = |p: DVec3| first * self.side(p) > 0.0;
+        same(b) && same(c)
+    }
+
+    /// The same of faces that share one vertex: neighbours at a vertex are the most of all pairs, and few of
+    /// them meet elsewhere too.
+    #[inline(always)]
+    fn may_meet_beyond(&self, (i, k): (usize, usize), other: &Self) -> bool {
+        // The others of both faces, as they run around them.
+        let [c, d] = [1, 2].map(|n| self.corners[(i + n) % 3]);
+        let [a, b] = [1, 2].map(|n| other.corners[(k + n) % 3]);
+        let (of_a, of_b) = (self.side(a), self.side(b));
+        if of_a * of_b > 0.0 {
+            return false;
+        }
+        let (of_c, of_d) = (other.side(c), other.side(d));
+        if of_c * of_d > 0.0 {
+            return false;
+        }
+        if [of_a, of_b, of_c, of_d].contains(&0.0) {
+            return true;
+        }
+        // The line in which the planes meet runs between c and d, and it runs between a and b, on one side of the
+        // vertex or the other: they meet if on the same. There the line from a to b passes the side to c
+        // as it passes the face.
+        side(&[self.corners[i], c, a], b) * of_b >= 0.0
     }
 }
 
-/// Whether the corners of the second triangle that the first has not lie on one side of its plane.
-fn one_sided(t: [u32; 3], corners: &[DVec3; 3], other: [u32; 3], of_other: &[DVec3; 3]) -> bool {
-    let own = (0..3).filter(|&k| !t.contains(&other[k]));
-    let mut sides = own.map(|k| side(corners, of_other[k]));
-    match (sides.next(), sides.next()) {
-        (Some(a), Some(b)) => (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0),
-        _ => false,
-    }
-}
-
-fn face_box(faces: &Faces, bodies: &Bodies, item: u32) -> Node {
-    let Some(corners) = faces.corners(item) else { return Node::EMPTY };
-    let [a, b, c] = corners;
-    let (min, max) = (a.min(b).min(c).to_array(), a.max(b).max(c).to_array());
-    Node {
-        min: min.map(|v| (v as f32).next_down()),
-        max: max.map(|v| (v as f32).next_up()),
-        body: bodies.of(item).unwrap_or(MIXED),
-    }
+fn face_box(faces: &Faces, item: u32) -> Bounds {
+    let Some([a, b, c]) = faces.corners(item) else { return NOTHING };
+    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    let low = |v: f64| (v as f32).next_down();
+    let high = |v: f64| -(v as f32).next_up();
+    [low(min.x), low(min.y), low(min.z), high(max.x), high(max.y), high(max.z), 0.0, 0.0]
 }
 
 /// Items that belong to a body, along a curve that keeps neighbours together.

@@ -2,6 +2,7 @@
 
 mod arrange;
 mod chain;
+mod crease_chain;
 pub mod edge_lines;
 pub mod floating_horizon;
 pub mod hidden_line;

@@ -21,9 +21,6 @@ use crate::visibility::object::{Edges, Faces};
 /// nobody.
 const AT_VERTEX: f64 = 1.0 / 64.0;
 
-/// Parts lower than this part of their length are turned by chance; their neighbours decide.
-const SLIVER: f64 = 1.0 / 32.0;
-
 /// Edges whose normals differ by more than 60° are straight.
 const ROUND: f64 = 0.5;
 
@@ -34,8 +31,6 @@ pub(super) struct Divided {
     pub whole: Faces,
     /// Of each triangle the one in `whole` that it is a part of.
     pub origins: Vec<u32>,
-    /// Which are slivers along a silhouette.
-    slivers: Vec<bool>,
 }
 
 /// What faces were before they were divided, if they were.
@@ -51,11 +46,6 @@ impl Whole<'_> {
     /// The item of the scene.
     pub fn item(self, item: u32) -> u32 {
         self.0.map_or(item, |d| d.origins[item as usize])
-    }
-
-    /// Whether a part is too thin to tell how the surface is turned.
-    pub fn sliver(self, item: u32) -> bool {
-        self.0.is_some_and(|d| d.slivers[item as usize])
     }
 }
 
@@ -75,7 +65,6 @@ struct Crossing {
 struct Part {
     item: u32,
     vertices: [u32; 3],
-    sliver: bool,
 }
 
 /// A corner of a part of a triangle: its vertex, and where it lies on the flat triangle.
@@ -95,10 +84,7 @@ pub(super) fn divided(scene: &Scene, whole: Faces, plane: &PicturePlane) -> Divi
     }
     let points = found.points;
     let (faces, origins) = whole.refined(points, parts.iter().map(|p| (p.item, p.vertices)));
-    let mut parts = parts.iter().peekable();
-    let sliver = |&item: &u32| parts.next_if(|p| p.item == item).is_some_and(|p| p.sliver);
-    let slivers = origins.iter().map(sliver).collect();
-    Divided { faces, whole, origins, slivers }
+    Divided { faces, whole, origins }
 }
 
 /// Where the normals of all triangles turn away from the eye, two on each that has any.
@@ -209,7 +195,7 @@ impl<'a> Vertices<'a> {
         let places = own.iter().map(|v| ring.iter().position(|c| c.0 == *v));
         let places: Vec<usize> = places.flatten().collect();
         let mut push = |ring: Vec<Corner>| {
-            triangulate(ring, |vertices, sliver| parts.push(Part { item, vertices, sliver }));
+            triangulate(ring, |vertices| parts.push(Part { item, vertices }));
         };
         match places[..] {
             [p, q] if p.abs_diff(q) > 1 && p.abs_diff(q) + 1 < ring.len() => {
@@ -258,14 +244,14 @@ fn curve_over([p, q]: [DVec3; 2], [n, m]: [DVec3; 2], t: f64) -> DVec3 {
     p * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + q * (t * t * t)
 }
 
-/// Cuts the ears off a convex ring, the best first; and tells which are slivers.
-fn triangulate(mut ring: Vec<Corner>, mut push: impl FnMut([u32; 3], bool)) {
+/// Cuts the ears off a convex ring, the best first.
+fn triangulate(mut ring: Vec<Corner>, mut push: impl FnMut([u32; 3])) {
     while ring.len() > 2 {
         let count = ring.len();
         let ear = |i: usize| [ring[(i + count - 1) % count], ring[i], ring[(i + 1) % count]];
         let best = (0..count).map(|i| (height(ear(i)), i)).max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((height, best)) = best else { return };
-        push(ear(best).map(|c| c.0), height < SLIVER);
+        let Some((_, best)) = best else { return };
+        push(ear(best).map(|c| c.0));
         ring.remove(best);
     }
 }

@@ -30,6 +30,10 @@ const STRAIGHT_GAP: f64 = 1.5;
 /// The cosine of the turn at either side of such a gap: 12°.
 const STRAIGHT: f64 = 0.978;
 
+/// The cosine within which two lines run to meet each other: 30°. On the two sides of a facet outlines may
+/// pass each other a little.
+const HEAD_ON: f64 = 0.866;
+
 /// What lies within this part of a stub meets on paper: a pen's stroke is as wide.
 const MEETS: f64 = 0.1;
 
@@ -269,7 +273,7 @@ impl<'a> Lines<'a> {
     }
 
     /// Whether one line goes on in the other: of one class, with turns below 60°, or straight where it
-    /// is further.
+    /// is further; or past its tip, where both run to meet each other.
     fn go_on(&self, a: &Tip, b: &Tip) -> bool {
         let of = |t: &Tip| &self.pieces[t.end as usize / 2];
         let (p, q) = (of(a), of(b));
@@ -283,8 +287,11 @@ impl<'a> Lines<'a> {
             let cosine = (x * gx + y * gy) / ((x * x + y * y) * (gx * gx + gy * gy)).sqrt();
             if far { cosine > STRAIGHT && t.length > gap } else { cosine > 0.5 }
         };
+        let heading = |t: &Tip| t.at.minus(t.from).map(|d| d as f64 / t.at.distance(t.from));
+        let ([ax, ay], [bx, by]) = (heading(a), heading(b));
+        let past = !far && ax * bx + ay * by < -HEAD_ON;
         let meet = gap <= self.length * MEETS;
-        let on = meet || (ahead(a, 1.0) && ahead(b, -1.0));
+        let on = meet || past || (ahead(a, 1.0) && ahead(b, -1.0));
         same && a.end / 2 != b.end / 2 && a.at != b.at && on
     }
 }
@@ -368,6 +375,16 @@ mod tests {
         assert_eq!(chains_of(&without_stubs(short, 10_000.0, 10.0)), 2);
         let aside = vec![dash(0, 0), dash(1, 6000)];
         assert_eq!(chains_of(&without_stubs(aside, 10_000.0, 10.0)), 2);
+    }
+
+    #[test]
+    fn lines_that_pass_each_other_at_their_tips_are_joined() {
+        let smooth = |a, b| piece(a, b, true);
+        let pieces = vec![smooth([0, 0], [500_000, 0]), smooth([498_000, 1500], [900_000, 30_000])];
+        assert_eq!(chains_of(&without_stubs(pieces.clone(), 10_000.0, 10.0)), 1);
+        // Side by side, both from the left, they are two.
+        let beside = vec![pieces[0], smooth([1000, 60_000], [498_000, 1500])];
+        assert_eq!(chains_of(&without_stubs(beside, 10_000.0, 10.0)), 2);
     }
 
     fn chains_of(pieces: &[Piece]) -> usize {

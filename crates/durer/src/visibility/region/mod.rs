@@ -4,11 +4,14 @@
 //! shadows where they are asked for. [`weiler_atherton::solve`] gives the planar map behind it, whose
 //! faces know the triangle that they show; [`hatch`] replaces tones by lines.
 
+mod caps;
 pub mod hatch;
 mod paint;
 mod shadow;
 mod trap;
 pub mod weiler_atherton;
+
+pub use caps::draw_caps;
 
 use crate::Result;
 use crate::math::Rect;

@@ -201,7 +201,12 @@ fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>
 }
 
 /// The flat colours of items under the lights that reach them.
-fn colors(scene: &Scene, view: &View, lights: &PreparedLights, shown: &[Shown]) -> Vec<[u8; 4]> {
+pub fn colors(
+    scene: &Scene,
+    view: &View,
+    lights: &PreparedLights,
+    shown: &[Shown],
+) -> Vec<[u8; 4]> {
     let Ok(runs) = runs(scene) else { return Vec::new() };
     let materials = PreparedMaterials::new(scene);
     // Flat light is computed by hand, for the lights that reach the face.

@@ -40,8 +40,25 @@ impl<'a> World<'a> {
         self.runs.get(self.runs.partition_point(|run| run.first_item <= item).checked_sub(1)?)
     }
 
+    /// Whether a run's mesh lies above a plane that none of it crosses.
+    pub fn side_of_mesh(&self, run: &Run, plane: &Plane) -> bool {
+        let mesh = &self.scene.meshes[run.mesh];
+        let matrix = &self.scene.instances[run.instance].world_from_mesh;
+        let corners = (0..mesh.triangle_count()).flat_map(|i| mesh.triangle(i));
+        let height =
+            |v: u32| plane.evaluate(matrix.transform_point3(mesh.positions[v as usize].as_dvec3()));
+        // That of the farthest, for those on the plane are rounded to either side.
+        let farther = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        corners.map(height).fold(0.0, farther) > 0.0
+    }
+
+    /// Whether the eye is above a plane.
+    pub fn side_of_eye(&self, view: &View, plane: &Plane) -> bool {
+        is_above(plane, eye(view))
+    }
+
     /// The plane of an item, with a normal of unit length.
-    fn plane(&self, item: u32) -> Option<Plane> {
+    pub fn plane(&self, item: u32) -> Option<Plane> {
         let run = self.run(item)?;
         let mesh = &self.scene.meshes[run.mesh];
         let corners = mesh.triangle((run.range.start + (item - run.first_item)) as usize);
@@ -57,6 +74,15 @@ impl<'a> World<'a> {
 enum From {
     Direction(DVec3),
     Point(DVec3),
+}
+
+/// Where a view is seen from.
+fn eye(view: &View) -> From {
+    let camera = view.camera();
+    match camera.projection {
+        Projection::Perspective { .. } => From::Point(camera.eye),
+        Projection::Orthographic { .. } => From::Direction(camera.axes()[2]),
+    }
 }
 
 /// On which side of a plane an eye or a light is.
@@ -92,11 +118,7 @@ impl<'a> Lamps<'a> {
         lights: &PreparedLights,
         casts: bool,
     ) -> Result<Self> {
-        let camera = view.camera();
-        let eye = match camera.projection {
-            Projection::Perspective { .. } => From::Point(camera.eye),
-            Projection::Orthographic { .. } => From::Direction(camera.axes()[2]),
-        };
+        let eye = eye(view);
         let mut lamps = Vec::new();
         if casts && let Some(sphere) = world.scene.bounding_sphere().filter(|s| s.radius > 0.0) {
             let directions =

@@ -24,6 +24,7 @@ pub use cover::Cover;
 
 use self::occluders::Occluders;
 use super::arrange::{How, SLIVER, arrange};
+use super::crease_chain::connected;
 use super::edge_lines::{
     ClassSet, EdgeLine, Facing, Intersections, NO_ITEM, Rules, material_number, materials,
 };
@@ -62,6 +63,10 @@ pub struct Options {
     pub classes: ClassSet,
     /// Edges whose faces are turned against each other by more than this are creases; radians, 0 … π.
     pub crease: f64,
+    /// A crease goes on, though its edges get blunter, as long as they turn by more than this and it goes
+    /// straight on; radians. `crease` or more, as by default, ends it where it is no crease any more. Lower
+    /// angles suit sculpted surfaces; on coarse meshes of round ones they show facets.
+    pub crease_end: f64,
     /// Where penetrating faces are looked for, if [`LineClass::Intersection`] is among the classes.
     pub intersections: Intersections,
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): where they
@@ -95,6 +100,7 @@ impl Default for Options {
         Self {
             classes: ClassSet::default(),
             crease: 40.0_f64.to_radians(),
+            crease_end: std::f64::consts::PI,
             intersections: Intersections::default(),
             cap_material: None,
             smooth: false,
@@ -110,6 +116,10 @@ impl Options {
     pub(super) fn check(&self) -> Result<()> {
         if !(0.0..=std::f64::consts::PI).contains(&self.crease) {
             return Err(Error::parameter("crease", self.crease.to_degrees(), "0 to 180 degrees"));
+        }
+        if !(0.0..=std::f64::consts::PI).contains(&self.crease_end) {
+            let value = self.crease_end.to_degrees();
+            return Err(Error::parameter("crease_end", value, "0 to 180 degrees"));
         }
         self.how().check()
     }
@@ -250,9 +260,10 @@ impl<'a> Lines<'a> {
             cap: options.cap_material.map(|m| material_number(Some(m))),
             classes: options.classes,
             crease: libm::cos(options.crease) as f32,
+            crease_end: libm::cos(options.crease_end.min(options.crease)) as f32,
             divided: options.smooth,
         };
-        let of_edges = edge_lines(&rules);
+        let of_edges = connected(edge_lines(&rules), faces.points(), rules.wire());
         drop(rules);
         drop(edges);
         let meetings = if options.classes.contains(LineClass::Intersection) {

@@ -167,6 +167,11 @@ impl Face {
         plane.slope.is_finite().then_some(Self { corners, plane, depths, near, far, error, item })
     }
 
+    /// Twice its area in squared grid steps; exact.
+    pub fn doubled_area(&self) -> i64 {
+        cross(self.corners[0], self.corners[1], self.corners[2])
+    }
+
     /// Depth over a point of the grid, within that of the corners.
     #[inline(always)]
     pub fn depth(&self, p: DVec2) -> f64 {
@@ -200,22 +205,47 @@ impl Face {
 
 /// All faces that reach into the picture, cut at its border.
 pub fn project(scene: &Scene, view: &View, frame: &Frame, cull: Cull) -> crate::Result<Vec<Face>> {
-    let runs: Vec<Run> =
-        runs(scene)?.into_iter().filter(|run| is_surface(&scene.meshes[run.mesh])).collect();
     let mut faces = Vec::with_capacity(scene.triangle_count().min(1 << 24) as usize);
-    let mut vertices = Vertices::default();
-    for run in &runs {
-        let mesh = &scene.meshes[run.mesh];
-        let world_from_mesh = scene.instances[run.instance].world_from_mesh;
-        vertices.transform(mesh, run.instance, &(view.clip_from_world() * world_from_mesh), frame);
-        let mirrored = glam::DMat3::from_mat4(world_from_mesh).determinant() < 0.0;
-        let culls = cull == Cull::Back || (cull == Cull::Material && run.single_sided);
-        let hidden = culls.then_some(mirrored);
-        for (primitive, item) in run.range.clone().zip(run.first_item..) {
-            vertices.face(mesh.triangle(primitive as usize), item, hidden, frame, &mut faces);
-        }
+    let mut projector = Projector::new(scene, view, frame, cull);
+    for run in surfaces(scene)? {
+        projector.project(&run, |face| faces.push(face));
     }
     Ok(faces)
+}
+
+/// The runs of triangles, in item order.
+pub fn surfaces(scene: &Scene) -> crate::Result<Vec<Run>> {
+    Ok(runs(scene)?.into_iter().filter(|run| is_surface(&scene.meshes[run.mesh])).collect())
+}
+
+/// Brings runs of triangles into the picture; those of one instance one after the other are cheapest.
+pub struct Projector<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    frame: &'a Frame,
+    cull: Cull,
+    vertices: Vertices,
+}
+
+impl<'a> Projector<'a> {
+    pub fn new(scene: &'a Scene, view: &'a View, frame: &'a Frame, cull: Cull) -> Self {
+        Self { scene, view, frame, cull, vertices: Vertices::default() }
+    }
+
+    /// Gives the faces of a run, cut at the picture's border.
+    pub fn project(&mut self, run: &Run, mut give: impl FnMut(Face)) {
+        let mesh = &self.scene.meshes[run.mesh];
+        let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
+        let clip_from_mesh = self.view.clip_from_world() * world_from_mesh;
+        self.vertices.transform(mesh, run.instance, &clip_from_mesh, self.frame);
+        let mirrored = glam::DMat3::from_mat4(world_from_mesh).determinant() < 0.0;
+        let culls = self.cull == Cull::Back || (self.cull == Cull::Material && run.single_sided);
+        let hidden = culls.then_some(mirrored);
+        for (primitive, item) in run.range.clone().zip(run.first_item..) {
+            let corners = mesh.triangle(primitive as usize);
+            self.vertices.face(corners, item, hidden, self.frame, &mut give);
+        }
+    }
 }
 
 fn is_surface(mesh: &Mesh) -> bool {
@@ -254,30 +284,32 @@ impl Vertices {
         item: u32,
         hidden: Option<bool>,
         frame: &Frame,
-        faces: &mut Vec<Face>,
+        give: &mut impl FnMut(Face),
     ) {
         let placed = corners.map(|c| self.placed[c as usize]);
         if let [Some(a), Some(b), Some(c)] = placed {
-            return push([a, b, c], item, hidden, faces);
+            return push([a, b, c], item, hidden, give);
         }
         let ring = corners.map(|c| ClipVertex { position: self.clip[c as usize], attributes: () });
         let cut = clip_polygon(&ring, &volume::Options::default(), &mut NoTrace);
         let Some((first, rest)) = cut.split_first() else { return };
         let at = |v: &ClipVertex| snap(frame.project(v.position));
         for pair in rest.windows(2) {
-            push([at(first), at(&pair[0]), at(&pair[1])], item, hidden, faces);
+            push([at(first), at(&pair[0]), at(&pair[1])], item, hidden, give);
         }
     }
 }
 
-/// Adds a face, unless its front must and does not look to the eye.
-fn push(v: [(Place, f64); 3], item: u32, hidden: Option<bool>, faces: &mut Vec<Face>) {
+/// Gives a face, unless its front must and does not look to the eye.
+fn push(v: [(Place, f64); 3], item: u32, hidden: Option<bool>, give: &mut impl FnMut(Face)) {
     let corners = v.map(|v| v.0);
     let front = cross(corners[0], corners[1], corners[2]) > 0;
     if hidden.is_some_and(|mirrored| front == mirrored) {
         return;
     }
-    faces.extend(Face::new(corners, v.map(|v| v.1), item));
+    if let Some(face) = Face::new(corners, v.map(|v| v.1), item) {
+        give(face);
+    }
 }
 
 fn snap((at, depth): (DVec2, f64)) -> (Place, f64) {

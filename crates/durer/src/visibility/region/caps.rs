@@ -1,0 +1,189 @@
+//! What can be seen of a section's caps, without solving the rest of the picture.
+//!
+//! All that a section leaves lies on one side of each of its planes. So nothing lies before a cap that is seen
+//! from the other side, and all that the picture shows over a cap lies before it that is seen from this
+//! one: what is seen of it is its polygon less the union of all other faces. Of those only the outline takes
+//! part: where two faces share a side in the picture and lie on both sides of it, that cancels, and what is left
+//! has the same winding numbers. O(n log n) for n faces, and an overlay of the outlines.
+
+use super::Options;
+use super::paint::colors;
+use super::shadow::{LIT, World};
+use super::weiler_atherton::faces::{Face, Frame, Place, Projector, float, surfaces};
+use crate::Result;
+use crate::clip::polygon::overlay::{self, overlay};
+use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
+use crate::math::{Plane, Rect};
+use crate::scene::Scene;
+use crate::shade::PreparedLights;
+use crate::target::drawing::{Drawing, Region, RegionKind};
+use crate::trace::NoTrace;
+use crate::view::View;
+use crate::visibility::surface::setup::Run;
+
+/// The visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected part a
+/// region of kind [`RegionKind::Cap`]. Of the options only the material and the culling count.
+///
+/// The scene must be what [`crate::view::section::cut`] gives: caps with faces on both of their sides are
+/// not told from others.
+///
+/// # Errors
+/// As [`super::draw`].
+pub fn draw_caps(
+    scene: &Scene,
+    view: &View,
+    lights: &PreparedLights,
+    options: &Options,
+) -> Result<Drawing> {
+    scene.check()?;
+    let frame = Frame::new(view);
+    let half = frame.half() * frame.unit;
+    let drawing = Drawing { window: Rect::new(-half, half).ok(), ..Drawing::default() };
+    let Some(material) = options.cap_material else { return Ok(drawing) };
+    let (caps, others): (Vec<_>, Vec<_>) =
+        surfaces(scene)?.into_iter().partition(|run| run.material == Some(material));
+    let mut projector = Projector::new(scene, view, &frame, options.cull);
+    let world = World::new(scene)?;
+    let caps: Vec<Cap> = caps
+        .iter()
+        .filter_map(|run| {
+            let mut faces = Vec::new();
+            projector.project(run, |face| faces.push(face));
+            Cap::new(&world, run, view, faces)
+        })
+        .collect();
+    let Some(first) = caps.first() else { return Ok(drawing) };
+    let color = colors(scene, view, lights, &[(first.faces[0].item, LIT)]).first().copied();
+    let mut sides = Vec::new();
+    if let Some(around) = Bounds::of(caps.iter().filter(|c| c.from_within).flat_map(|c| &c.faces)) {
+        let mut add = |face: Face| {
+            if around.overlaps(&face) {
+                sides.extend(face.sides());
+            }
+        };
+        others.iter().for_each(|run| projector.project(run, &mut add));
+    }
+    let before = outlines(sides);
+    let mut visible = Shapes::new();
+    for (i, cap) in caps.iter().enumerate() {
+        let other_caps = caps.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, cap)| cap);
+        visible.append(&cap.visible(&before, other_caps)?);
+    }
+    // Where bodies go through each other their caps do, too.
+    let visible = combined(&visible, &Shapes::new(), BooleanOp::Union)?;
+    let color = color.unwrap_or_default();
+    let regions = visible.polygons().map(|polygon| {
+        let plane_units = |ring: &[_]| ring.iter().map(|p| *p * frame.unit).collect();
+        let rings = polygon.rings().map(plane_units).collect();
+        Region { kind: RegionKind::Cap, rings, color, item: None }
+    });
+    Ok(Drawing { regions: regions.collect(), ..drawing })
+}
+
+/// The caps of one mesh at one plane.
+struct Cap {
+    /// At least one.
+    faces: Vec<Face>,
+    plane: Plane,
+    /// Whether it is seen from the side on which the model lies.
+    from_within: bool,
+}
+
+impl Cap {
+    /// `None` where nothing is in the picture, or nothing has a plane.
+    fn new(world: &World<'_>, run: &Run, view: &View, faces: Vec<Face>) -> Option<Self> {
+        let area = |f: &&Face| f.doubled_area();
+        // The plane of the largest is the most certain.
+        let plane = world.plane(faces.iter().max_by_key(area)?.item)?;
+        let from_within = world.side_of_mesh(run, &plane) == world.side_of_eye(view, &plane);
+        Some(Self { faces, plane, from_within })
+    }
+
+    /// What outlines, and other caps, leave of it.
+    fn visible<'a>(&self, before: &Shapes, caps: impl Iterator<Item = &'a Self>) -> Result<Shapes> {
+        let own = outlines(self.faces.iter().flat_map(Face::sides).collect());
+        if !self.from_within {
+            return Ok(own);
+        }
+        let parallel = |c: &&Self| c.plane.normal.dot(self.plane.normal).abs() > PARALLEL;
+        let others = caps.filter(|c| !parallel(c)).flat_map(|c| &c.faces);
+        let mut before = before.clone();
+        before.append(&outlines(others.flat_map(Face::sides).collect()));
+        combined(&own, &before, BooleanOp::Difference)
+    }
+}
+
+/// The cosine above which planes are parallel: of parallel caps none lies before the other, for what is beyond
+/// either plane is cut away.
+const PARALLEL: f64 = 1.0 - 1e-12;
+
+fn combined(a: &Shapes, b: &Shapes, op: BooleanOp) -> Result<Shapes> {
+    // The grid of the faces.
+    let rule = overlay::Options::with_rule(FillRule::NonZero);
+    let options = overlay::Options { grid: Some(1.0), ..rule };
+    Ok(overlay(a, b, op, &options, &mut NoTrace)?.shapes)
+}
+
+/// The smallest and the largest x and y of faces.
+struct Bounds(Place, Place);
+
+impl Bounds {
+    fn of<'a>(faces: impl Iterator<Item = &'a Face>) -> Option<Self> {
+        let join = |(lo, hi): (Place, Place), (min, max): (Place, Place)| {
+            let lo = Place { x: lo.x.min(min.x), y: lo.y.min(min.y) };
+            (lo, Place { x: hi.x.max(max.x), y: hi.y.max(max.y) })
+        };
+        faces.map(Face::bounds).reduce(join).map(|(min, max)| Self(min, max))
+    }
+
+    fn overlaps(&self, face: &Face) -> bool {
+        let (min, max) = face.bounds();
+        min.x <= self.1.x && self.0.x <= max.x && min.y <= self.1.y && self.0.y <= max.y
+    }
+}
+
+/// Closed walks with the winding numbers of all faces whose sides these are.
+fn outlines(sides: Vec<(Place, Place)>) -> Shapes {
+    let mut sides = uncancelled(sides);
+    sides.sort_unstable();
+    // Those that begin at one point are taken in order: where the first of them is, the next to be taken.
+    let mut next: Vec<usize> = (0..sides.len()).collect();
+    let first_at = |p: Place| sides.partition_point(|s| s.0 < p);
+    let mut walks = Shapes::new();
+    for (index, &(start, _)) in sides.iter().enumerate() {
+        let mut first = first_at(start);
+        if next[first] > index {
+            continue;
+        }
+        let mut ring = Vec::new();
+        // As many sides begin at each point as end there, so a walk comes back to where it began.
+        while let Some(at) = next.get_mut(first) {
+            let Some(&(a, b)) = sides.get(*at).filter(|s| s.0 == sides[first].0) else { break };
+            *at += 1;
+            ring.push(float(a));
+            if b == start {
+                break;
+            }
+            first = first_at(b);
+        }
+        walks.push_ring(ring);
+        walks.end_polygon();
+    }
+    walks
+}
+
+/// The sides that are not undone by others that run back.
+fn uncancelled(sides: Vec<(Place, Place)>) -> Vec<(Place, Place)> {
+    let mut sides: Vec<(Place, Place, bool)> =
+        sides.into_iter().map(|(a, b)| (a.min(b), a.max(b), a < b)).collect();
+    sides.sort_unstable();
+    let mut left = Vec::new();
+    for same in sides.chunk_by(|s, t| (s.0, s.1) == (t.0, t.1)) {
+        let (a, b, _) = same[0];
+        let forward = same.iter().filter(|s| s.2).count();
+        let back = same.len() - forward;
+        let side = if forward > back { (a, b) } else { (b, a) };
+        left.extend(std::iter::repeat_n(side, forward.abs_diff(back)));
+    }
+    left
+}
