@@ -81,6 +81,8 @@
 //! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
 //!
+//! [Overlay](mod@clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers; the
+//! [tree](clip::polygon::NestingTree) of a result tells which ring lies in which.
 //! [`clip::attribute`] carries heights, colours and other values to new vertices.
 //!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
