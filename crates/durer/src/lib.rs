@@ -37,7 +37,7 @@
 //!
 //! Each published algorithm has its own module, whose documentation names authors, year, class, cost
 //! and limits; the same facts are in its `INFO`. Families are enums with `ALL`, `name()`, `info()` and
-//! `FromStr`.
+//! `FromStr`; [`explain::ALGORITHMS`] has the facts of all.
 //!
 //! **What does a scene look like?** [`pipeline::render`] knows the order of all stages; a [`scene`] has
 //! meshes, instances, materials, textures, lights and cameras; the planes of the picture are in
