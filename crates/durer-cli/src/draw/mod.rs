@@ -2,6 +2,7 @@
 
 mod args;
 mod fonts;
+mod joined;
 mod label;
 mod layers;
 mod map;

@@ -61,7 +61,9 @@ fn commands_name_the_suffixes_that_they_can_write() {
         "{}",
         plane.err
     );
-    folder.run("plot --formula x*z -o x.gif").fails(2, "a plot is svg, pdf, dxf, hpgl, geojson or png");
+    folder
+        .run("plot --formula x*z -o x.gif")
+        .fails(2, "a plot is svg, pdf, dxf, hpgl, geojson or png");
 }
 
 #[cfg(unix)]
