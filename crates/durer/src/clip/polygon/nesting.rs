@@ -249,9 +249,10 @@ mod tests {
     #[test]
     fn islands_that_touch_their_hole_at_its_first_point_lie_in_it() {
         // A diamond's left corner on the hole's left corner; another on the shell from outside.
-        let diamond = |x: i64, r: i64| [(x - r, 0), (x, -r), (x + r, 0), (x, r)].map(I64Vec2::from);
-        let nested =
-            shapes(&[&[diamond(0, 8), diamond(0, 6)], &[diamond(-2, 4)], &[diamond(12, 4)]]);
+        let diamond =
+            |x: i64, r: i64, h: i64| [(x - r, 0), (x, -h), (x + r, 0), (x, h)].map(I64Vec2::from);
+        let shell: [_; 2] = [diamond(0, 8, 8), diamond(0, 6, 6)];
+        let nested = shapes(&[&shell, &[diamond(-2, 4, 2)], &[diamond(12, 4, 4)]]);
         let tree = NestingTree::of(&nested);
         assert_eq!([0, 1, 2, 3].map(|r| tree.parent(r)), [None, Some(0), Some(1), None]);
         assert_eq!([0, 1, 2, 3].map(|r| tree.depth(r)), [0, 1, 2, 0]);
