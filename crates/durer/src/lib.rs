@@ -86,7 +86,7 @@
 //! [`clip::attribute`] carries heights, colours and other values to new vertices.
 //!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
-//! w; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
+//! w, [many triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
 //! camera transform, in clip space, after the division, in the viewport or per pixel, with the same
 //! picture.
 //!
