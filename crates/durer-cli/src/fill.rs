@@ -119,8 +119,7 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
         .into_iter()
         .map(|stem| Name { stem, frame: None })
         .collect();
-    let target =
-        output::plan("--output", &args.output, &names, output::Kind::Png)?.into_iter().next();
+    let target = output::plan_pictures("--output", &args.output, &names)?.into_iter().next();
     let target = target.ok_or_else(|| Failure::Usage("nothing to fill".to_owned()))?;
     if args.json && target == Target::Stdout {
         let message = "--json: the report goes to standard output, where the picture goes too";

@@ -60,8 +60,25 @@ pub struct Name {
     pub frame: Option<u32>,
 }
 
-/// One target for each name; creates missing folders for what is to be several files.
+/// One target for each name, of a command that writes pictures and drawings; creates missing folders for
+/// what is to be several files.
 pub fn plan(option: &str, path: &Path, names: &[Name], kind: Kind) -> Result<Vec<Target>, Failure> {
+    plan_with(option, path, names, kind, ALL_KINDS)
+}
+
+/// The same of a command that writes pictures only.
+pub fn plan_pictures(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Failure> {
+    plan_with(option, path, names, Kind::Png, PNG_ONLY)
+}
+
+/// `suffixes` says what names may end in.
+fn plan_with(
+    option: &str,
+    path: &Path,
+    names: &[Name],
+    kind: Kind,
+    suffixes: &str,
+) -> Result<Vec<Target>, Failure> {
     let many = names.len() != 1;
     if is_stream(path) {
         return if many {
@@ -89,7 +106,7 @@ pub fn plan(option: &str, path: &Path, names: &[Name], kind: Kind) -> Result<Vec
         let hint = if frames { " or a name such as frame_%04d.png" } else { "" };
         return Err(usage(option, path, &format!("several pictures need a folder{hint}")));
     }
-    single(option, path, kind).map(|t| vec![t])
+    single(option, path, kind, suffixes).map(|t| vec![t])
 }
 
 /// Refuses two pictures in one place.
@@ -122,17 +139,17 @@ fn stdout_target(option: &str) -> Result<Target, Failure> {
 }
 
 const PNG_ONLY: &str = "pictures are written as PNG; end the name in .png";
+const ALL_KINDS: &str = "pictures are written as PNG; end the name in .png (drawings: .svg, .pdf, .dxf, \
+                         .hpgl, .geojson)";
 
 /// One file, named as its kind, in a folder that is there; or something special such as a device.
-fn single(option: &str, path: &Path, kind: Kind) -> Result<Target, Failure> {
+fn single(option: &str, path: &Path, kind: Kind, suffixes: &str) -> Result<Target, Failure> {
     if is_special(path) {
         return Ok(Target::File(path.to_owned()));
     }
     let suffix = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     if kind == Kind::Png && suffix.as_deref() != Some("png") {
-        let hint = "pictures are written as PNG; end the name in .png (drawings: .svg, .pdf, .dxf, \
-                    .hpgl, .geojson)";
-        return Err(usage(option, path, if option == "--output" { hint } else { PNG_ONLY }));
+        return Err(usage(option, path, suffixes));
     }
     in_its_folder(path)
 }

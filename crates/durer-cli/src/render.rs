@@ -171,7 +171,7 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
         .collect();
     let optional = |option: &str, path: &Option<PathBuf>| match path {
         Some(path) => {
-            Ok(output::plan(option, path, &names, Kind::Png)?.into_iter().map(Some).collect())
+            Ok(output::plan_pictures(option, path, &names)?.into_iter().map(Some).collect())
         }
         None => Ok(vec![None; names.len()]),
     };

@@ -116,8 +116,7 @@ struct Loaded {
 /// Makes the new view and writes it.
 pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     let name = Name { stem: "warped".to_owned(), frame: None };
-    let targets =
-        output::plan("--output", &args.output, std::slice::from_ref(&name), output::Kind::Png)?;
+    let targets = output::plan_pictures("--output", &args.output, std::slice::from_ref(&name))?;
     let Some(target) = targets.first() else { return Ok(()) };
     if args.json && *target == output::Target::Stdout {
         let message = "--json: the report goes to standard output, where the picture goes too";

@@ -37,7 +37,7 @@
 //!
 //! Each published algorithm has its own module, whose documentation names authors, year, class, cost
 //! and limits; the same facts are in its `INFO`. Families are enums with `ALL`, `name()`, `info()` and
-//! `FromStr`.
+//! `FromStr`; [`explain::ALGORITHMS`] has the facts of all.
 //!
 //! **What does a scene look like?** [`pipeline::render`] knows the order of all stages; a [`scene`] has
 //! meshes, instances, materials, textures, lights and cameras; the planes of the picture are in
@@ -81,10 +81,12 @@
 //! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |
 //!
+//! [Overlay](mod@clip::polygon::overlay) and [Vatti](clip::polygon::vatti) take coordinates of f64 or whole numbers; the
+//! [tree](clip::polygon::NestingTree) of a result tells which ring lies in which.
 //! [`clip::attribute`] carries heights, colours and other values to new vertices.
 //!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
-//! w; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
+//! w, [many triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
 //! camera transform, in clip space, after the division, in the viewport or per pixel, with the same
 //! picture.
 //!

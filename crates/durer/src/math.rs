@@ -1,8 +1,8 @@
 //! Vectors, planes, rectangles, and the exact predicates that decide topology.
 
 pub use glam::{
-    DAffine2, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, IVec2, Mat3, Mat4, UVec2, Vec2,
-    Vec3, Vec4,
+    DAffine2, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4, I64Vec2, IVec2, Mat3, Mat4,
+    UVec2, Vec2, Vec3, Vec4,
 };
 
 /// On which side of a directed line a point lies; decided exactly.

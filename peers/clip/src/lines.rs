@@ -37,6 +37,12 @@ fn segment(kind: &str, r: &mut Random) -> [f64; 4] {
     }
 }
 
+/// How many segments are accepted; each call is a direct one, as the other's.
+fn one_by_one(all: &[[f64; 4]], f: impl Fn(Segment<DVec2>) -> Option<Segment<DVec2>>) -> f64 {
+    let segments = all.iter().map(|s| Segment::new(DVec2::new(s[0], s[1]), DVec2::new(s[2], s[3])));
+    segments.filter(|s| black_box(f(*s)).is_some()).count() as f64
+}
+
 pub fn run() {
     let window = Rect::new(DVec2::splat(0.25), DVec2::splat(0.75)).unwrap();
     let theirs = Window::new(0.25, 0.75, 0.25, 0.75);
@@ -52,11 +58,6 @@ pub fn run() {
             let input = batch::Segments { x0: &x0, y0: &y0, x1: &x1, y1: &y1 };
             batch::clip(&window, input, &one_thread, out).unwrap();
             out.accepted.iter().map(|w| w.count_ones()).sum::<u32>() as f64
-        };
-        let scalar = |f: &dyn Fn(Segment<DVec2>) -> Option<Segment<DVec2>>| {
-            let segments =
-                all.iter().map(|s| Segment::new(DVec2::new(s[0], s[1]), DVec2::new(s[2], s[3])));
-            segments.filter(|s| black_box(f(*s)).is_some()).count() as f64
         };
         println!("{kind}, {N} segments, per segment:");
         medians(
@@ -84,13 +85,15 @@ pub fn run() {
                     count as f64
                 }),
                 ("durer Cohen–Sutherland, one call each", &mut || {
-                    scalar(&|s| cohen_sutherland::clip(&window, s, &mut NoTrace).unwrap())
+                    one_by_one(&all, |s| cohen_sutherland::clip(&window, s, &mut NoTrace).unwrap())
                 }),
                 ("durer Liang–Barsky, one call each", &mut || {
-                    scalar(&|s| liang_barsky::clip(&window, s, &mut NoTrace).unwrap())
+                    one_by_one(&all, |s| liang_barsky::clip(&window, s, &mut NoTrace).unwrap())
                 }),
                 ("durer Nicholl–Lee–Nicholl, one call each", &mut || {
-                    scalar(&|s| nicholl_lee_nicholl::clip(&window, s, &mut NoTrace).unwrap())
+                    one_by_one(&all, |s| {
+                        nicholl_lee_nicholl::clip(&window, s, &mut NoTrace).unwrap()
+                    })
                 }),
             ],
             N,

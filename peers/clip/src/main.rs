@@ -1,10 +1,11 @@
-//! Side-by-side measurements of clipping: `clip-peers lines | rect`.
+//! Side-by-side measurements of clipping: `clip-peers lines | rect | triangles`.
 //!
 //! Ours and the other's run in turn in the same process; figures are medians of nine runs, in CPU
 //! time of the calling thread, which a busy machine disturbs less than the time of the clock.
 
 mod lines;
 mod rect;
+mod triangles;
 
 /// CPU time of this thread in nanoseconds.
 fn cpu_time() -> f64 {
@@ -56,6 +57,7 @@ fn main() {
     match std::env::args().nth(1).as_deref() {
         Some("lines") => lines::run(),
         Some("rect") => rect::run(),
-        _ => eprintln!("usage: clip-peers lines|rect"),
+        Some("triangles") => triangles::run(),
+        _ => eprintln!("usage: clip-peers lines|rect|triangles"),
     }
 }

@@ -1,5 +1,6 @@
 //! A map of layers.
 
+use super::joined::Joined;
 use super::label::{Anchor, Label};
 use super::layers::{Marker, Style};
 use super::report::MapCounts;
@@ -48,7 +49,8 @@ impl Job<'_> {
         let (lo, hi) = (window.min(), window.max());
         let window = Window::new(lo.x, hi.x, lo.y, hi.y).map_err(usage)?;
         let screen = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
-        let mut map = Map { canvas, screen, seen: seen(&viewport)?, counts: MapCounts::default() };
+        let (seen, counts) = (seen(&viewport)?, MapCounts::default());
+        let mut map = Map { canvas, screen, seen, counts, joined: None };
         map.canvas.push_clip(&frame(&viewport), FillRule::NonZero);
         let mut labels = Vec::new();
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
@@ -60,7 +62,9 @@ impl Job<'_> {
             if fade {
                 map.canvas.push_group();
             }
+            map.joined = joins(style).then(Joined::default);
             features.iter().try_for_each(|f| map.feature(f, style)).map_err(usage)?;
+            map.fill_joined(style);
             if fade {
                 map.canvas.pop(style.opacity);
             }
@@ -168,6 +172,15 @@ struct Map {
     /// The viewport.
     seen: Rect,
     counts: MapCounts,
+    /// The layer's areas so far, where they are painted as one.
+    joined: Option<Joined>,
+}
+
+/// Whether the areas of a layer can be painted as one: one opaque colour, and no borders that the
+/// area of a later feature could hide.
+fn joins(style: &Style) -> bool {
+    let bare = style.stroke.is_none_or(|c| c[3] == 0) || style.stroke_width == 0.0;
+    bare && style.fill.is_some_and(|c| c[3] == 255)
 }
 
 impl Map {
@@ -225,7 +238,28 @@ impl Map {
         self.stroke(&path, style)
     }
 
+    /// Paints the areas of a layer that have been joined, so that neighbours leave no seam.
+    fn fill_joined(&mut self, style: &Style) {
+        if let (Some(joined), Some(fill)) = (self.joined.take(), style.fill) {
+            self.canvas.fill(&joined.into_path(), FillRule::NonZero, &Paint::Color(fill), 1.0);
+        }
+    }
+
     fn polygons(&mut self, polygons: &[Vec<Points>], style: &Style) -> durer::Result<()> {
+        if let Some(mut joined) = self.joined.take() {
+            let seen = |ring: &Points| self.run(ring, 0.0).is_some();
+            let on_screen =
+                |ring: &Points| ring.xy.iter().map(|p| self.screen.to_screen(*p)).collect();
+            let shown = polygons.iter().filter(|rings| rings.first().is_some_and(seen));
+            let shown: Vec<Vec<Vec<DVec2>>> =
+                shown.map(|rings| rings.iter().map(on_screen).collect()).collect();
+            let taken = joined.take(&shown);
+            self.joined = Some(joined);
+            if taken {
+                self.counts.polygons += shown.len() as u64;
+                return Ok(());
+            }
+        }
         let mut path = Path::new();
         for rings in polygons {
             let outer = rings.first().and_then(|ring| self.run(ring, style.stroke_width));

@@ -2,6 +2,7 @@
 
 mod args;
 mod fonts;
+mod joined;
 mod label;
 mod layers;
 mod map;
@@ -57,7 +58,7 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     input::check_streams(&inputs)?;
     let names = output::stems(&inputs).into_iter().take(1);
     let names: Vec<Name> = names.map(|stem| Name { stem, frame: None }).collect();
-    let target = output::plan("--output", &args.output, &names, output::Kind::Png)?;
+    let target = output::plan_pictures("--output", &args.output, &names)?;
     let Some(target) = target.into_iter().next() else {
         return Err(Failure::Usage("nothing to draw".to_owned()));
     };

@@ -74,6 +74,37 @@ fn edges_are_smoothed_or_not() {
 }
 
 #[test]
+fn neighbours_of_one_colour_leave_no_seam() {
+    let folder = folder();
+    // Two areas with a wild border between them that each runs along another way, one in a hole of the
+    // first, two that overlap, and one like an eight.
+    let border: Vec<String> =
+        (0..=300).map(|i| format!("{} {}", 50 + (i * 37) % 11, 5.0 + f64::from(i) * 0.3)).collect();
+    let (up, down) = (border.join(","), border.iter().rev().cloned().collect::<Vec<_>>().join(","));
+    let hole = "20 40, 23 61.5, 33 63, 34 41, 20 40";
+    folder.write(
+        "areas.wkt",
+        format!(
+            "POLYGON (({up}, 10 95, 10 5, 50 5), ({hole}))\nPOLYGON (({down}, 90 5, 90 95, {}))\n\
+             POLYGON (({hole}))\nPOLYGON ((70 20, 88 21, 80 60, 70 20))\nPOLYGON ((70 30, 80 80, 60 70, 70 30))\n\
+             POLYGON ((96 10, 99 10, 96 40, 99 40, 96 10))",
+            border[300]
+        ),
+    );
+    let draw = "draw areas.wkt --fill #204060 --size 333x333 --window 0,0,100,100";
+    folder.must(&format!("{draw} --stroke none -o a.png"));
+    let found = picture(&folder, "a.png");
+    for (x, y) in (40..293).flat_map(|x| (20..313).map(move |y| (x, y))) {
+        assert_eq!(found.pixel(x, y), [0x20, 0x40, 0x60], "{x},{y}");
+    }
+    assert_eq!(found.pixel(325, 215), [0x20, 0x40, 0x60], "the lower half of the eight");
+    // Translucent areas stay one by one: where they overlap, they are darker.
+    folder.must(&format!("{} --stroke none -o b.png", draw.replace("#204060", "#20406080")));
+    let found = picture(&folder, "b.png");
+    assert!(found.pixel(245, 240)[0] < found.pixel(100, 300)[0]);
+}
+
+#[test]
 fn a_map_has_holes_lines_and_markers() {
     let folder = folder();
     let colors = "--fill #00f --stroke #f00 --stroke-width 2 --marker square --marker-size 10";

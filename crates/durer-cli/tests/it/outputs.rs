@@ -37,6 +37,35 @@ fn places_that_cannot_be_written_are_told_before_the_work() {
     assert_eq!(folder.read("cube.obj"), crate::harness::CUBE.as_bytes());
 }
 
+#[test]
+fn commands_name_the_suffixes_that_they_can_write() {
+    let folder = Folder::with_models();
+    folder.must("render cube.obj -o a.png --depth d.png --size 8x8");
+    folder.write("map.wkt", "POINT (1 2)");
+    let camera = "--eye 0,0,9 --target 0,0,0 --fov 40 --near 1 --far 20 --to-eye 0,1,9";
+    for command in [
+        "fill a.png --at 1,1 --color red".to_owned(),
+        "draw map.wkt".to_owned(),
+        format!("warp a.png d.png {camera}"),
+    ] {
+        for wrong in ["x.gif", "x.svg"] {
+            let ended = folder.run(&format!("{command} -o {wrong}"));
+            ended.fails(2, &format!("--output {wrong}: pictures are written as PNG"));
+            assert!(!ended.err.contains(".pdf"), "{}", ended.err);
+        }
+    }
+    folder.run("render cube.obj -o x.gif").fails(2, ".svg, .pdf, .dxf, .hpgl, .geojson");
+    let plane = folder.run("render cube.obj -o a.png --depth x.gif");
+    assert!(
+        plane.fails(2, "end the name in .png").err.trim_end().ends_with(".png"),
+        "{}",
+        plane.err
+    );
+    folder
+        .run("plot --formula x*z -o x.gif")
+        .fails(2, "a plot is svg, pdf, dxf, hpgl, geojson or png");
+}
+
 #[cfg(unix)]
 #[test]
 fn read_only_files_and_links_are_kept() {

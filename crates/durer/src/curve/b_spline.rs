@@ -5,8 +5,21 @@
 //! search for the knot span.
 
 use super::bezier::{Point, project};
+use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3};
 use crate::{Error, Result};
+
+/// The facts of de Boor's algorithm.
+pub const INFO: Info = Info {
+    name: "de-boor",
+    title: "B-splines by de Boor's algorithm",
+    authors: "Carl de Boor",
+    year: 1972,
+    source: "On calculating with B-splines, Journal of Approximation Theory 6(1)",
+    class: Class::ObjectSpace,
+    cost: "O(p² + log n) per point for degree p and n knots",
+    limits: "knots do not fall; parameters in the domain",
+};
 
 /// A B-spline curve.
 ///

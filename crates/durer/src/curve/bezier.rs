@@ -3,8 +3,21 @@
 //! P. de Casteljau, *Outillages méthodes calcul*, Citroën 1959; P. Bézier, 1962. Cost: O(n²) for degree n, stable
 //! for all parameters in 0 … 1. Points may lie in any space: pixels, world, or homogeneous for rational curves.
 
+use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3, DVec4};
 use crate::trace::Tracer;
+
+/// The facts of de Casteljau's algorithm.
+pub const INFO: Info = Info {
+    name: "de-casteljau",
+    title: "Bézier curves by de Casteljau's algorithm",
+    authors: "Paul de Casteljau",
+    year: 1959,
+    source: "Outillages méthodes calcul, Citroën",
+    class: Class::ObjectSpace,
+    cost: "O(n²) per point for degree n",
+    limits: "parameters in 0 … 1",
+};
 
 /// Points that can be mixed; what curves are made of.
 pub trait Point: Copy {

@@ -6,7 +6,21 @@
 //! difference of control points is m stays within n(n − 1)/8 · m/k² of its chain of k chords.
 
 use super::path::{Path, PathElement};
+use crate::info::{Class, Info};
 use crate::math::DVec2;
+
+/// The facts of flattening.
+pub const INFO: Info = Info {
+    name: "flatten",
+    title: "Adaptive flattening",
+    authors: "Guo-Zhao Wang",
+    year: 1984,
+    source: "The subdivision method for finding the intersection between two Bézier curves or \
+             surfaces, Journal of Zhejiang University",
+    class: Class::ObjectSpace,
+    cost: "O(k) points, k of the order of the root of (size / tolerance)",
+    limits: "at most 4096 pieces per curve",
+};
 
 /// No curve is cut into more pieces: with control points a billion pixels away the tolerance gives way.
 const MAX_SEGMENTS: f64 = 4096.0;

@@ -7,5 +7,5 @@ mod path;
 pub mod stroke_font;
 pub mod text;
 
-pub use flatten::{Contours, flatten, segments_for};
+pub use flatten::{Contours, INFO as FLATTEN, flatten, segments_for};
 pub use path::{Path, PathElement};

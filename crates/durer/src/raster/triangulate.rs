@@ -7,7 +7,20 @@
 use earcut::Earcut;
 
 use crate::curve::Contours;
+use crate::info::{Class, Info};
 use crate::math::DVec2;
+
+/// The facts of triangulation.
+pub const INFO: Info = Info {
+    name: "triangulate",
+    title: "Triangulation by ear clipping",
+    authors: "Gary H. Meisters",
+    year: 1975,
+    source: "Polygons have ears, American Mathematical Monthly 82(6)",
+    class: Class::ObjectSpace,
+    cost: "O(n log n) time on usual input, O(n²) at worst; O(n) memory",
+    limits: "contours that cross give triangles that need not cover exactly the even-odd area",
+};
 
 /// Triangles of a polygon.
 #[derive(Debug, Clone, PartialEq, Default)]

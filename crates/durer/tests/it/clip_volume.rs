@@ -177,6 +177,34 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn many_triangles_are_clipped_as_each_is(
+        points in prop::collection::vec((point(), point(), point(), 0..3usize), 0..9), options in options(),
+    ) {
+        // Some lie inside with all corners, and some reach where products overflow.
+        let near = |p: DVec4| DVec4::new(p.x * 0.2, p.y * 0.2, p.z.abs() * 0.2, 1.0);
+        let corners = |&(a, b, c, kind): &(DVec4, DVec4, DVec4, usize)| match kind {
+            0 => [a, b, c],
+            1 => [a, b, c].map(near),
+            _ => [near(a), near(b), c * 1e160],
+        };
+        let triangles: Vec<[Vertex; 3]> = points.iter().map(|p| corners(p).map(vertex)).collect();
+        let mut expected = Vec::new();
+        for triangle in &triangles {
+            let ring = clip_polygon(triangle, &options, &mut NoTrace);
+            if let Some((first, rest)) = ring.split_first() {
+                expected.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+            }
+        }
+        let mut found = Vec::new();
+        clip_triangles(&triangles, &options, &mut found);
+        prop_assert_eq!(found, expected);
+    }
+}
+
 /// How far inside all borders, by the definition.
 fn boundary(p: DVec4, options: &Options) -> f64 {
     let d = boundary_coordinates(p, options.depth);

@@ -7,7 +7,7 @@ use durer::trace::NoTrace;
 use serde_json::Value;
 
 use crate::overlay::cases::{ClipperCase, geojson, shared, shared_files, well_known};
-use crate::overlay::{distance, validity};
+use crate::overlay::{distance, tree, validity};
 
 fn run(a: &Shapes, b: &Shapes, op: BooleanOp, options: &Options) -> Output {
     overlay(a, b, op, options, &mut NoTrace).expect("finite")
@@ -148,6 +148,28 @@ fn clipper2_polytree_hole_owner() {
         let whole: f64 = out.shapes.polygons().map(|p| p.area()).sum();
         assert!((whole - out.shapes.area()).abs() <= 1e-9 * whole);
         assert!(out.shapes.polygon_count() > 0);
+    }
+}
+
+/// The same in whole numbers: holes in their owners, as Clipper2's test asks (every child within its
+/// parent), and each ring's parent the smallest ring around it.
+#[test]
+fn clipper2_polytree_hole_owner_as_a_tree() {
+    let Some(text) = shared("geo2d/clipper2/PolytreeHoleOwner.txt") else { return };
+    for case in ClipperCase::all(&text) {
+        // Doubled, so that the middles of edges are whole numbers too.
+        let whole = |shapes: &Shapes| {
+            let double = |p: &DVec2| (*p * 2.0).as_i64vec2();
+            Shapes::from_rings(shapes.rings().map(|r| r.iter().map(double).collect::<Vec<_>>()))
+        };
+        let (subject, clip) = (whole(&case.subject), whole(&case.clip));
+        let options = Options::with_rule(case.rule);
+        let out = overlay(&subject, &clip, case.op, &options, &mut NoTrace).expect("small");
+        let mut even = out.shapes.clone();
+        even.points_mut().iter_mut().for_each(|p| *p *= 2);
+        tree::check(&even, &out.tree(), |p, q| (p + q) / 2);
+        let depth = (0..out.shapes.ring_count()).map(|r| out.tree().depth(r)).max();
+        assert_eq!((out.shapes.ring_count(), depth), (6, Some(1)));
     }
 }
 

@@ -79,3 +79,24 @@ fn dependencies_run_in_the_order_of_the_modules() {
         }
     }
 }
+
+/// Whoever lists algorithms finds all of them in one place, each with its facts.
+#[test]
+fn every_algorithm_is_in_the_catalogue() {
+    let (_, files) = library();
+    let of = |path: &PathBuf| {
+        let text = fs::read_to_string(path).expect("source");
+        text.lines()
+            .filter(|l| l.starts_with("pub const ") && l.ends_with(": Info = Info {"))
+            .count()
+    };
+    let listed = durer::explain::ALGORITHMS;
+    assert_eq!(files.iter().map(of).sum::<usize>(), listed.len(), "explain::ALGORITHMS");
+    for (i, info) in listed.iter().enumerate() {
+        assert!(!listed[..i].iter().any(|other| other.title == info.title && other == info));
+        let texts = [info.name, info.title, info.authors, info.source, info.cost, info.limits];
+        assert!(texts.iter().all(|text| !text.is_empty()), "{}", info.title);
+        // Descartes is the oldest.
+        assert!((1637..2100).contains(&info.year), "{}", info.title);
+    }
+}

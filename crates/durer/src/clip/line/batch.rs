@@ -9,11 +9,25 @@
 //! Cost: O(n); about ten arithmetic instructions and two divisions per end and vector.
 
 use super::{Segment, liang_barsky};
+use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
 use fearless_simd::{Level, dispatch, f64x4, mask64x4, prelude::*};
 use fearless_simd_macros::simd;
+
+/// The facts of clipping in batches.
+pub const INFO: Info = Info {
+    name: "batch",
+    title: "Liang–Barsky in batches",
+    authors: "You-Dong Liang, Brian A. Barsky",
+    year: 1984,
+    source: "A new concept and method for line clipping, ACM Transactions on Graphics 3(1); \
+             without branches, in vectors",
+    class: Class::ObjectSpace,
+    cost: "O(n) for n segments; about ten instructions and two divisions per end and vector",
+    limits: "rectangles",
+};
 
 /// Segments as four arrays of one length; segment i is (x0\[i\], y0\[i\]) → (x1\[i\], y1\[i\]).
 #[derive(Debug, Clone, Copy)]

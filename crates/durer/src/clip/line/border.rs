@@ -168,7 +168,16 @@ impl<const N: usize> Canonical<N> {
             point[k] = near;
             // Huge coordinates make one of these infinite or NaN, and then the test fails.
             let well_inside = near - min > margin && max - near > margin && length.abs() < f64::MAX;
-            if !well_inside {
+            if well_inside {
+                continue;
+            }
+            // Beyond a border by more than any rounding, it needs no exact test either.
+            let sure = length.abs() < f64::MAX;
+            if sure && min - near > margin && near > -f64::MAX {
+                code |= bit(k, 0);
+            } else if sure && near - max > margin && near < f64::MAX {
+                code |= bit(k, 1);
+            } else {
                 code |= self.settle_cut(window, (axis, border), k, &mut point);
             }
         }

@@ -19,10 +19,25 @@ use crate::clip::attribute::Source;
 use crate::clip::exact::side;
 use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::ClippedLines;
+use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
 use std::cmp::Ordering;
+
+/// The facts of clipping polylines.
+pub const INFO: Info = Info {
+    name: "polyline",
+    title: "Polylines against a polygon",
+    authors: "M. Shimrat",
+    year: 1962,
+    source: "Algorithm 112: position of point relative to polygon, Communications of the ACM \
+             5(8); asked for the middle of each piece between two crossings",
+    class: Class::ObjectSpace,
+    cost: "O(n e / s + k log k) for n segments, e edges of the polygon in s slabs, s about \
+             the root of e, k cuts; O(e) memory",
+    limits: "even-odd rule; parts between cuts that round to one point are ignored",
+};
 
 /// Which part is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

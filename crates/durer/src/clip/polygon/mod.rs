@@ -7,16 +7,21 @@ mod cyclic;
 pub mod greiner_hormann;
 mod locate;
 pub mod naive;
+mod nesting;
 pub mod overlay;
 pub mod rectangle;
 mod shapes;
+mod status;
 pub mod sutherland_hodgman;
 pub mod vatti;
+mod vertex;
 mod walk;
 pub mod weiler_atherton;
 
+pub use nesting::NestingTree;
 pub use overlay::overlay;
 pub use shapes::{Polygon, Ring, Shapes, signed_area};
+pub use vertex::Vertex;
 
 use crate::clip::line::ConvexPolygon;
 use crate::math::Rect;

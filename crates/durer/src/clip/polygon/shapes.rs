@@ -1,5 +1,6 @@
 //! Polygons in one flat buffer: points, where each ring ends, where each polygon ends.
 
+use super::Vertex;
 use crate::math::{DVec2, Rect};
 
 /// A closed curve of straight edges; the edge from the last point to the first is implied.
@@ -11,24 +12,26 @@ pub type Ring = [DVec2];
 /// (y up), in squared units of its coordinates.
 ///
 /// Taken relative to the first point, so that small rings far from the origin keep their digits.
-pub fn signed_area(ring: &Ring) -> f64 {
+pub fn signed_area<P: Vertex>(ring: &[P]) -> f64 {
     let Some((&origin, rest)) = ring.split_first() else { return 0.0 };
-    let twice: f64 = rest.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum();
+    let from = |p: P| p.minus(origin);
+    let twice: f64 = rest.windows(2).map(|w| from(w[0]).perp_dot(from(w[1]))).sum();
     twice * 0.5
 }
 
 /// Any number of polygons, each an outer ring with its holes, in one flat buffer.
 ///
 /// What is read from a file may be a mere bag of rings: then each ring is its own polygon.
-/// Rings are open: the first point is not repeated at the end.
+/// Rings are open: the first point is not repeated at the end. Points are [`DVec2`], or
+/// [`I64Vec2`](crate::math::I64Vec2) where all coordinates are whole numbers.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Shapes {
-    points: Vec<DVec2>,
+pub struct Shapes<P = DVec2> {
+    points: Vec<P>,
     ring_ends: Vec<usize>,
     polygon_ends: Vec<usize>,
 }
 
-impl Shapes {
+impl<P> Shapes<P> {
     /// No polygon.
     pub const fn new() -> Self {
         Self { points: Vec::new(), ring_ends: Vec::new(), polygon_ends: Vec::new() }
@@ -36,25 +39,15 @@ impl Shapes {
 
     /// From all points, where each ring ends among them, and where each polygon ends among the rings.
     pub(crate) const fn from_parts(
-        points: Vec<DVec2>,
+        points: Vec<P>,
         ring_ends: Vec<usize>,
         polygon_ends: Vec<usize>,
     ) -> Self {
         Self { points, ring_ends, polygon_ends }
     }
 
-    /// Each ring as a polygon of its own.
-    pub fn from_rings<R: AsRef<Ring>>(rings: impl IntoIterator<Item = R>) -> Self {
-        let mut shapes = Self::new();
-        for ring in rings {
-            shapes.push_ring(ring.as_ref().iter().copied());
-            shapes.end_polygon();
-        }
-        shapes
-    }
-
     /// Adds a ring to the polygon being built: first its outer ring, then its holes.
-    pub fn push_ring(&mut self, ring: impl IntoIterator<Item = DVec2>) {
+    pub fn push_ring(&mut self, ring: impl IntoIterator<Item = P>) {
         self.points.extend(ring);
         self.ring_ends.push(self.points.len());
     }
@@ -67,12 +60,12 @@ impl Shapes {
     }
 
     /// All points, ring after ring.
-    pub fn points(&self) -> &[DVec2] {
+    pub fn points(&self) -> &[P] {
         &self.points
     }
 
     /// All points, to be moved in place.
-    pub fn points_mut(&mut self) -> &mut [DVec2] {
+    pub fn points_mut(&mut self) -> &mut [P] {
         &mut self.points
     }
 
@@ -82,7 +75,7 @@ impl Shapes {
     }
 
     /// All rings, polygon after polygon.
-    pub fn rings(&self) -> impl ExactSizeIterator<Item = &Ring> {
+    pub fn rings(&self) -> impl ExactSizeIterator<Item = &[P]> {
         (0..self.ring_ends.len()).map(|i| self.ring(i))
     }
 
@@ -94,7 +87,7 @@ impl Shapes {
     }
 
     /// A ring by its index over all polygons; empty where there is none.
-    pub fn ring(&self, index: usize) -> &Ring {
+    pub fn ring(&self, index: usize) -> &[P] {
         self.points.get(self.ring_range(index)).unwrap_or_default()
     }
 
@@ -111,7 +104,7 @@ impl Shapes {
     }
 
     /// All polygons.
-    pub fn polygons(&self) -> impl ExactSizeIterator<Item = Polygon<'_>> {
+    pub fn polygons(&self) -> impl ExactSizeIterator<Item = Polygon<'_, P>> {
         let starts = std::iter::once(0).chain(self.polygon_ends.iter().copied());
         let pairs: Vec<_> = starts.zip(self.polygon_ends.iter().copied()).collect();
         pairs.into_iter().map(move |(start, end)| Polygon { shapes: self, start, end })
@@ -122,18 +115,11 @@ impl Shapes {
         self.points.is_empty()
     }
 
-    /// The sum of the signed areas of all rings: the area of the region where the shapes are valid.
-    pub fn area(&self) -> f64 {
-        self.rings().map(signed_area).sum()
-    }
-
-    /// The smallest rectangle around all finite points; `None` where there is none.
-    pub fn bounds(&self) -> Option<Rect> {
-        Rect::around(self.points.iter().copied())
-    }
-
     /// Adds all polygons of another collection.
-    pub fn append(&mut self, other: &Self) {
+    pub fn append(&mut self, other: &Self)
+    where
+        P: Copy,
+    {
         for polygon in other.polygons() {
             for ring in polygon.rings() {
                 self.push_ring(ring.iter().copied());
@@ -143,28 +129,52 @@ impl Shapes {
     }
 }
 
+impl<P: Vertex> Shapes<P> {
+    /// Each ring as a polygon of its own.
+    pub fn from_rings<R: AsRef<[P]>>(rings: impl IntoIterator<Item = R>) -> Self {
+        let mut shapes = Self::new();
+        for ring in rings {
+            shapes.push_ring(ring.as_ref().iter().copied());
+            shapes.end_polygon();
+        }
+        shapes
+    }
+
+    /// The sum of the signed areas of all rings: the area of the region where the shapes are valid.
+    pub fn area(&self) -> f64 {
+        self.rings().map(signed_area).sum()
+    }
+}
+
+impl Shapes {
+    /// The smallest rectangle around all finite points; `None` where there is none.
+    pub fn bounds(&self) -> Option<Rect> {
+        Rect::around(self.points.iter().copied())
+    }
+}
+
 /// One polygon of [`Shapes`]: an outer ring and its holes.
 #[derive(Debug, Clone, Copy)]
-pub struct Polygon<'a> {
-    shapes: &'a Shapes,
+pub struct Polygon<'a, P = DVec2> {
+    shapes: &'a Shapes<P>,
     start: usize,
     end: usize,
 }
 
-impl<'a> Polygon<'a> {
+impl<'a, P> Polygon<'a, P> {
     /// The outer ring.
-    pub fn outer(&self) -> &'a Ring {
+    pub fn outer(&self) -> &'a [P] {
         self.shapes.ring(self.start)
     }
 
     /// The holes.
-    pub fn holes(&self) -> impl ExactSizeIterator<Item = &'a Ring> {
+    pub fn holes(&self) -> impl ExactSizeIterator<Item = &'a [P]> {
         let shapes = self.shapes;
         (self.start + 1..self.end).map(move |i| shapes.ring(i))
     }
 
     /// The outer ring, then the holes.
-    pub fn rings(&self) -> impl ExactSizeIterator<Item = &'a Ring> {
+    pub fn rings(&self) -> impl ExactSizeIterator<Item = &'a [P]> {
         let shapes = self.shapes;
         (self.start..self.end).map(move |i| shapes.ring(i))
     }
@@ -175,7 +185,10 @@ impl<'a> Polygon<'a> {
     }
 
     /// The sum of the signed areas of its rings.
-    pub fn area(&self) -> f64 {
+    pub fn area(&self) -> f64
+    where
+        P: Vertex,
+    {
         self.rings().map(signed_area).sum()
     }
 }

@@ -6,7 +6,7 @@
 //! and every operation, fill rule and degenerate input is decided exactly.
 
 use super::overlay::{self, Winder};
-use super::{BooleanOp, Shapes};
+use super::{BooleanOp, Shapes, Vertex};
 use crate::Result;
 use crate::info::{Class, Info};
 use crate::trace::Tracer;
@@ -28,7 +28,7 @@ pub const INFO: Info = Info {
 /// Boolean operation on any two sets of polygons, self-crossing too, by any fill rules.
 ///
 /// The result's polygons nest: each outer ring comes with its own holes, islands in a hole are
-/// polygons of their own. It equals that of [`overlay::overlay()`] bit for bit.
+/// polygons of their own, which [`Output::tree`] gives their place. It equals that of [`overlay::overlay()`] bit for bit.
 ///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, vatti::vatti};
@@ -44,12 +44,12 @@ pub const INFO: Info = Info {
 ///
 /// # Errors
 /// As [`overlay::overlay()`].
-pub fn vatti(
-    subject: &Shapes,
-    clip: &Shapes,
+pub fn vatti<P: Vertex>(
+    subject: &Shapes<P>,
+    clip: &Shapes<P>,
     op: BooleanOp,
     options: &Options,
-    t: &mut impl Tracer<Step>,
-) -> Result<Output> {
+    t: &mut impl Tracer<Step<P>>,
+) -> Result<Output<P>> {
     overlay::solve(subject, clip, op, options, Winder::Sweep, t)
 }

@@ -6,8 +6,21 @@
 use kurbo::{Affine, BezPath, PathEl, Point, StrokeOpts};
 
 use crate::curve::{Path, PathElement};
+use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::{Error, Result};
+
+/// The facts of strokes.
+pub const INFO: Info = Info {
+    name: "stroke",
+    title: "Outlines of strokes",
+    authors: "Raph Levien",
+    year: 2022,
+    source: "Parallel curves of cubic Béziers; in the implementation of the crate kurbo",
+    class: Class::ObjectSpace,
+    cost: "O(n) pieces of curve for n pieces of the path, more where they bend",
+    limits: "the outline crosses itself: fill it by the non-zero rule",
+};
 
 /// How a stroke ends where its path does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

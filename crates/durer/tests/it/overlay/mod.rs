@@ -5,4 +5,6 @@ pub mod cases;
 pub mod distance;
 mod hard;
 mod laws;
+pub mod tree;
 pub mod validity;
+mod whole;

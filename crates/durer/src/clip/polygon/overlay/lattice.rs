@@ -274,7 +274,33 @@ impl<C: Coord> Segment<C> {
     }
 }
 
-/// The map between the caller's coordinates and the grid.
+/// A point of a kind that has a map to grid points.
+pub trait GridPoint: Sized {
+    /// The map.
+    type Lattice: GridMap<Self>;
+}
+
+/// The map between points of one kind and the grid.
+pub trait GridMap<P>: Copy + Sync + Sized {
+    /// The grid for points between two corners, with cells of the given size or of the kind's own.
+    fn between(low: P, high: P, cell: Option<f64>) -> Result<Self>;
+    /// Whether all coordinates fit the width.
+    fn fits<C: Coord>(&self) -> bool;
+    /// The grid point whose pixel holds `p`.
+    fn snap<C: Coord>(&self, p: P) -> Point<C>;
+    /// The grid point in the caller's coordinates.
+    fn unsnap<C: Coord>(&self, p: Point<C>) -> P;
+    /// The size of a cell in the caller's units.
+    fn cell(&self) -> f64;
+    /// Roughly where a point lies, in the caller's units; never exchanges two points on an axis.
+    fn place(&self, p: P) -> DVec2;
+}
+
+impl GridPoint for DVec2 {
+    type Lattice = Lattice;
+}
+
+/// The map between the caller's coordinates in f64 and the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
     origin: DVec2,
@@ -292,7 +318,7 @@ const FARTHEST: f64 = 1e300;
 impl Lattice {
     /// The grid for points in `bounds`, with cells of the given size, or the smallest power of two
     /// that leaves at most 2³⁰ cells across.
-    pub fn new(bounds: Rect, cell: Option<f64>) -> Result<Self> {
+    fn new(bounds: Rect, cell: Option<f64>) -> Result<Self> {
         let farthest = bounds.min().abs().max(bounds.max().abs()).max_element();
         if farthest > FARTHEST {
             return Err(Error::parameter("coordinate", farthest, "within ±1e300"));
@@ -313,29 +339,36 @@ impl Lattice {
         }
         Ok(Self { origin, cell, reach })
     }
+}
 
-    /// Whether all coordinates fit the width.
-    pub fn fits<C: Coord>(&self) -> bool {
+impl GridMap<DVec2> for Lattice {
+    fn between(low: DVec2, high: DVec2, cell: Option<f64>) -> Result<Self> {
+        Self::new(Rect::new(low, high)?, cell)
+    }
+
+    fn fits<C: Coord>(&self) -> bool {
         self.reach <= C::LIMIT as f64
     }
 
-    /// The grid point whose pixel holds `p`.
     #[inline]
-    pub fn snap<C: Coord>(&self, p: DVec2) -> Point<C> {
+    fn snap<C: Coord>(&self, p: DVec2) -> Point<C> {
         let q = ((p - self.origin) / self.cell)
             .clamp(DVec2::splat(-self.reach), DVec2::splat(self.reach));
         Point::new(whole(q.x + 0.5), whole(q.y + 0.5))
     }
 
-    /// The grid point in the caller's coordinates.
     #[inline]
-    pub fn unsnap<C: Coord>(&self, p: Point<C>) -> DVec2 {
+    fn unsnap<C: Coord>(&self, p: Point<C>) -> DVec2 {
         self.origin + DVec2::new(p.x.f64(), p.y.f64()) * self.cell
     }
 
-    /// The size of a cell in the caller's units.
-    pub fn cell(&self) -> f64 {
+    fn cell(&self) -> f64 {
         self.cell
+    }
+
+    #[inline]
+    fn place(&self, p: DVec2) -> DVec2 {
+        p
     }
 }
 

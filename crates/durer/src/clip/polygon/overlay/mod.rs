@@ -29,9 +29,10 @@ pub(crate) mod search;
 mod strips;
 #[cfg(test)]
 mod tests;
+mod whole;
 mod winding;
 
-use super::{BooleanOp, FillRule, Ring, Shapes};
+use super::{BooleanOp, FillRule, NestingTree, Shapes, Vertex};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
@@ -39,7 +40,7 @@ use crate::{Error, Result};
 
 use arrangement::{Arrangement, Winding};
 use grid::{Block, Grid, Spread};
-use lattice::{Coord, Lattice, Segment};
+use lattice::{Coord, GridMap, Segment};
 use noding::{Cause, Ends, Noding};
 use outlines::Outlines;
 use rings::Rings;
@@ -68,7 +69,7 @@ pub struct Options {
     /// The size of a grid cell, in units of the coordinates. `None` takes the smallest power of two
     /// that leaves at most 2³⁰ cells across the input. Sizes that leave up to 2⁴¹ cells across are
     /// possible, at about twice the time. Powers of two are best: other sizes make grid points that
-    /// have to be rounded to f64.
+    /// have to be rounded to f64. Whole numbers are their own grid: 1 or `None`.
     pub grid: Option<f64>,
     /// Whether [`Output::origins`] is wanted.
     pub origins: bool,
@@ -83,7 +84,7 @@ impl Options {
 
 /// What happens, step by step; coordinates are the caller's.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Step {
+pub enum Step<P = DVec2> {
     /// The grid was chosen.
     Grid {
         /// The size of a cell.
@@ -92,26 +93,26 @@ pub enum Step {
     /// Two edges cross in this grid cell.
     Crossing {
         /// The centre of the cell.
-        at: DVec2,
+        at: P,
     },
     /// The sweep line of [`super::vatti`] passed a node.
     Sweep {
         /// The node.
-        at: DVec2,
+        at: P,
         /// How many edges the sweep line cuts just after it.
         active: usize,
     },
     /// A ring of the result.
     Ring {
         /// Its points.
-        points: Vec<DVec2>,
+        points: Vec<P>,
         /// Whether it is a hole of the last ring that was none.
         hole: bool,
     },
 }
 
 /// Rebuilds the result of an overlay from its steps.
-pub fn replay(steps: &[Step]) -> Shapes {
+pub fn replay<P: Vertex>(steps: &[Step<P>]) -> Shapes<P> {
     let mut shapes = Shapes::new();
     for step in steps {
         if let Step::Ring { points, hole } = step {
@@ -166,17 +167,39 @@ pub enum Origin {
 
 /// The result of [`overlay()`].
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Output {
+pub struct Output<P = DVec2> {
     /// Valid polygons: outer rings run counter-clockwise (y up), holes clockwise; every ring starts
     /// with its smallest point (by x, then y), polygons and holes are sorted by their points.
-    pub shapes: Shapes,
+    pub shapes: Shapes<P>,
     /// The origin of each of the shapes' points, if [`Options::origins`] asked for them.
     pub origins: Vec<Origin>,
     /// The size of a grid cell.
     pub cell: f64,
 }
 
-impl Output {
+impl<P: Vertex> Output<P> {
+    /// Which ring lies in which: islands in the holes that hold them.
+    ///
+    /// ```
+    /// use durer::clip::polygon::{BooleanOp, Shapes, overlay::overlay};
+    /// use durer::math::DVec2;
+    /// use durer::trace::NoTrace;
+    ///
+    /// let square = |r: f64| [(-r, -r), (r, -r), (r, r), (-r, r)].map(DVec2::from);
+    /// let rings = Shapes::from_rings([1.0, 2.0, 3.0, 4.0].map(square));
+    /// let out = overlay(&rings, &Shapes::new(), BooleanOp::Union, &Default::default(), &mut NoTrace)?;
+    /// // Two polygons side by side: the outermost ring with its hole, and the island with its own.
+    /// assert_eq!((out.shapes.polygon_count(), out.shapes.ring_count()), (2, 4));
+    /// let tree = out.tree();
+    /// assert_eq!(tree.roots(), [0]);
+    /// assert_eq!((tree.children(0), tree.children(1), tree.children(2)), (&[1][..], &[2][..], &[3][..]));
+    /// assert_eq!((tree.parent(3), tree.depth(3), tree.is_hole(3)), (Some(2), 3, true));
+    /// # Ok::<(), durer::Error>(())
+    /// ```
+    pub fn tree(&self) -> NestingTree {
+        NestingTree::of(&self.shapes)
+    }
+
     /// Values at the result's points, from values at the input's points: copied at vertices, and at
     /// crossings interpolated along both edges and joined by `join` (subject's edge first where
     /// the edges are of both).
@@ -205,6 +228,10 @@ impl Output {
 /// outer ring, each polygon's interior connected. It does not depend on the order of the rings,
 /// their starting points, or the number of threads.
 ///
+/// Points are [`DVec2`], which are snapped to a grid, or [`I64Vec2`](crate::math::I64Vec2), which are
+/// taken as they are: any coordinates of which no two lie further apart than 2⁴¹ − 2, also beyond the
+/// 2⁵³ that f64 holds. Crossings are rounded to the nearest whole numbers, ties up and to the right.
+///
 /// ```
 /// use durer::clip::polygon::{BooleanOp, Shapes, overlay};
 /// use durer::math::DVec2;
@@ -217,16 +244,33 @@ impl Output {
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
+/// With whole numbers:
+///
+/// ```
+/// use durer::clip::polygon::{BooleanOp, Shapes, overlay};
+/// use durer::math::I64Vec2;
+/// use durer::trace::NoTrace;
+///
+/// let far = i64::MAX - 10;
+/// let square = |x: i64| [(0, 0), (3, 0), (3, 3), (0, 3)].map(|(u, v)| I64Vec2::new(far + x + u, x + v));
+/// let (a, b) = (Shapes::from_rings([square(0)]), Shapes::from_rings([square(1)]));
+/// let both = overlay::overlay(&a, &b, BooleanOp::Intersection, &Default::default(), &mut NoTrace)?;
+/// assert_eq!(both.shapes.ring(0)[0], I64Vec2::new(far + 1, 1));
+/// assert_eq!(both.shapes.area(), 4.0);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Parameter`] for a grid that is
-/// not positive or too fine and for coordinates beyond ±1e300, [`Error::Limit`] for too many points.
-pub fn overlay(
-    subject: &Shapes,
-    clip: &Shapes,
+/// not positive or too fine and for coordinates beyond ±1e300, [`Error::Limit`] for too many points
+/// and for whole numbers too far apart.
+pub fn overlay<P: Vertex>(
+    subject: &Shapes<P>,
+    clip: &Shapes<P>,
     op: BooleanOp,
     options: &Options,
-    t: &mut impl Tracer<Step>,
-) -> Result<Output> {
+    t: &mut impl Tracer<Step<P>>,
+) -> Result<Output<P>> {
     solve(subject, clip, op, options, Winder::Parts, t)
 }
 
@@ -239,17 +283,18 @@ pub(super) enum Winder {
     Sweep,
 }
 
-pub(super) fn solve(
-    subject: &Shapes,
-    clip: &Shapes,
+pub(super) fn solve<P: Vertex>(
+    subject: &Shapes<P>,
+    clip: &Shapes<P>,
     op: BooleanOp,
     options: &Options,
     winder: Winder,
-    t: &mut impl Tracer<Step>,
-) -> Result<Output> {
-    let bounds = check(subject, clip)?;
-    let Some(around) = union(bounds) else { return Ok(Output::default()) };
-    let lattice = Lattice::new(around, options.grid)?;
+    t: &mut impl Tracer<Step<P>>,
+) -> Result<Output<P>> {
+    let corners = check(subject, clip)?;
+    let Some([low, high]) = union(corners) else { return Ok(Output::default()) };
+    let lattice = P::Lattice::between(low, high, options.grid)?;
+    let bounds = corners.map(|some| Rect::around(some?.map(|corner| lattice.place(corner))));
     t.step(|| Step::Grid { cell: lattice.cell() });
     let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds };
     if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
@@ -258,18 +303,21 @@ pub(super) fn solve(
 /// So that an edge's index and two flags fit 32 bits, and twice an edge's index too.
 const MOST_POINTS: usize = 1 << 29;
 
+/// The smallest and the largest coordinates.
+type Corners<P> = [P; 2];
+
 /// The boxes around subject and clip.
-fn check(subject: &Shapes, clip: &Shapes) -> Result<[Option<Rect>; 2]> {
+fn check<P: Vertex>(subject: &Shapes<P>, clip: &Shapes<P>) -> Result<[Option<Corners<P>>; 2]> {
     let count = subject.points().len() + clip.points().len();
     if count > MOST_POINTS {
         let (value, limit) = (count as u64, MOST_POINTS as u64);
         return Err(Error::Limit { what: "points", value, limit });
     }
-    Ok([bounds(subject.points(), 0)?, bounds(clip.points(), subject.points().len())?])
+    Ok([corners(subject.points(), 0)?, corners(clip.points(), subject.points().len())?])
 }
 
 /// The box around points; `before` is how many points come before them in the caller's count.
-fn bounds(points: &[DVec2], before: usize) -> Result<Option<Rect>> {
+fn corners<P: Vertex>(points: &[P], before: usize) -> Result<Option<Corners<P>>> {
     /// How many points one task handles.
     const TASK: usize = if cfg!(test) { 8 } else { 1 << 16 };
     let tasks = parallel::ranges(points.len(), TASK);
@@ -277,19 +325,24 @@ fn bounds(points: &[DVec2], before: usize) -> Result<Option<Rect>> {
         let points = &points[range.clone()];
         match points.iter().position(|p| !p.is_finite()) {
             Some(i) => Err(range.start + i),
-            None => Ok(Rect::around(points.iter().copied())),
+            None => Ok(around(points.iter().copied())),
         }
     });
-    let mut around = None;
+    let mut all = None;
     for one in boxes {
         let one = one.map_err(|i| Error::NonFinite { what: "point", index: before + i })?;
-        around = union([around, one]);
+        all = union([all, one]);
     }
-    Ok(around)
+    Ok(all)
 }
 
-fn union(boxes: [Option<Rect>; 2]) -> Option<Rect> {
-    Rect::around(boxes.into_iter().flatten().flat_map(|r| [r.min(), r.max()]))
+fn around<P: Vertex>(mut points: impl Iterator<Item = P>) -> Option<Corners<P>> {
+    let first = points.next()?;
+    Some(points.fold([first; 2], |[low, high], p| [low.low(p), high.high(p)]))
+}
+
+fn union<P: Vertex>(boxes: [Option<Corners<P>>; 2]) -> Option<Corners<P>> {
+    around(boxes.into_iter().flatten().flatten())
 }
 
 /// An input edge behind a segment: the index of its first point, whether the segment runs against
@@ -324,24 +377,27 @@ impl Source {
     }
 }
 
-struct Job<'a> {
-    subject: &'a Shapes,
-    clip: &'a Shapes,
+struct Job<'a, P: Vertex> {
+    subject: &'a Shapes<P>,
+    clip: &'a Shapes<P>,
     op: BooleanOp,
     options: &'a Options,
-    lattice: &'a Lattice,
+    lattice: &'a P::Lattice,
     winder: Winder,
     /// The boxes around subject and clip.
     bounds: [Option<Rect>; 2],
 }
 
-impl Job<'_> {
+impl<P: Vertex> Job<'_, P> {
     /// The order of the stages.
-    fn run<C: Coord>(&self, t: &mut impl Tracer<Step>) -> Output {
+    fn run<C: Coord>(&self, t: &mut impl Tracer<Step<P>>) -> Output<P> {
         let inputs = [(self.subject, Operand::Subject), (self.clip, Operand::Clip)];
-        let Some(around) = union(self.bounds) else { return Output::default() };
-        let outlines = Outlines::new(inputs, around, |operand, ring| self.matters(operand, ring));
-        let (segments, sources) = outlines.segments::<C>([self.subject, self.clip], self.lattice);
+        let corners = self.bounds.iter().flatten().flat_map(|r| [r.min(), r.max()]);
+        let Some(around) = Rect::around(corners) else { return Output::default() };
+        let matters = |operand, ring: &[P]| self.matters(operand, ring);
+        let outlines = Outlines::new(inputs, self.lattice, around, matters);
+        let (segments, sources) =
+            outlines.segments::<P, C>([self.subject, self.clip], self.lattice);
         let Some(block) = Block::around(&segments) else {
             return Output { cell: self.lattice.cell(), ..Output::default() };
         };
@@ -373,18 +429,18 @@ impl Job<'_> {
 
     /// Whether a ring can reach the result, told by bounding boxes alone: outside its box a ring
     /// encloses nothing, and an intersection lies in both boxes, a difference in the subject's.
-    fn matters(&self, operand: Operand, ring: &Ring) -> bool {
+    fn matters(&self, operand: Operand, ring: &[P]) -> bool {
         let other = match (self.op, operand) {
             (BooleanOp::Intersection, Operand::Subject) => self.bounds[1],
             (BooleanOp::Intersection | BooleanOp::Difference, Operand::Clip) => self.bounds[0],
             _ => return true,
         };
-        let around = Rect::around(ring.iter().copied());
+        let around = Rect::around(ring.iter().map(|&p| self.lattice.place(p)));
         matches!((around, other), (Some(a), Some(b)) if a.overlaps(&b))
     }
 
     #[inline(never)]
-    fn report<C: Coord>(&self, noding: &Noding<C>, t: &mut impl Tracer<Step>) {
+    fn report<C: Coord>(&self, noding: &Noding<C>, t: &mut impl Tracer<Step<P>>) {
         for (&p, cause) in noding.nodes.iter().zip(noding.causes()) {
             if matches!(cause.get(), Cause::Crossing(..)) {
                 t.step(|| Step::Crossing { at: self.lattice.unsnap(p) });
@@ -399,8 +455,8 @@ impl Job<'_> {
         noding: &Noding<C>,
         segments: &[Segment<C>],
         sources: &[Source],
-        t: &mut impl Tracer<Step>,
-    ) -> Output {
+        t: &mut impl Tracer<Step<P>>,
+    ) -> Output<P> {
         let shapes = self.shapes(rings, noding);
         let mut origins = Vec::new();
         if self.options.origins {
@@ -416,16 +472,16 @@ impl Job<'_> {
     }
 
     #[inline(never)]
-    fn shapes<C: Coord>(&self, rings: &Rings, noding: &Noding<C>) -> Shapes {
+    fn shapes<C: Coord>(&self, rings: &Rings, noding: &Noding<C>) -> Shapes<P> {
         /// How many rings one task handles.
         const TASK: usize = if cfg!(test) { 2 } else { 1 << 12 };
         let ends = parallel::ends(rings.order.iter().map(|&ring| rings.ring(ring).len()));
-        let mut points = vec![DVec2::ZERO; ends.last().copied().unwrap_or(0) as usize];
+        let mut points = vec![P::default(); ends.last().copied().unwrap_or(0) as usize];
         let tasks: Vec<&[u32]> = rings.order.chunks(TASK).collect();
         let task_ends: Vec<u32> =
             ends.chunks(TASK).filter_map(|some| some.last().copied()).collect();
         let tasks = parallel::cut(&mut points, &task_ends).into_iter().zip(tasks).collect();
-        parallel::map(tasks, |(points, order): (&mut [DVec2], &[u32])| {
+        parallel::map(tasks, |(points, order): (&mut [P], &[u32])| {
             let nodes = order.iter().flat_map(|&ring| rings.ring(ring));
             for (point, &node) in points.iter_mut().zip(nodes) {
                 *point = self.lattice.unsnap(noding.nodes[node as usize]);

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::grid::order_by_squares;
-use super::lattice::{Coord, Lattice, Segment};
+use super::lattice::{Coord, GridMap, Segment};
 use super::parallel;
 use super::{Operand, Source};
-use crate::clip::polygon::Shapes;
+use crate::clip::polygon::{Shapes, Vertex};
 use crate::math::{DVec2, Rect};
 
 /// How many points one task handles: large enough to hide the cost of a task.
@@ -37,10 +37,11 @@ pub struct Outlines {
 impl Outlines {
     /// The rings that `matters` accepts, those that start close together one after the other, so
     /// that all that follows finds its data in the cache.
-    pub fn new(
-        inputs: [(&Shapes, Operand); 2],
+    pub fn new<P: Vertex>(
+        inputs: [(&Shapes<P>, Operand); 2],
+        lattice: &P::Lattice,
         bounds: Rect,
-        matters: impl Fn(Operand, &[DVec2]) -> bool,
+        matters: impl Fn(Operand, &[P]) -> bool,
     ) -> Self {
         let mut rings = Vec::new();
         let mut starts = Vec::new();
@@ -51,7 +52,7 @@ impl Outlines {
                 let Some(&first) = ring.first() else { continue };
                 if matters(operand, ring) {
                     rings.push(Outline { operand, points });
-                    starts.push(first);
+                    starts.push(lattice.place(first));
                 }
             }
         }
@@ -64,10 +65,10 @@ impl Outlines {
 
     /// One segment for each point, that to the next point of its ring, which may be the same one.
     #[inline(never)]
-    pub fn segments<C: Coord>(
+    pub fn segments<P: Vertex, C: Coord>(
         &self,
-        inputs: [&Shapes; 2],
-        lattice: &Lattice,
+        inputs: [&Shapes<P>; 2],
+        lattice: &P::Lattice,
     ) -> (Vec<Segment<C>>, Vec<Source>) {
         let count = self.ends.last().copied().unwrap_or(0) as usize;
         let mut segments = vec![Segment::default(); count];
@@ -81,10 +82,10 @@ impl Outlines {
     }
 
     /// The edges from index `start` on.
-    fn fill<C: Coord>(
+    fn fill<P: Vertex, C: Coord>(
         &self,
-        inputs: [&Shapes; 2],
-        lattice: &Lattice,
+        inputs: [&Shapes<P>; 2],
+        lattice: &P::Lattice,
         start: usize,
         segments: &mut [Segment<C>],
         sources: &mut [Source],

@@ -86,6 +86,21 @@ pub fn clip_lines(
     Ok(out)
 }
 
+/// How many points from the first on lie beyond one and the same of some borders.
+fn run_beyond(window: &Rect, borders: Outcode, points: &[DVec2]) -> usize {
+    let (min, max) = (window.min(), window.max());
+    let back = if borders.contains(Outcode::LEFT) {
+        points.iter().position(|p| p.x >= min.x)
+    } else if borders.contains(Outcode::RIGHT) {
+        points.iter().position(|p| p.x <= max.x)
+    } else if borders.contains(Outcode::BOTTOM) {
+        points.iter().position(|p| p.y >= min.y)
+    } else {
+        points.iter().position(|p| p.y <= max.y)
+    };
+    back.unwrap_or(points.len())
+}
+
 fn cut(
     window: &Rect,
     part: &[DVec2],
@@ -118,9 +133,15 @@ fn cut(
         let (k, a, b) = (next - 1, part[next - 1], part[next]);
         next += 1;
         let after = code(b);
-        let apart = !(before & after).is_inside();
+        let shared = before & after;
         before = after;
-        if apart {
+        if !shared.is_inside() {
+            // The whole run of points beyond that border at once.
+            let run = run_beyond(window, shared, &part[next..]);
+            if run > 0 {
+                next += run;
+                before = code(part[next - 1]);
+            }
             continue;
         }
         let mut push = |point: DVec2| {

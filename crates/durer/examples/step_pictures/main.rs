@@ -1,0 +1,26 @@
+//! The pictures of docs/algorithms for two dimensions, curves and lines: each panel a step, or some
+//! steps, as a listener was told them.
+//!
+//! `cargo run --example step_pictures -- docs/algorithms`
+
+mod curves;
+mod hidden;
+mod lines;
+mod pixels;
+mod polygons;
+#[path = "../algorithm_pictures/scene.rs"]
+mod scene;
+mod sketch;
+
+type Picture = (&'static str, durer::Result<String>);
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
+    let pictures: [&[fn() -> Picture]; 5] =
+        [lines::ALL, polygons::ALL, pixels::ALL, curves::ALL, hidden::ALL];
+    for picture in pictures.into_iter().flatten() {
+        let (name, svg) = picture();
+        std::fs::write(format!("{folder}/{name}.svg"), svg?)?;
+    }
+    Ok(())
+}

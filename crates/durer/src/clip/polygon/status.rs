@@ -1,0 +1,140 @@
+//! The edges that a sweep line cuts, from below to above, in a balanced tree.
+//!
+//! A treap (C. R. Aragon, R. G. Seidel, *Randomized search trees*, 1989) whose priorities are hashes
+//! of the edges' numbers, so that it is the same for the same input.
+
+use super::Vertex;
+use crate::math::Orientation;
+
+/// An edge of a ring, from its smaller to its larger point.
+#[derive(Debug, Clone, Copy)]
+pub struct Edge<P> {
+    pub a: P,
+    pub b: P,
+    pub ring: usize,
+}
+
+impl<P: Vertex> Edge<P> {
+    /// Whether it passes above another one, where one line of the sweep cuts both and they do not
+    /// cross; upright edges count as leaning to the right.
+    pub fn is_above(&self, other: &Self) -> bool {
+        let side = |of: &Self, from: &Self| match P::turn(from.a, from.b, of.a) {
+            Orientation::Collinear => P::turn(from.a, from.b, of.b),
+            side => side,
+        };
+        if self.a.order(other.a).is_lt() {
+            side(other, self) == Orientation::Clockwise
+        } else {
+            side(self, other) == Orientation::CounterClockwise
+        }
+    }
+}
+
+const NONE: usize = usize::MAX;
+
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    parent: usize,
+    /// The next ones below and above.
+    children: [usize; 2],
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct Status {
+    /// One for each edge, on the sweep line or not.
+    nodes: Vec<Node>,
+    root: usize,
+}
+
+impl Status {
+    /// For so many edges, none of them on the line.
+    pub fn new(edges: usize) -> Self {
+        Self { nodes: vec![Node { parent: NONE, children: [NONE; 2] }; edges], root: NONE }
+    }
+
+    /// Takes an edge that is not on the line.
+    pub fn insert<P: Vertex>(&mut self, edges: &[Edge<P>], edge: usize) {
+        let (mut parent, mut side, mut at) = (NONE, 0, self.root);
+        while at != NONE {
+            (parent, side) = (at, usize::from(edges[edge].is_above(&edges[at])));
+            at = self.nodes[at].children[side];
+        }
+        self.nodes[edge] = Node { parent, children: [NONE; 2] };
+        match self.nodes.get_mut(parent) {
+            Some(node) => node.children[side] = edge,
+            None => self.root = edge,
+        }
+        while let parent @ 0..NONE = self.nodes[edge].parent {
+            if priority(parent) >= priority(edge) {
+                break;
+            }
+            self.rise(edge);
+        }
+    }
+
+    /// Removes an edge that is on the line.
+    pub fn remove(&mut self, edge: usize) {
+        loop {
+            let child = match self.nodes[edge].children {
+                [NONE, NONE] => break,
+                [child, NONE] | [NONE, child] => child,
+                [low, high] if priority(low) > priority(high) => low,
+                [_, high] => high,
+            };
+            self.rise(child);
+        }
+        self.replace(self.nodes[edge].parent, edge, NONE);
+    }
+
+    /// The edge next below one that is on the line.
+    pub fn below(&self, edge: usize) -> Option<usize> {
+        let mut at = self.nodes[edge].children[0];
+        if at != NONE {
+            while self.nodes[at].children[1] != NONE {
+                at = self.nodes[at].children[1];
+            }
+            return Some(at);
+        }
+        at = edge;
+        loop {
+            let parent = self.nodes[at].parent;
+            let node = self.nodes.get(parent)?;
+            if node.children[1] == at {
+                return Some(parent);
+            }
+            at = parent;
+        }
+    }
+
+    /// Exchanges an edge with its parent, so that their order stays.
+    fn rise(&mut self, edge: usize) {
+        let parent = self.nodes[edge].parent;
+        let side = usize::from(self.nodes[parent].children[1] == edge);
+        let inner = self.nodes[edge].children[1 - side];
+        let above = self.nodes[parent].parent;
+        self.nodes[parent].children[side] = inner;
+        if let Some(node) = self.nodes.get_mut(inner) {
+            node.parent = parent;
+        }
+        self.nodes[edge].children[1 - side] = parent;
+        self.nodes[parent].parent = edge;
+        self.nodes[edge].parent = above;
+        self.replace(above, parent, edge);
+    }
+
+    fn replace(&mut self, parent: usize, old: usize, new: usize) {
+        match self.nodes.get_mut(parent) {
+            Some(node) => node.children[usize::from(node.children[1] == old)] = new,
+            None => self.root = new,
+        }
+    }
+}
+
+/// Bits that look random (S. Vigna's finalizer of splitmix64).
+fn priority(edge: usize) -> u64 {
+    let mut z = (edge as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
