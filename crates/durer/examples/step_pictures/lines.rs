@@ -64,7 +64,7 @@ fn outcodes() -> durer::Result<String> {
                     panel.text(p(x, y), (0.0, 0.0), &bits(Outcode::of_point_2d(&window, p(x, y))));
                 }
                 format!(
-                    "codes {} and {}: AND is 0, OR is not,\nso neither rejected nor accepted",
+                    "codes {} and {}: AND is 0,\nOR is not: neither refused nor accepted",
                     bits(start),
                     bits(end)
                 )
@@ -76,11 +76,7 @@ fn outcodes() -> durer::Result<String> {
                 };
                 panel.dot(point, "#d1495b");
                 let which = if end == End::Start { "first" } else { "second" };
-                format!(
-                    "the {which} end moves to the {} border;\nits code is now {}",
-                    border(at),
-                    bits(code)
-                )
+                format!("the {which} end moves to\nthe {} border: code {}", border(at), bits(code))
             }
             cohen_sutherland::Step::Accepted => "OR is 0: accepted".into(),
             cohen_sutherland::Step::Rejected => "AND is not 0: rejected".into(),

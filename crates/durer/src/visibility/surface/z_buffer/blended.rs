@@ -67,17 +67,15 @@ impl Fragments {
             *slot += 1;
         }
         std::mem::swap(&mut self.list, &mut self.by_pixel);
-        // The samples of one item at one pixel become one fragment.
-        if self.offsets.len() > 1 {
-            self.list.dedup_by(|next, kept| {
-                let same = (next.pixel, next.item) == (kept.pixel, kept.item);
-                if same {
-                    kept.samples |= next.samples;
-                    kept.depth = kept.depth.min(next.depth);
-                }
-                same
-            });
-        }
+        // The samples of one item at one pixel, and what its pieces share, become one fragment.
+        self.list.dedup_by(|next, kept| {
+            let same = (next.pixel, next.item) == (kept.pixel, kept.item);
+            if same {
+                kept.samples |= next.samples;
+                kept.depth = kept.depth.min(next.depth);
+            }
+            same
+        });
         for of_pixel in self.list.chunk_by_mut(|a, b| a.pixel == b.pixel) {
             of_pixel.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(b.item.cmp(&a.item)));
         }
