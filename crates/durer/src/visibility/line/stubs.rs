@@ -289,7 +289,8 @@ impl<'a> Lines<'a> {
         };
         let heading = |t: &Tip| t.at.minus(t.from).map(|d| d as f64 / t.at.distance(t.from));
         let ([ax, ay], [bx, by]) = (heading(a), heading(b));
-        let past = !far && ax * bx + ay * by < -HEAD_ON;
+        let long = a.length.min(b.length) > self.length;
+        let past = long && !far && ax * bx + ay * by < -HEAD_ON;
         let meet = gap <= self.length * MEETS;
         let on = meet || past || (ahead(a, 1.0) && ahead(b, -1.0));
         same && a.end / 2 != b.end / 2 && a.at != b.at && on
@@ -385,6 +386,10 @@ mod tests {
         // Side by side, both from the left, they are two.
         let beside = vec![pieces[0], smooth([1000, 60_000], [498_000, 1500])];
         assert_eq!(chains_of(&without_stubs(beside, 10_000.0, 10.0)), 2);
+        // What is short is no line that goes on.
+        let short = piece([507_000, 1900], [498_000, 1500], false);
+        let sharp = vec![piece([0, 0], [500_000, 0], false), short];
+        assert_eq!(chains_of(&without_stubs(sharp, 10_000.0, 10.0)), 2);
     }
 
     fn chains_of(pieces: &[Piece]) -> usize {
