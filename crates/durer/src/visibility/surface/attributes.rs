@@ -196,8 +196,8 @@ pub struct Triangles<'a> {
     cache: Box<[VisibleTriangle; CACHE]>,
 }
 
-/// Triangles kept: a power of two; about 64 kB.
-const CACHE: usize = 256;
+/// Triangles kept: a power of two; about 256 kB, as many as a row of a fine mesh shows.
+const CACHE: usize = 1024;
 
 impl<'a> Triangles<'a> {
     pub fn new(scene: &'a Scene, view: &'a View, runs: &'a [Run], level: Level) -> Self {
