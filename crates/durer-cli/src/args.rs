@@ -200,7 +200,7 @@ pub struct PictureArgs {
     /// Samples per pixel, where the algorithm takes several
     ///
     /// The A-buffer has masks of 16 sub-pixels, or of 64 for 64.
-    #[arg(long, value_name = "N", default_value = "4")]
+    #[arg(long, visible_alias = "samples", value_name = "N", default_value = "4")]
     pub aa: Samples,
     /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
     ///
