@@ -67,7 +67,8 @@ impl Fragments {
             *slot += 1;
         }
         std::mem::swap(&mut self.list, &mut self.by_pixel);
-        // The samples of one item at one pixel, and what its pieces share, become one fragment.
+        // The samples of one item at one pixel become one fragment. With one sample too there may be several
+        // entries, for the rasterizer may come to a pixel of a triangle twice.
         self.list.dedup_by(|next, kept| {
             let same = (next.pixel, next.item) == (kept.pixel, kept.item);
             if same {
