@@ -6,7 +6,10 @@ use durer::math::DVec2;
 use durer::raster::{line::wide::Stroke, paint::Canvas, paint::Color};
 use durer::target::Pixels;
 
-const SIZE: [u32; 2] = [560, 340];
+const SIZE: [u32; 2] = [580, 340];
+
+/// Where the upward axis stands.
+const LEFT: f64 = 72.0;
 
 const BLACK: Color = [20, 20, 30, 255];
 
@@ -38,20 +41,20 @@ impl Chart {
         let decades = (libm::ceil(most) - floor).max(1.0);
         let step = 300.0 / (axis.places.len().max(2) - 1) as f64;
         let mut chart = Self { canvas, curves: 0, floor, decade: 260.0 / decades, step };
-        let axes = [(50., 20.), (50., 290.), (380., 290.)];
+        let axes = [(LEFT, 20.), (LEFT, 290.), (LEFT + 330.0, 290.)];
         chart.line(&Path::polyline(axes.map(DVec2::from)), BLACK)?;
         for power in 0..=decades as i32 {
             let value = libm::exp10(floor + f64::from(power));
             let y = chart.up(value);
-            chart.line(&Path::polyline([DVec2::new(46.0, y), DVec2::new(50.0, y)]), BLACK)?;
+            chart.line(&Path::polyline([DVec2::new(LEFT - 4.0, y), DVec2::new(LEFT, y)]), BLACK)?;
             let text = format!("{value}");
-            chart.text(&text, DVec2::new(42.0 - 6.5 * text.len() as f64, y + 4.0), BLACK)?;
+            chart.text(&text, DVec2::new(LEFT - 7.0 - 8.2 * text.len() as f64, y + 4.0), BLACK)?;
         }
         for (i, place) in axis.places.iter().enumerate() {
-            let x = 60.0 + step * i as f64;
-            chart.text(place, DVec2::new(x - 3.0 * place.len() as f64, 306.0), BLACK)?;
+            let x = LEFT + 10.0 + step * i as f64;
+            chart.text(place, DVec2::new(x - 3.5 * place.len() as f64, 306.0), BLACK)?;
         }
-        chart.text(title, DVec2::new(50.0, 330.0), BLACK)?;
+        chart.text(title, DVec2::new(LEFT, 330.0), BLACK)?;
         Ok(chart)
     }
 
@@ -65,9 +68,10 @@ impl Chart {
         let k = self.curves;
         self.curves += 1;
         let ink = [(k * 97 % 200) as u8, (k * 151 % 180) as u8, (k * 61 % 220) as u8, 255];
-        let place = |(i, v): (usize, &f64)| DVec2::new(60.0 + self.step * i as f64, self.up(*v));
+        let place =
+            |(i, v): (usize, &f64)| DVec2::new(LEFT + 10.0 + self.step * i as f64, self.up(*v));
         self.line(&Path::polyline(values.iter().enumerate().map(place)), ink)?;
-        self.text(name, DVec2::new(395.0, 40.0 + 26.0 * k as f64), ink)
+        self.text(name, DVec2::new(LEFT + 345.0, 40.0 + 26.0 * k as f64), ink)
     }
 
     pub fn picture(&self) -> Result<Pixels<[u8; 4]>> {
