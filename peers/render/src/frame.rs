@@ -31,6 +31,8 @@ pub fn run(options: &Options) -> Result<()> {
     let mut remarks = Vec::new();
     for name in names {
         let mesh = mesh::named(name)?;
+        // Of a file the name alone: pictures are called after it.
+        let name = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
         for samples in [1, 4].into_iter().filter(|s| options.samples.is_none_or(|o| o == *s)) {
             let mut contest = Contest::new(name, &mesh, samples, temp.path())?;
             for _ in 0..options.rounds {

@@ -44,7 +44,9 @@ pub fn patches(map: &Planar, labels: &[u32]) -> Patches {
         let is_outer = map.doubled_area(walk(&next, first)) > 0;
         let corner = |half: &u32| corners[map.start(*half) as usize];
         let ring: Vec<u32> = walk(&next, first).filter(corner).collect();
-        if ring.len() < 3 {
+        // Slivers less than a grid step wide vanish, or turn over, with the vertices left out.
+        let turns = |doubled: i128| if is_outer { doubled > 0 } else { doubled < 0 };
+        if ring.len() < 3 || !turns(map.doubled_area(ring.iter().copied())) {
             continue;
         }
         let group = groups[map.face_of[first as usize] as usize] as usize;

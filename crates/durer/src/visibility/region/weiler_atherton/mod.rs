@@ -242,8 +242,7 @@ impl VisibleMap {
         let label = |shown: &Option<(DVec2, u32)>| shown.map_or(NOTHING, |s| rank(key(item(s.1))));
         let labels: Vec<u32> = self.shown.iter().map(label).collect();
         let patches = merge::patches(&self.map, &labels);
-        let regions = patches.list.iter().map(|patch| self.region(patch));
-        regions.filter(|region| region.area() > 0.0).collect()
+        patches.list.iter().map(|patch| self.region(patch)).collect()
     }
 
     fn region(&self, patch: &Patch) -> VisibleRegion {

@@ -92,14 +92,13 @@ impl Planar {
         next
     }
 
-    /// Twice the signed area of a closed walk, in squared grid steps; exact.
+    /// Twice the signed area of the ring through the starts of half-edges, as of a closed walk, in squared
+    /// grid steps; exact.
     pub fn doubled_area(&self, walk: impl Iterator<Item = u32>) -> i128 {
-        let mut origin = None;
-        walk.map(|half| {
-            let [a, b] = [self.start(half), self.start(half ^ 1)].map(|v| self.points[v as usize]);
-            i128::from(cross(*origin.get_or_insert(a), a, b))
-        })
-        .sum()
+        let mut starts = walk.map(|half| self.points[self.start(half) as usize]);
+        let Some(origin) = starts.next() else { return 0 };
+        let mut last = origin;
+        starts.map(|p| i128::from(cross(origin, std::mem::replace(&mut last, p), p))).sum()
     }
 
     fn find_faces(&mut self, graph: &Arrangement<i32>, search: &Search<i32>) {

@@ -137,7 +137,7 @@ impl<'a> Pool<'a> {
     /// Adds a triangle's fragments in pixels x0 … x1 − 1 of row y, where `passes` says that it is
     /// there; calls `added` with the column of each. Says whether there was room for all of them.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
+    #[expect(clippy::too_many_arguments, reason = "one call, all of it a row's state")]
     pub fn add<S: Simd>(
         &mut self,
         simd: S,
