@@ -118,9 +118,9 @@ fn batches_decide_like_one_by_one_where_a_corner_is_an_ulp_away() {
         let corner = a + (b - a) * random();
         let window = Rect::new(corner - p(0.0, 2.0), corner + p(2.0, 0.0)).expect("window");
         // As many as go through the lanes together.
-        let [x0, y0, x1, y1] = [a.x, a.y, b.x, b.y].map(|v| [v; 4]);
-        let four = Segments { x0: &x0, y0: &y0, x1: &x1, y1: &y1 };
-        batch::clip(&window, four, &batch::Options::default(), &mut clipped).expect("lengths");
+        let [x0, y0, x1, y1] = [a.x, a.y, b.x, b.y].map(|v| [v; 8]);
+        let eight = Segments { x0: &x0, y0: &y0, x1: &x1, y1: &y1 };
+        batch::clip(&window, eight, &batch::Options::default(), &mut clipped).expect("lengths");
         let clip = LineClipper::LiangBarsky.clip(&window, Segment::new(a, b)).expect("finite");
         let found = (clipped.is_accepted(2), clipped.x0[2], clipped.y0[2]);
         let expected = clip.map_or((false, a.x, a.y), |s| (true, s.start.x, s.start.y));

@@ -13,7 +13,7 @@ use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
-use fearless_simd::{Level, dispatch, f64x4, mask64x4, prelude::*};
+use fearless_simd::{Level, dispatch, prelude::*};
 use fearless_simd_macros::simd;
 
 /// The facts of clipping in batches.
@@ -252,13 +252,32 @@ fn range_kernel<S: Simd>(
     mut doubtful: impl FnMut(usize, u64, &mut u64, &mut [&mut [f64]; 4]),
 ) {
     let borders = Borders::new(simd, window);
+    let blocks = input.map(|a| a.as_chunks::<BLOCK>());
     for (block, word) in accepted.iter_mut().enumerate() {
-        let from = block * BLOCK;
-        let to = (from + BLOCK).min(input[0].len());
-        let part = input.map(|a| &a[from..to]);
-        let [x0, y0, x1, y1] = output;
-        let slots = [&mut x0[from..to], &mut y0[from..to], &mut x1[from..to], &mut y1[from..to]];
-        let (accept, doubt) = block_kernel(simd, &borders, part, slots);
+        let slots = output.each_mut().map(|a| a.as_chunks_mut::<BLOCK>());
+        let [x0, y0, x1, y1] = slots;
+        let (accept, doubt) = match (
+            x0.0.get_mut(block),
+            y0.0.get_mut(block),
+            x1.0.get_mut(block),
+            y1.0.get_mut(block),
+        ) {
+            (Some(x0), Some(y0), Some(x1), Some(y1)) => {
+                block_kernel(simd, &borders, blocks.map(|a| &a.0[block]), [x0, y0, x1, y1])
+            }
+            // The last segments of a batch, in a block that is filled up with points.
+            _ => {
+                let filled = blocks.map(|a| filled(a.1));
+                let mut clipped = [[0.0; BLOCK]; 4];
+                let [cx0, cy0, cx1, cy1] = &mut clipped;
+                let found = block_kernel(simd, &borders, filled.each_ref(), [cx0, cy0, cx1, cy1]);
+                for (to, from) in [x0.1, y0.1, x1.1, y1.1].into_iter().zip(&clipped) {
+                    to.copy_from_slice(&from[..to.len()]);
+                }
+                let real = (1 << blocks[0].1.len()) - 1;
+                (found.0 & real, found.1 & real)
+            }
+        };
         *word = accept;
         if doubt != 0 {
             doubtful(block, doubt, word, output);
@@ -266,64 +285,79 @@ fn range_kernel<S: Simd>(
     }
 }
 
-/// Clips up to 64 segments; the bits of those accepted and of those in doubt.
+/// The numbers, and zeros behind them.
+fn filled(some: &[f64]) -> [f64; BLOCK] {
+    let mut block = [0.0; BLOCK];
+    block[..some.len()].copy_from_slice(some);
+    block
+}
+
+/// Clips 64 segments; the bits of those accepted and of those in doubt.
 #[simd]
 fn block_kernel<S: Simd>(
     simd: S,
     borders: &Borders<S>,
-    input: [&[f64]; 4],
-    output: [&mut [f64]; 4],
+    [x0, y0, x1, y1]: [&[f64; BLOCK]; 4],
+    [out_x0, out_y0, out_x1, out_y1]: [&mut [f64; BLOCK]; 4],
 ) -> (u64, u64) {
-    let n = input[0].len();
     let (mut accept, mut doubt) = (0, 0);
-    let [out_x0, out_y0, out_x1, out_y1] = output;
-    let whole = n / 4 * 4;
-    for i in (0..whole).step_by(4) {
-        let lanes = input.map(|a| f64x4::from_slice(simd, &a[i..i + 4]));
-        let lanes = clip_lanes(simd, borders, lanes);
-        lanes.x[0].store_slice(&mut out_x0[i..i + 4]);
-        lanes.x[1].store_slice(&mut out_y0[i..i + 4]);
-        lanes.x[2].store_slice(&mut out_x1[i..i + 4]);
-        lanes.x[3].store_slice(&mut out_y1[i..i + 4]);
+    let at_once = size_of::<S::f64s>() / size_of::<f64>();
+    for i in (0..BLOCK).step_by(at_once) {
+        let part = i..i + at_once;
+        let (x0, y0) = (&x0[part.clone()], &y0[part.clone()]);
+        let (x1, y1) = (&x1[part.clone()], &y1[part.clone()]);
+        let start = [S::f64s::from_slice(simd, x0), S::f64s::from_slice(simd, y0)];
+        let end = [S::f64s::from_slice(simd, x1), S::f64s::from_slice(simd, y1)];
+        let lanes = clip_lanes(simd, borders, start, end);
+        lanes.x[0].store_slice(&mut out_x0[part.clone()]);
+        lanes.x[1].store_slice(&mut out_y0[part.clone()]);
+        lanes.x[2].store_slice(&mut out_x1[part.clone()]);
+        lanes.x[3].store_slice(&mut out_y1[part]);
         accept |= lanes.accept << i;
         doubt |= lanes.doubt << i;
     }
-    // The last segments of a batch, fewer than a vector holds, go the scalar way.
-    let tail = if n == whole { 0 } else { (u64::MAX >> (64 - (n - whole))) << whole };
-    (accept, doubt | tail)
+    (accept, doubt)
 }
 
 /// The window's borders in every lane.
 struct Borders<S: Simd> {
-    left: f64x4<S>,
-    right: f64x4<S>,
-    bottom: f64x4<S>,
-    top: f64x4<S>,
+    left: S::f64s,
+    right: S::f64s,
+    bottom: S::f64s,
+    top: S::f64s,
 }
 
 impl<S: Simd> Borders<S> {
     fn new(simd: S, window: &Rect) -> Self {
         // Adding zero turns −0 into 0, as in the scalar clippers.
-        let splat = |v: f64| f64x4::splat(simd, v + 0.0);
+        let splat = |v: f64| S::f64s::splat(simd, v + 0.0);
         let (min, max) = (window.min(), window.max());
         Self { left: splat(min.x), right: splat(max.x), bottom: splat(min.y), top: splat(max.y) }
     }
 }
 
-/// Four clipped segments.
+/// The clipped segments of a vector.
 struct Lanes<S: Simd> {
-    x: [f64x4<S>; 4],
+    x: [S::f64s; 4],
     accept: u64,
     doubt: u64,
 }
 
-/// Rounding errors, in halves of an ulp, that comparisons of products leave room for.
-const PRODUCT_DOUBT: f64 = 8.0 * crate::clip::exact::EPSILON;
-/// The same for the coordinates of cut points; what [`super::border`] uses.
+/// Between these, products of distances are as exact as rounding is.
+const LEAST_PRODUCT: f64 = 1e-280;
+/// See [`LEAST_PRODUCT`].
+const GREATEST_PRODUCT: f64 = 1e300;
+/// Rounding errors of the coordinates of cut points, in halves of an ulp, with what a wrong order of
+/// two borders adds; what [`super::border`] uses.
 const POINT_DOUBT: f64 = 16.0 * crate::clip::exact::EPSILON;
 
 #[simd]
-fn clip_lanes<S: Simd>(simd: S, w: &Borders<S>, [x0, y0, x1, y1]: [f64x4<S>; 4]) -> Lanes<S> {
+fn clip_lanes<S: Simd>(
+    simd: S,
+    w: &Borders<S>,
+    [x0, y0]: [S::f64s; 2],
+    [x1, y1]: [S::f64s; 2],
+) -> Lanes<S> {
     // Canonical direction: p is the lexicographically smaller end, so the segment goes right.
     let swap = x0.simd_gt(x1) | (x0.simd_eq(x1) & y0.simd_gt(y1));
     let (px, qx) = (swap.select(x1, x0), swap.select(x0, x1));
@@ -349,18 +383,17 @@ fn clip_lanes<S: Simd>(simd: S, w: &Borders<S>, [x0, y0, x1, y1]: [f64x4<S>; 4])
     // t of x borders against t of y borders, both multiplied by dx · |dy|.
     let (enter_tx, leave_tx) = (enter_x * rise, leave_x * rise);
     let (enter_ty, leave_ty) = (enter_y * dx, leave_y * dx);
-    let in_doubt = |a: f64x4<S>, b: f64x4<S>| {
-        let bound = (a + b) * PRODUCT_DOUBT + 1e-280;
-        !(a - b).abs().simd_gt(bound)
-    };
     let enters_by_x = p_out_x & (!p_out_y | enter_tx.simd_gt(enter_ty));
     let leaves_by_x = q_out_x & (!q_out_y | leave_tx.simd_lt(leave_ty));
     let (x_then_y, y_then_x) = (p_out_x & q_out_y, p_out_y & q_out_x);
     let misses = (x_then_y & enter_tx.simd_gt(leave_ty)) | (y_then_x & enter_ty.simd_gt(leave_tx));
-    let doubt_order = (p_out_x & p_out_y & in_doubt(enter_tx, enter_ty))
-        | (q_out_x & q_out_y & in_doubt(leave_tx, leave_ty))
-        | (x_then_y & in_doubt(enter_tx, leave_ty))
-        | (y_then_x & in_doubt(enter_ty, leave_tx));
+    // Rounding decides an order wrongly only where the parameters differ by 6 ulp halves of them. The
+    // cut is then as near to a corner, and in doubt for that; but not where products left the
+    // range in which rounding is relative.
+    let product = dx * rise;
+    let ordered = product.simd_gt(S::f64s::splat(simd, LEAST_PRODUCT))
+        & product.simd_lt(S::f64s::splat(simd, GREATEST_PRODUCT));
+    let doubt_order = !ordered & (p_out_x | q_out_x) & (p_out_y | q_out_y);
 
     // The two cut points; near a corner the scalar clipper has to say on which side they are.
     let line = Lines { p: [px, py], d: [dx, dy], size: [px.abs() + qx.abs(), py.abs() + qy.abs()] };
@@ -371,10 +404,10 @@ fn clip_lanes<S: Simd>(simd: S, w: &Borders<S>, [x0, y0, x1, y1]: [f64x4<S>; 4])
     let infinite = {
         // Differences are finite only if both numbers are.
         let zero = (dx + dy) * 0.0;
-        !zero.simd_eq(f64x4::splat(simd, 0.0))
+        !zero.simd_eq(S::f64s::splat(simd, 0.0))
     };
     let doubt_points = (p_out & entry.doubt) | (q_out & exit.doubt);
-    let doubt = infinite | (!beyond & (doubt_order | (doubt_points & !misses)));
+    let doubt = infinite | (!beyond & (doubt_order | doubt_points));
 
     // Ends that are inside, and segments that are rejected, keep their bits.
     let (cut_p, cut_q) = (p_out & !rejected, q_out & !rejected);
@@ -389,16 +422,16 @@ fn clip_lanes<S: Simd>(simd: S, w: &Borders<S>, [x0, y0, x1, y1]: [f64x4<S>; 4])
 
 /// Canonical segments: first end, difference of the ends, sum of the coordinates' sizes.
 struct Lines<S: Simd> {
-    p: [f64x4<S>; 2],
-    d: [f64x4<S>; 2],
-    size: [f64x4<S>; 2],
+    p: [S::f64s; 2],
+    d: [S::f64s; 2],
+    size: [S::f64s; 2],
 }
 
 /// A cut point in each lane, and whether it is too near a corner to be sure of it.
 struct CutLanes<S: Simd> {
-    x: f64x4<S>,
-    y: f64x4<S>,
-    doubt: mask64x4<S>,
+    x: S::f64s,
+    y: S::f64s,
+    doubt: S::mask64s,
 }
 
 impl<S: Simd> Lines<S> {
@@ -409,16 +442,17 @@ impl<S: Simd> Lines<S> {
         &self,
         _simd: S,
         w: &Borders<S>,
-        by_x: mask64x4<S>,
-        x: (f64x4<S>, f64x4<S>),
-        y: (f64x4<S>, f64x4<S>),
+        by_x: S::mask64s,
+        x: (S::f64s, S::f64s),
+        y: (S::f64s, S::f64s),
     ) -> CutLanes<S> {
         let t = by_x.select(x.0, y.0) / by_x.select(self.d[0], self.d[1]);
         let along = by_x.select(self.d[1], self.d[0]) * t;
         let other = by_x.select(self.p[1], self.p[0]) + along;
         let margin = by_x.select(self.size[1], self.size[0]) * POINT_DOUBT + 1e-290;
         let (min, max) = (by_x.select(w.bottom, w.left), by_x.select(w.top, w.right));
-        let doubt = !((other - min).simd_gt(margin) & (max - other).simd_gt(margin));
+        // Of a segment that misses the window, the cut lies beyond a border, but not near it either.
+        let doubt = !((other - min).abs().simd_gt(margin) & (max - other).abs().simd_gt(margin));
         CutLanes { x: by_x.select(x.1, other), y: by_x.select(other, y.1), doubt }
     }
 }

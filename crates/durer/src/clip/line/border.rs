@@ -153,7 +153,8 @@ impl<const N: usize> Canonical<N> {
     ///
     /// The coordinate on the axis is the border itself; the others are within 4 ulp of the largest
     /// coordinate, and on the side of each border of the window that the exact crossing is on.
-    #[inline]
+    // A call would pass the cut through memory, which costs as much as making it.
+    #[inline(always)]
     pub(super) fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Cut<N> {
         let border = window.borders[axis][upper];
         let length = self.q[axis] - self.p[axis];
