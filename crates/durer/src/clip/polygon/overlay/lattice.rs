@@ -236,31 +236,18 @@ impl<C: Coord> Segment<C> {
         Point { x: axis(self.a.x, self.b.x), y: axis(self.a.y, self.b.y) }
     }
 
-    /// Compares the heights of two segments at x = `doubled`/2, which both must span; exact.
+    /// Roughly how high the segment is at x = `doubled`/2, which it must span.
     #[inline]
-    pub fn compare_at(&self, other: &Self, doubled: i64) -> Ordering {
-        let (f, g) = (self.height_at(doubled), other.height_at(doubled));
-        let error = (self.b.y.f64() - self.a.y.f64()).abs()
-            + (other.b.y.f64() - other.a.y.f64()).abs()
-            + f.abs()
-            + g.abs()
-            + 1.0;
-        let error = error * (1.0 / (1u64 << 50) as f64);
-        if (f - g).abs() > error {
-            return if f < g { Ordering::Less } else { Ordering::Greater };
-        }
-        self.compare_exactly(other, doubled)
-    }
-
-    #[inline]
-    fn height_at(&self, doubled: i64) -> f64 {
+    pub fn height_at(&self, doubled: i64) -> Height {
         let (dx, dy) = (self.b.x.f64() - self.a.x.f64(), self.b.y.f64() - self.a.y.f64());
-        self.a.y.f64() + dy * ((doubled as f64 * 0.5 - self.a.x.f64()) / dx)
+        let near = self.a.y.f64() + dy * ((doubled as f64 * 0.5 - self.a.x.f64()) / dx);
+        let doubt = (dy.abs() + near.abs() + 0.5) * (1.0 / (1u64 << 50) as f64);
+        Height { near, doubt }
     }
 
     /// Both heights as fractions over twice the segment's width, multiplied out.
     #[cold]
-    fn compare_exactly(&self, other: &Self, doubled: i64) -> Ordering {
+    pub fn compare_exactly(&self, other: &Self, doubled: i64) -> Ordering {
         // Heights relative to one point, so that 2 · 2⁴¹ · 2⁴¹ · 2 · 2⁴¹ stays below 2¹²⁷.
         let base = i128::from(self.a.y.i64());
         let fraction = |s: &Self| {
@@ -271,6 +258,25 @@ impl<C: Coord> Segment<C> {
         };
         let ((n, d), (m, e)) = (fraction(self), fraction(other));
         (n * e).cmp(&(m * d))
+    }
+}
+
+/// A rounded height, and by how much it may be off.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Height {
+    near: f64,
+    doubt: f64,
+}
+
+impl Height {
+    /// The order of the true heights, where rounding leaves no doubt of it.
+    #[inline(always)]
+    pub fn compare(self, other: Self) -> Option<Ordering> {
+        if (self.near - other.near).abs() > self.doubt + other.doubt {
+            Some(if self.near < other.near { Ordering::Less } else { Ordering::Greater })
+        } else {
+            None
+        }
     }
 }
 
@@ -427,7 +433,7 @@ mod tests {
         let wide = segment::<i64>((-i64::LIMIT, -i64::LIMIT), (i64::LIMIT, i64::LIMIT - 1));
         let other = segment::<i64>((-i64::LIMIT, i64::LIMIT), (i64::LIMIT, -i64::LIMIT));
         assert_eq!(wide.crossing(&other), other.crossing(&wide));
-        assert_eq!(wide.compare_at(&other, 1), Ordering::Greater);
+        assert_eq!(wide.compare_exactly(&other, 1), Ordering::Greater);
         let half = segment::<i32>((0, 0), (1, 1)).crossing(&segment((0, 1), (1, 0)));
         assert_eq!(half, Some(Point::new(1, 1)), "ties go up and right");
     }
@@ -446,8 +452,10 @@ mod tests {
             let beside = heights.map(|y| y + random(2));
             let t = segment::<i64>((-far + random(3), beside[0]), (far - random(3), beside[1]));
             let doubled = 2 * random(far) - far;
-            assert_eq!(s.compare_at(&t, doubled), s.compare_exactly(&t, doubled));
-            assert_eq!(t.compare_at(&s, doubled), s.compare_at(&t, doubled).reverse());
+            let order = s.compare_exactly(&t, doubled);
+            assert_eq!(t.compare_exactly(&s, doubled), order.reverse());
+            let rounded = s.height_at(doubled).compare(t.height_at(doubled));
+            assert!(rounded.is_none_or(|rounded| rounded == order), "{s:?} {t:?}");
         }
     }
 

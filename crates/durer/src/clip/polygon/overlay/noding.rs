@@ -269,12 +269,14 @@ impl<C: Coord> Workbench<C> {
 
     #[inline(never)]
     fn crowd_hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
-        let (strips, segments) = (&self.strips, &self.segments);
-        let tasks = self.pixels.chunks(SEARCHES).zip((0..).step_by(SEARCHES));
-        let hits = parallel::map(tasks.collect(), |(pixels, start)| {
-            let mut hits = Vec::new();
-            for ((p, _), k) in pixels.iter().zip(start..) {
-                strips.hits(segments, *p, |i| hits.push((i, k)));
+        let (strips, segments, pixels) = (&self.strips, &self.segments, &self.pixels);
+        // In the order of the segments that end there, for those mostly follow one another.
+        let mut order: Vec<u32> = (0..pixels.len() as u32).collect();
+        order.sort_by_key(|&k| pixels[k as usize].1);
+        let hits = parallel::map(order.chunks(SEARCHES).collect(), |some: &[u32]| {
+            let (mut hits, mut finder) = (Vec::new(), strips.finder(segments));
+            for &k in some {
+                finder.hits(pixels[k as usize].0, |i| hits.push((i, k)));
             }
             hits
         });

@@ -4,14 +4,14 @@ pub use crate::parallel::map;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Sorts by an order that no two different items are equal in.
+/// Sorts by an order that no two different items are equal in; what is in runs costs little.
 pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
     #[cfg(feature = "parallel")]
     if crate::parallel::threads() > 1 {
         use rayon::prelude::*;
-        return list.par_sort_unstable_by(compare);
+        return list.par_sort_by(compare);
     }
-    list.sort_unstable_by(compare);
+    list.sort_by(compare);
 }
 
 /// Ranges of at most `size` that cover `0..count`.
