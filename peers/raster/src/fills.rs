@@ -34,6 +34,17 @@ fn durer(scene: &Scene, overlap: Overlap, anti_alias: bool, target: &mut Pixels<
     canvas.render(target).unwrap();
 }
 
+/// Durer's fill alone, so often, for a profile.
+pub fn alone(filter: &str, times: usize, anti_alias: bool) {
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for scene in all().iter().map(|make| make()).filter(|s| s.name.contains(filter)) {
+        let mut target = Pixels::new(scene.size, scene.size, [255; 4]);
+        for _ in 0..times {
+            one.install(|| durer(&scene, Overlap::Exact, anti_alias, &mut target));
+        }
+    }
+}
+
 fn bez(scene: &Scene) -> Vec<vello_cpu::kurbo::BezPath> {
     let path = |s: &scenes::Shape| {
         let mut p = vello_cpu::kurbo::BezPath::new();
