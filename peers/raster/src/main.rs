@@ -33,11 +33,13 @@ fn main() {
     match args.get(1).map(String::as_str) {
         Some("fill") => fills::anti_aliased(&filter),
         Some("aliased") => fills::aliased(&filter),
+        Some("profile") => fills::alone(&filter, 20, true),
+        Some("profile-aliased") => fills::alone(&filter, 20, false),
         Some("lines") => lines::aliased(),
         Some("hairlines") => lines::hairlines(),
         Some("flood") => lines::floods(),
         _ => eprintln!(
-            "usage: peers-raster fill [scene] | aliased [scene] | lines | hairlines | flood"
+            "usage: peers-raster fill [scene] | aliased [scene] | profile [scene] | profile-aliased [scene] | lines | hairlines | flood"
         ),
     }
 }

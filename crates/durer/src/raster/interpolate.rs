@@ -4,8 +4,33 @@
 //! Perspective-correct interpolation: James Blinn, *Hyperbolic Interpolation*, IEEE CG&A, 1992; Paul
 //! Heckbert and Henry Moreton, *Interpolation for Polygon Texture Mapping and Shading*, 1991.
 
+use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3};
 use std::ops::{Add, Mul};
+
+/// The facts of barycentric coordinates.
+pub const BARYCENTRIC: Info = Info {
+    name: "barycentric",
+    title: "Barycentric coordinates",
+    authors: "A. F. Möbius",
+    year: 1827,
+    source: "Der barycentrische Calcul",
+    class: Class::ObjectSpace,
+    cost: "O(1)",
+    limits: "triangles with an area",
+};
+
+/// The facts of perspective-correct interpolation.
+pub const INFO: Info = Info {
+    name: "perspective-correct",
+    title: "Perspective-correct interpolation",
+    authors: "P. S. Heckbert, H. P. Moreton",
+    year: 1991,
+    source: "Interpolation for polygon texture mapping and shading, in State of the Art in Computer Graphics",
+    class: Class::ImageSpace,
+    cost: "O(1), one division",
+    limits: "vertices before the eye",
+};
 
 /// Twice the signed area of a triangle by the short formula, in square units of its coordinates;
 /// positive where a, b, c turn to the left with y up.

@@ -6,8 +6,21 @@
 
 use crate::clip::outcode::DepthRange;
 use crate::clip::volume::planes_in_source;
+use crate::info::{Class, Info};
 use crate::math::{DMat4, DVec2, DVec3, Plane, Rect};
 use crate::scene::{Aabb, BoundingSphere};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "bounding-volumes",
+    title: "Culling by bounding volumes",
+    authors: "J. H. Clark",
+    year: 1976,
+    source: "Hierarchical geometric models for visible surface algorithms, Communications of the ACM 19(10)",
+    class: Class::ObjectSpace,
+    cost: "O(p) per box or sphere for p planes",
+    limits: "conservative: what lies outside near a corner can pass for crossing",
+};
 
 /// How a thing lies to a volume.
 ///

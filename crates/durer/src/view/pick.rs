@@ -8,11 +8,24 @@
 //! falls between them. Object space. Cost: O(triangles of the instances whose boxes are met).
 
 use crate::clip::volume::{ClipVertex, Options, clip_polygon};
+use crate::info::{Class, Info};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
 use crate::scene::{Aabb, Mesh, Scene, Topology};
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::view::cull::{Containment, ConvexVolume};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "pick",
+    title: "Picking in the view volume behind a rectangle or a point",
+    authors: "M. Olano, T. Greer",
+    year: 1997,
+    source: "Triangle scan conversion using 2D homogeneous coordinates, Graphics Hardware",
+    class: Class::ObjectSpace,
+    cost: "O(t): t triangles of the instances whose boxes are met",
+    limits: "triangles; what is transparent is met like all else",
+};
 
 /// A part of the screen, in pixels, x right and y down; pixel (0, 0) is the square from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -80,6 +80,23 @@ fn dependencies_run_in_the_order_of_the_modules() {
     }
 }
 
+/// What names its cost and can be called is an algorithm and has its facts.
+#[test]
+fn every_algorithm_has_its_facts() {
+    let (_, files) = library();
+    let mut found = 0;
+    for path in files {
+        let text = fs::read_to_string(&path).expect("source");
+        let header: String = text.lines().take_while(|l| l.starts_with("//!")).collect();
+        let called = text.lines().any(|l| l.starts_with("pub fn "));
+        if called && header.contains("Cost:") && !header.contains("The method is in") {
+            assert!(text.contains(": Info = Info {"), "{} has no INFO", path.display());
+            found += 1;
+        }
+    }
+    assert!(found > 25, "only {found} algorithms found");
+}
+
 /// Whoever lists algorithms finds all of them in one place, each with its facts.
 #[test]
 fn every_algorithm_is_in_the_catalogue() {

@@ -7,7 +7,7 @@ use super::FillRule;
 use super::cells::{Cells, Marks};
 use super::edge::{BITS, Edge, EdgeBuilder, ONE};
 use super::resolve::Resolver;
-use super::sweep::{Row, Sink, alpha, sweep};
+use super::sweep::{Rows, Sink, alpha, sweep};
 use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::raster::bands::{BAND_ROWS, BandIndex};
@@ -32,7 +32,8 @@ impl PathEdges {
     pub fn new(contours: &Contours, width: u32, height: u32) -> Self {
         let mut path = Self { rows: (i32::MAX, 0), columns: (i32::MAX, 0), ..Self::default() };
         path.edges.reserve(contours.points().len());
-        EdgeBuilder::new(&mut path.edges, width, height).contours(contours);
+        path.convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
+        EdgeBuilder::new(&mut path.edges, width, height).contours(contours, path.convex);
         for edge in &path.edges {
             let (first, last) = edge.rows();
             path.rows = (path.rows.0.min(first), path.rows.1.max(last));
@@ -40,7 +41,6 @@ impl PathEdges {
             path.columns.1 = path.columns.1.max(edge.x0.max(edge.x1));
         }
         path.columns = (path.columns.0 >> BITS, path.columns.1 >> BITS);
-        path.convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
         path.index = BandIndex::new(path.rows, path.edges.iter().map(Edge::rows));
         path
     }
@@ -117,7 +117,7 @@ impl BandFiller {
     /// The cells for a path, and what it touches of the band that starts at row `top`.
     fn choose(&mut self, path: &PathEdges, top: i32) -> (&mut Cells, &mut Resolver, Extent) {
         let rows = ((path.rows.0 - top).max(0), (path.rows.1 - top).min(BAND_ROWS));
-        let first = path.columns.0.max(0) as usize & !7;
+        let first = path.columns.0.max(0) as usize;
         // Edges also change the two cells after the last pixel they touch.
         let last = (path.columns.1.max(0) as usize + 2).min(self.width + 2);
         if last <= first + NARROW as usize {
@@ -165,11 +165,8 @@ impl BandFiller {
         let resolved = this.collect(path, top, exact && !path.convex);
         let width = this.width;
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
-        for row in rows.0..rows.1 {
-            let (cells, marks) = cells.row(row);
-            let resolver = resolved.then_some(&mut *resolver);
-            sweep(simd, cells, marks, Row { row, first, words, width, rule }, resolver, sink);
-        }
+        let resolver = resolved.then_some(resolver);
+        sweep(simd, cells, Rows { rows, first, words, width, rule }, resolver, sink);
     }
 
     /// Fills one face of a partition: calls `add(row of the band, pixel, area)` with the area of each
@@ -179,9 +176,10 @@ impl BandFiller {
         let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
         path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
         for row in rows.0..rows.1 {
-            let (cells, marks) = cells.row(row);
+            let (cells, marks) = cells.row(row, words);
             let mut sum = 0_i32;
-            for (x, cell) in (first + words.0 * 64..).zip(&mut cells[words.0 * 64..]) {
+            let start = first + words.0 * 64;
+            for (x, cell) in (start..).zip(&mut *cells) {
                 sum = sum.wrapping_add(std::mem::take(cell));
                 let area = sum.saturating_abs().min(ONE);
                 if area != 0 && x < width {
@@ -190,10 +188,10 @@ impl BandFiller {
             }
             // Right of the last cell the sum stays as it is.
             let area = sum.saturating_abs().min(ONE);
-            for x in first + cells.len()..if area == 0 { 0 } else { width } {
+            for x in start + cells.len()..if area == 0 { 0 } else { width } {
                 add(row, x, area);
             }
-            marks[words.0..words.1].fill(Marks::default());
+            marks.fill(Marks::default());
         }
     }
 }

@@ -56,11 +56,19 @@ impl Cells {
         }
     }
 
-    /// One row of the band: its cells and its marks, 64 cells to a mark.
-    pub fn row(&mut self, row: i32) -> (&mut [i32], &mut [Marks]) {
-        let start = row.clamp(0, BAND_ROWS - 1) as usize * self.words;
-        let cells = &mut self.cells[start * 64..(start + self.words) * 64];
-        (cells, &mut self.marks[start..start + self.words])
+    /// One row of the band, between two words: its cells and its marks, 64 cells to a mark.
+    #[inline(always)]
+    pub fn row(&mut self, row: i32, words: (usize, usize)) -> (&mut [i32], &mut [Marks]) {
+        let start = row as usize * self.words;
+        let (from, to) = (start + words.0, start + words.1.min(self.words));
+        let cells = self.cells.get_mut(from * 64..to * 64).unwrap_or_default();
+        (cells, self.marks.get_mut(from..to).unwrap_or_default())
+    }
+
+    /// All cells, 64 of them for each mark, all marks, row by row, and how many marks a row has.
+    #[inline(always)]
+    pub fn words(&mut self) -> (&mut [[i32; 64]], &mut [Marks], usize) {
+        (self.cells.as_chunks_mut::<64>().0, &mut self.marks, self.words)
     }
 
     /// The marks of one row of the band.
@@ -74,6 +82,10 @@ impl Cells {
     #[inline(always)]
     pub fn add<const SHARED: bool>(&mut self, edge: &Edge, top: i32) {
         let (first, last) = (edge.y0 >> BITS, edge.y1 >> BITS);
+        // Of paths with few edges all come by in each band.
+        if last < top || first >= top + BAND_ROWS {
+            return;
+        }
         // What the edge shares with its neighbour in the path at their common vertex does not count.
         let (upper, lower) = if SHARED { edge.chained() } else { (false, false) };
         if first == last {
@@ -137,20 +149,22 @@ impl Cells {
         let flip = (sign - 1) >> 1;
         let mut left = x + slope.min(0);
         let limit = i64::from(self.columns) << 32;
-        let mut base = from as usize * self.words;
+        let across = (across >> BITS) as u32;
+        let mut base = from as u32 * self.words as u32;
         for _ in from..to {
-            let l = left.clamp(0, limit);
+            let l = left.clamp(0, limit) as u64;
             let a = (l >> BITS) as u32 & 0xffff;
-            let column = (l >> 32) as usize;
-            let b = a + (across >> BITS) as u32;
+            let column = (l >> 32) as u32;
+            let b = a + across;
             let deltas = steep_deltas(a, b, |over| ((u64::from(over) * inverse) >> BITS) as u32);
-            if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
+            let at = base.wrapping_mul(64).wrapping_add(column) as usize;
+            if let Some(cells) = self.cells.get_mut(at..at + 3) {
                 for (cell, delta) in cells.iter_mut().zip(deltas) {
                     *cell = cell.wrapping_add((delta ^ flip) - flip);
                 }
             }
-            self.mark_two::<SHARED>(base, column, b > ONE as u32, 0);
-            base += self.words;
+            self.mark_two::<SHARED>(base as usize, column as usize, b > ONE as u32, 0);
+            base += self.words as u32;
             left += slope;
         }
     }

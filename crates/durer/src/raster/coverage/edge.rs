@@ -159,14 +159,15 @@ impl<'a> EdgeBuilder<'a> {
         Self { edges, width, height }
     }
 
-    /// Adds the contours, each closed; points that are not finite are left out.
-    pub fn contours(&mut self, contours: &Contours) {
+    /// Adds the contours, each closed; points that are not finite are left out. Nobody asks which joints of a
+    /// `convex` one are chained.
+    pub fn contours(&mut self, contours: &Contours, convex: bool) {
         for (points, _) in contours.iter() {
-            self.contour(points);
+            self.contour(points, convex);
         }
     }
 
-    fn contour(&mut self, points: &[DVec2]) {
+    fn contour(&mut self, points: &[DVec2], convex: bool) {
         let start = self.edges.len();
         let mut finite = points.iter().filter(|p| p.is_finite());
         let Some(first) = finite.next() else { return };
@@ -175,7 +176,9 @@ impl<'a> EdgeBuilder<'a> {
             self.line(from, *to);
             from = *to;
         }
-        chain(&mut self.edges[start..]);
+        if !convex {
+            chain(&mut self.edges[start..]);
+        }
     }
 
     fn line(&mut self, a: DVec2, b: DVec2) {
@@ -214,22 +217,32 @@ impl<'a> EdgeBuilder<'a> {
 /// depends neither on where the contour starts nor on which way it runs.
 fn chain(edges: &mut [Edge]) {
     let count = edges.len();
-    let is_joint = |edges: &[Edge], i: usize| {
-        edges[(i + count - 1) % count].course()[1] == edges[i % count].course()[0]
-    };
+    let is_joint = |before: &Edge, after: &Edge| before.course()[1] == after.course()[0];
     // Joint i is before edge i.
-    let begins = |i: &usize| !edges[*i].is_short() || !is_joint(edges, *i);
+    let begins = |i: &usize| {
+        let before = if *i == 0 { count - 1 } else { i - 1 };
+        !edges[*i].is_short() || !is_joint(&edges[before], &edges[*i])
+    };
     let Some(begin) = (0..count).find(begins).filter(|_| count > 1) else { return };
     let mut first = begin + 1;
+    let mut before = edges[begin];
     for i in begin + 1..=begin + count {
-        if !is_joint(edges, i) {
+        let after = edges[wrapped(i, count)];
+        if !is_joint(&before, &after) {
             chain_group(edges, first..i);
             first = i + 1;
-        } else if i == begin + count || !edges[i % count].is_short() {
+        } else if i == begin + count || !after.is_short() {
             chain_group(edges, first..i + 1);
             first = i + 1;
         }
+        before = after;
     }
+}
+
+/// The number of an edge counted on beyond the last of a contour, at most once around; no division.
+#[inline(always)]
+fn wrapped(i: usize, count: usize) -> usize {
+    if i >= count { i - count } else { i }
 }
 
 /// Chains a group of joints, counted on beyond the contour's closing one.
@@ -237,7 +250,7 @@ fn chain_group(edges: &mut [Edge], joints: Range<usize>) {
     let count = edges.len();
     let directions = || {
         let around = joints.start.saturating_sub(1)..joints.end;
-        around.fold(u8::MAX, |common, i| common & edges[i % count].directions())
+        around.fold(u8::MAX, |common, i| common & edges[wrapped(i, count)].directions())
     };
     if joints.is_empty() || (joints.len() > 1 && directions() == 0) {
         return;
@@ -249,7 +262,7 @@ fn chain_group(edges: &mut [Edge], joints: Range<usize>) {
         if wraps && joint <= count {
             edges[joint - 1].chain(false);
         } else {
-            edges[joint % count].chain(true);
+            edges[wrapped(joint, count)].chain(true);
         }
     }
 }

@@ -21,7 +21,7 @@ mod partition;
 mod resolve;
 pub(crate) mod sweep;
 
-pub use partition::{Face, fill_partition};
+pub use partition::{Face, INFO as PARTITION, fill_partition};
 
 use std::ops::Range;
 

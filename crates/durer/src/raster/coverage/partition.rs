@@ -1,11 +1,29 @@
 //! Faces that share edges, in one pass and without seams.
+//!
+//! E. Catmull's weights, *A hidden-surface algorithm with anti-aliasing* (SIGGRAPH 1978), with nothing hidden: in
+//! each pixel every face's colour counts as much as its area, and the sums are exact, for both faces of a
+//! shared edge get the same integers. Class: image space. Cost: O(c + p) per face, c pixels crossed by its edges and
+//! p covered. Limits: faces must not overlap; flat colours.
 
 use super::band::{BandFiller, PathEdges, coverage_of_area};
 use super::check_size;
 use crate::Result;
 use crate::curve::Contours;
+use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "partition",
+    title: "Faces summed to full coverage",
+    authors: "E. Catmull",
+    year: 1978,
+    source: "A hidden-surface algorithm with anti-aliasing, SIGGRAPH",
+    class: Class::ImageSpace,
+    cost: "O(c + p) per face: c pixels crossed by its edges, p pixels covered",
+    limits: "faces that do not overlap, of one colour each; sides up to 32,767 pixels",
+};
 
 /// One face of a partition: a simple polygon, perhaps with holes, of one colour.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,4 @@
-//! From cells to coverage: a running sum along each row, which clears the cells behind itself.
+//! From cells to coverage: a running sum along each row of a band, which clears the cells behind itself.
 
 use std::ops::Range;
 
@@ -7,25 +7,25 @@ use fearless_simd::{i32x8, u32x8};
 use fearless_simd_macros::simd;
 
 use super::FillRule;
-use super::cells::Marks;
+use super::cells::{Cells, Marks};
 use super::edge::ONE;
 use super::resolve::Resolver;
 
 /// What is done with the coverage of a row, from left to right.
 pub(crate) trait Sink<S: Simd> {
-    /// Eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them may lie
-    /// beyond it.
+    /// Eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them, or all, may
+    /// lie beyond it.
     fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>);
     /// Pixels that all have the same coverage 1 … 255.
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
 }
 
-/// Where in the band a row is, and how it is summed.
+/// Which part of a band is summed, and how.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Row {
-    /// Row of the band.
-    pub row: i32,
-    /// The pixel of the first cell, a multiple of 8.
+pub(crate) struct Rows {
+    /// Rows of the band, the last not included.
+    pub rows: (i32, i32),
+    /// The pixel of the first cell.
     pub first: usize,
     /// The words of marks that are concerned, the last not included.
     pub words: (usize, usize),
@@ -48,62 +48,67 @@ pub(crate) fn alpha(sum: i32, rule: FillRule) -> u8 {
     ((area * 255 + ONE / 2) >> 16) as u8
 }
 
-/// Sums one row and hands its coverage to the sink; shared pixels are looked up in `resolver`, if there is
+/// Sums rows and hands their coverage to the sink; shared pixels are looked up in `resolver`, if there is
 /// one. Cells and marks are zero afterwards.
 #[simd]
 pub(crate) fn sweep<S: Simd, K: Sink<S>>(
     simd: S,
-    cells: &mut [i32],
-    marks: &mut [Marks],
-    at: Row,
+    cells: &mut Cells,
+    at: Rows,
     mut resolver: Option<&mut Resolver>,
     sink: &mut K,
 ) {
-    let Row { row, first, words: (from, to), width, rule } = at;
-    let (mut carry, mut spill) = (0_i32, 0_u64);
-    let mut done = first + from * 64;
+    let Rows { rows, first, words: (from, to), width, rule } = at;
     let zero = i32x8::splat(simd, 0);
-    for word in from..to.min(marks.len()) {
-        let Marks { touched, shared } = std::mem::take(&mut marks[word]);
-        // An edge also changes the cell after the last pixel it touches.
-        let dirty = touched | (touched << 1) | spill;
-        spill = touched >> 63;
-        let mut bytes = nonzero_bytes(dirty);
-        while bytes != 0 {
-            let bit = bytes.trailing_zeros() & !7;
-            let group = word * 64 + bit as usize;
-            bytes &= bytes - 1;
-            let x = first + group;
-            if done < x {
-                constant(simd, sink, row, done..x.min(width), alpha(carry, rule));
+    let (cells, marks, words) = cells.words();
+    for row in rows.0..rows.1 {
+        let (mut carry, mut spill) = (0_i32, 0_u64);
+        let mut done = first + from * 64;
+        let mut base = done;
+        let start = row as usize * words;
+        for word in start + from..start + to.min(words) {
+            let (Some(marks), Some(cells)) = (marks.get_mut(word), cells.get_mut(word)) else {
+                break;
+            };
+            let Marks { touched, shared } = std::mem::take(marks);
+            // An edge also changes the cell after the last pixel it touches.
+            let dirty = touched | (touched << 1) | spill;
+            spill = touched >> 63;
+            let mut bytes = nonzero_bytes(dirty);
+            while bytes != 0 {
+                let group = bytes.trailing_zeros() as usize >> 3;
+                bytes &= bytes - 1;
+                let x = base + group * 8;
+                if done < x {
+                    constant(simd, sink, row, done..x.min(width), alpha(carry, rule));
+                }
+                done = x + 8;
+                let Some(cells) = cells.as_chunks_mut::<8>().0.get_mut(group) else { continue };
+                // Sum of eight by three shifted additions.
+                let v = i32x8::from_slice(simd, cells);
+                zero.store_slice(cells);
+                let v = v + zero.slide::<7>(v);
+                let v = v + zero.slide::<6>(v);
+                let v = v + zero.slide::<4>(v) + i32x8::splat(simd, carry);
+                carry = v[7];
+                let mut coverage = lanes(simd, v, rule);
+                if let Some(resolver) = &mut resolver
+                    && (shared >> (group * 8)) & 255 != 0
+                {
+                    let (mut sums, mut own) = ([0; 8], [0; 8]);
+                    v.store_slice(&mut sums);
+                    coverage.store_slice(&mut own);
+                    let word = word - start;
+                    resolver.eight((row, word), shared, group as u32 * 8, rule, &sums, &mut own);
+                    coverage = u32x8::from_slice(simd, &own);
+                }
+                sink.eight(simd, row, x, coverage);
             }
-            done = x + 8;
-            let Some(cells) = cells.get_mut(group..group + 8) else { continue };
-            // Sum of eight by three shifted additions.
-            let v = i32x8::from_slice(simd, cells);
-            zero.store_slice(cells);
-            let v = v + zero.slide::<7>(v);
-            let v = v + zero.slide::<6>(v);
-            let v = v + zero.slide::<4>(v) + i32x8::splat(simd, carry);
-            carry = v[7];
-            if x >= width {
-                continue;
-            }
-            let mut coverage = lanes(simd, v, rule);
-            if let Some(resolver) = &mut resolver
-                && (shared >> bit) & 255 != 0
-            {
-                let (mut sums, mut own) = ([0; 8], [0; 8]);
-                v.store_slice(&mut sums);
-                coverage.store_slice(&mut own);
-                resolver.eight((row, word), shared, bit, rule, &sums, &mut own);
-                coverage = u32x8::from_slice(simd, &own);
-            }
-            sink.eight(simd, row, x, coverage);
+            base += 64;
         }
-    }
-    if done < width {
-        constant(simd, sink, row, done..width, alpha(carry, rule));
+        if carry != 0 && done < width {
+            constant(simd, sink, row, done..width, alpha(carry, rule));
+        }
     }
 }
 
@@ -118,7 +123,9 @@ fn lanes<S: Simd>(simd: S, v: i32x8<S>, rule: FillRule) -> u32x8<S> {
             folded.min(one + one - folded)
         }
     };
-    ((area * 255 + i32x8::splat(simd, ONE / 2)) >> 16).bitcast()
+    // 255 times the area.
+    let area = (area << 8) - area;
+    ((area + i32x8::splat(simd, ONE / 2)) >> 16).bitcast()
 }
 
 /// The top bit of every byte that is not zero.

@@ -4,12 +4,25 @@
 //! their boxes touch, as in H. Fuchs et al., *Pixel-Planes 5*, SIGGRAPH 1989, then each tile's lines are drawn in
 //! their order onto a copy of the tile that stays in the cache. Class: image space. Cost: O(lines · tiles touched +
 //! pixels). A piece of a line is entered with the fraction it has there, so the pixels are
-//! [`super::bresenham`]'s, all of them.
+//! [`super::bresenham`]'s, all of them. Limits: as there.
 
 use super::{Course, Options, bresenham};
+use crate::info::{Class, Info};
 use crate::math::IVec2;
 use crate::target::Pixels;
 use crate::trace::NoTrace;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "tiled-lines",
+    title: "Lines tile by tile",
+    authors: "H. Fuchs, J. Poulton, J. Eyles, T. Greer, J. Goldfeather, D. Ellsworth, S. Molnar, G. Turk, B. Tebbs, L. Israel",
+    year: 1989,
+    source: "Pixel-Planes 5: A heterogeneous multiprocessor graphics system using processor-enhanced memories, SIGGRAPH",
+    class: Class::ImageSpace,
+    cost: "O(e + p): e tiles that the boxes of the lines touch, p pixels",
+    limits: "thin lines between pixels; slower than one by one where there are few",
+};
 
 /// Pixels of a tile's side, as a power of two: with four bytes a pixel 64 KiB, which the second-level cache holds,
 /// and most of it the first.

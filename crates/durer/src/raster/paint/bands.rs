@@ -244,13 +244,31 @@ impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8) {
         let start = row as usize * self.width;
         if coverage == 255 && self.color.is_opaque() {
-            if let Some(pixels) = self.pixels.get_mut(start + x.start..start + x.end) {
-                pixels.fill(self.color);
-            }
-            return;
+            let pixels = self.pixels.get_mut(start + x.start..start + x.end);
+            return fill(pixels.unwrap_or_default(), self.color);
         }
         for first in x.clone().step_by(8) {
             self.eight(simd, row, first, part_covered(simd, coverage, x.end - first));
+        }
+    }
+}
+
+/// Sets pixels, mostly few; those at the end perhaps twice.
+#[inline(always)]
+fn fill<P: Copy>(pixels: &mut [P], color: P) {
+    if let Some(last) = pixels.last_chunk_mut::<8>() {
+        *last = [color; 8];
+        for eight in pixels.as_chunks_mut::<8>().0 {
+            *eight = [color; 8];
+        }
+    } else if let Some(last) = pixels.last_chunk_mut::<4>() {
+        *last = [color; 4];
+        if let Some(first) = pixels.first_chunk_mut::<4>() {
+            *first = [color; 4];
+        }
+    } else {
+        for pixel in pixels {
+            *pixel = color;
         }
     }
 }
@@ -315,7 +333,7 @@ fn whole_eight<P>(pixels: &mut [P], first: usize, end: usize) -> Option<&mut [P;
     if first + 8 > end {
         return None;
     }
-    pixels.get_mut(first..)?.first_chunk_mut()
+    pixels.get_mut(first..first + 8)?.first_chunk_mut()
 }
 
 /// The pixels from `first` to before `end`, and clear ones.

@@ -151,17 +151,14 @@ impl<P: Space> Source<P> {
         Self::Ramp(Box::new(Ramp { shape: g.shape, paint_from_pixel, spread: g.spread, colors }))
     }
 
-    /// The colours of the pixels of row `y` from column `x` on.
-    pub fn row(&self, x: usize, y: usize, out: &mut [P]) {
-        let center = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+    /// The colours of the eight pixels of row `y` from column `x` on.
+    pub fn row(&self, x: usize, y: usize, out: &mut [P; 8]) {
         match self {
             Self::Solid(color) => out.fill(*color),
             Self::Ramp(ramp) => {
                 let Ramp { shape, paint_from_pixel, spread, colors } = &**ramp;
-                let start = paint_from_pixel.transform_point2(center);
-                let step = paint_from_pixel.matrix2.x_axis;
-                for (i, pixel) in out.iter_mut().enumerate() {
-                    *pixel = match parameter(shape, start + step * i as f64) {
+                for (point, pixel) in centers(paint_from_pixel, x, y).zip(out) {
+                    *pixel = match parameter(shape, point) {
                         Some(t) => {
                             let place = spread_over(*spread, t) * (RAMP - 1) as f64 + 0.5;
                             colors.get(place as usize).copied().unwrap_or(P::CLEAR)
@@ -172,10 +169,8 @@ impl<P: Space> Source<P> {
             }
             Self::Image(image) => {
                 let Image { pattern, image_from_pixel, opacity } = &**image;
-                let start = image_from_pixel.transform_point2(center);
-                let step = image_from_pixel.matrix2.x_axis;
-                for (i, pixel) in out.iter_mut().enumerate() {
-                    *pixel = premultiply_f(texel(pattern, start + step * i as f64), *opacity);
+                for (point, pixel) in centers(image_from_pixel, x, y).zip(out) {
+                    *pixel = premultiply_f(texel(pattern, point), *opacity);
                 }
             }
         }
@@ -188,6 +183,16 @@ impl<P: Space> Source<P> {
             _ => None,
         }
     }
+}
+
+/// The centres of eight pixels of row `y` from column `x` on, mapped. Steps begin at every eighth column, so that where
+/// a pixel's centre comes to lie does not depend, in its last bits, on the pixels that are asked for with it.
+fn centers(map: &DAffine2, x: usize, y: usize) -> impl Iterator<Item = DVec2> {
+    let step = map.matrix2.x_axis;
+    let begin = x & !7;
+    let start = |x: usize| map.transform_point2(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+    let starts = [start(begin), start(begin + 8)];
+    (x..x + 8).map(move |x| starts[usize::from(x >= begin + 8)] + step * (x & 7) as f64)
 }
 
 fn inverse(map: DAffine2) -> Option<DAffine2> {

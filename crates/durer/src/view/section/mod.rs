@@ -11,9 +11,22 @@
 mod cap;
 mod cut;
 
+use crate::info::{Class, Info};
 use crate::math::{DMat4, DVec3, Plane, Vec3, Vec4};
 use crate::scene::{Material, Scene, ShadingModel, Topology};
 use crate::{Error, Result};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "section",
+    title: "Sections with caps",
+    authors: "I. E. Sutherland, G. W. Hodgman",
+    year: 1974,
+    source: "Reentrant polygon clipping, Communications of the ACM 17(1)",
+    class: Class::ObjectSpace,
+    cost: "O(n) for n triangles, O(c²) at worst for c new edges of a cap",
+    limits: "bodies that penetrate each other are capped each by itself",
+};
 
 /// How to cut.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,6 +12,7 @@ mod trap;
 pub mod weiler_atherton;
 
 pub use caps::draw_caps;
+pub use shadow::INFO as SHADOWS;
 
 use crate::Result;
 use crate::math::Rect;

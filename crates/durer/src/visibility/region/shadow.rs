@@ -11,12 +11,25 @@ use super::weiler_atherton::faces::{Face, Frame, float, nearest};
 use super::weiler_atherton::{self as visible, VisibleMap};
 use crate::Result;
 use crate::clip::volume::{self, ClipVertex, clip_segment};
+use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3, Plane};
 use crate::scene::{Camera, Projection, Scene};
 use crate::shade::PreparedLights;
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::setup::{Run, runs};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "shadow-polygons",
+    title: "Polygon shadow generation",
+    authors: "P. R. Atherton, K. Weiler, D. P. Greenberg",
+    year: 1978,
+    source: "Polygon shadow generation, SIGGRAPH",
+    class: Class::ObjectSpace,
+    cost: "one visible-region problem per light, six for a light among the faces",
+    limits: "hard shadows; 64 lights that cast them",
+};
 
 /// Lights that cast shadows; those beyond shine through everything.
 pub const MOST_LIGHTS: usize = 64;
