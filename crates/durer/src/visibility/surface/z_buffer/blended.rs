@@ -24,29 +24,97 @@ struct Fragment {
     samples: u32,
 }
 
-/// Collects the fragments of blended surfaces that nothing opaque hides.
+/// So many fragments are collected before those that nothing can come before are lit.
+const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
+
+/// Eight pixels of a row.
+const GROUPS: usize = TILE_PIXELS / 8;
+
+/// No layer.
+const NONE: u32 = u32::MAX;
+
+/// Collects the fragments of blended surfaces that nothing opaque hides, and lights them from near to
+/// far until nothing comes through.
+///
+/// Triangles come with the nearest first, so what is nearer than all of the next one can be lit; so there are
+/// few fragments at a time, and what is behind many layers is never looked at.
 pub struct Fragments {
     list: Vec<Fragment>,
     /// Room for sorting.
     by_pixel: Vec<Fragment>,
     offsets: &'static [[i32; 2]],
     tile: [i32; 2],
+    /// How much comes through what is lit, of each sample of each pixel.
+    through: Vec<f32>,
+    /// Pixels that next to nothing comes through of, and how many they are.
+    closed: Vec<bool>,
+    closed_count: usize,
+    layers: Vec<Layer>,
+    /// Of each eight pixels the farthest layer that is lit, and the pixels that have some, as bits.
+    farthest: Vec<(u32, u8)>,
+    /// When to light again.
+    limit: usize,
+}
+
+/// What is lit of eight pixels.
+struct Layer {
+    /// Premultiplied red, green, blue and alpha.
+    colors: [[f32; 8]; 4],
+    /// The samples that each covers.
+    samples: [u32; 8],
+    /// The next nearer layer.
+    nearer: u32,
 }
 
 impl Fragments {
     pub fn new(offsets: &'static [[i32; 2]]) -> Self {
-        Self { list: Vec::new(), by_pixel: Vec::new(), offsets, tile: [0; 2] }
+        Self {
+            list: Vec::new(),
+            by_pixel: Vec::new(),
+            offsets,
+            tile: [0; 2],
+            through: Vec::new(),
+            closed: Vec::new(),
+            closed_count: 0,
+            layers: Vec::new(),
+            farthest: Vec::new(),
+            limit: MANY,
+        }
     }
 
     /// Forgets all fragments and begins with another tile.
     pub fn clear(&mut self, tile: [i32; 2]) {
         self.list.clear();
+        self.layers.clear();
+        self.limit = MANY;
         self.tile = tile;
+    }
+
+    /// Begins to collect.
+    pub fn open(&mut self) {
+        let samples = TILE_PIXELS * self.offsets.len();
+        self.through.clear();
+        self.through.resize(samples, 1.0);
+        self.closed.clear();
+        self.closed.resize(TILE_PIXELS, false);
+        self.closed_count = 0;
+        self.farthest.clear();
+        self.farthest.resize(GROUPS, (NONE, 0));
     }
 
     /// Whether there are any.
     pub fn any(&self) -> bool {
-        !self.list.is_empty()
+        !(self.list.is_empty() && self.layers.is_empty())
+    }
+
+    /// Whether there are so many that those in front should be lit.
+    pub fn are_many(&self) -> bool {
+        self.list.len() >= self.limit
+    }
+
+    /// Whether nothing comes through at any pixel of a tile of this size.
+    pub fn hide_all(&self, size: [i32; 2]) -> bool {
+        self.closed_count >= (size[0] * size[1]) as usize
     }
 
     /// Brings the fragments of each pixel together, far ones first; of equally far ones the higher
@@ -86,6 +154,9 @@ impl Fragments {
 impl FragmentTest for Fragments {
     /// Takes note of the fragment and lets nothing be written.
     fn passes(&mut self, t: &ScreenTriangle, x: i32, y: i32, sample: usize) -> bool {
+        if self.closed[(y * TILE + x) as usize] {
+            return false;
+        }
         let origin = t.origin();
         let [ox, oy] = self.offsets[sample].map(|o| o as f32 / 256.0);
         let dx = (self.tile[0] + x - origin[0]) as f32 + ox;
@@ -100,7 +171,40 @@ impl FragmentTest for Fragments {
     }
 }
 
-/// Lays the fragments over what is behind them, eight pixels of a row at a time.
+/// Lights the fragments that are nearer than `bound`, which is no farther than any that is to come.
+#[simd]
+pub fn light_nearer<S: Simd>(
+    simd: S,
+    fragments: &mut Fragments,
+    bound: f32,
+    lit: &mut Lit<'_>,
+    size: [i32; 2],
+) {
+    fragments.sort();
+    let list = std::mem::take(&mut fragments.list);
+    for of_eight in list.chunk_by(|a, b| a.pixel / 8 == b.pixel / 8) {
+        let first = of_eight[0].pixel as usize / 8 * 8;
+        let (x, y) = (first as i32 % TILE, first as i32 / TILE);
+        if x >= size[0] || y >= size[1] {
+            continue;
+        }
+        let mut pixels: [&[Fragment]; 8] = [&[]; 8];
+        for of_pixel in of_eight.chunk_by(|a, b| a.pixel == b.pixel) {
+            let lane = of_pixel[0].pixel as usize - first;
+            if x + (lane as i32) < size[0] {
+                let farther = of_pixel.iter().take_while(|f| f.depth >= bound).count();
+                pixels[lane] = &of_pixel[farther..];
+            }
+        }
+        light_eight(simd, fragments, &pixels, first, lit);
+    }
+    fragments.list = list;
+    let Fragments { list, closed, .. } = fragments;
+    list.retain(|f| f.depth >= bound && !closed[f.pixel as usize]);
+    fragments.limit = list.len() * 2 + MANY;
+}
+
+/// Lays what is lit over what is behind it, eight pixels of a row at a time.
 #[simd]
 pub fn resolve_blended<S: Simd>(
     simd: S,
@@ -110,86 +214,88 @@ pub fn resolve_blended<S: Simd>(
     area: &Area<'_>,
     output: &mut Output<'_>,
 ) {
-    fragments.sort();
-    let mut layers = Vec::new();
-    for of_eight in fragments.list.chunk_by(|a, b| a.pixel / 8 == b.pixel / 8) {
-        let first = of_eight[0].pixel as usize / 8 * 8;
-        let (x, y) = (first as i32 % TILE, first as i32 / TILE);
-        if x >= area.size[0] || y >= area.size[1] {
+    light_nearer(simd, fragments, f32::INFINITY, lit, area.size);
+    for (group, &(farthest, touched)) in fragments.farthest.iter().enumerate() {
+        if touched == 0 {
             continue;
         }
-        let mut pixels: [&[Fragment]; 8] = [&[]; 8];
-        for of_pixel in of_eight.chunk_by(|a, b| a.pixel == b.pixel) {
-            let lane = of_pixel[0].pixel as usize - first;
-            if x + (lane as i32) < area.size[0] {
-                pixels[lane] = of_pixel;
-            }
-        }
+        let first = group * 8;
+        let (x, y) = (first as i32 % TILE, first as i32 / TILE);
         let at = [area.tile[0] + x, area.tile[1] + y];
-        let (mut colors, count) = behind_eight(simd, planes, first, &pixels, lit, area, at);
-        light_layers(simd, &pixels, count, lit, at, &mut layers);
-        let start = y as usize * output.stride + x as usize;
-        for (lane, fragments) in pixels.iter().enumerate().filter(|(_, f)| !f.is_empty()) {
-            let colors = &mut colors[lane][..count];
-            for (layer, fragment) in layers.iter().zip(fragments.iter().rev()).rev() {
-                let over = Vec4::from_array([0, 1, 2, 3].map(|c| layer[c][lane]));
-                for (i, under) in colors.iter_mut().enumerate() {
-                    if fragment.samples >> i & 1 == 1 {
+        let (mut colors, count) = behind_eight(simd, planes, first, touched, lit, area, at);
+        let mut next = farthest;
+        while let Some(layer) = fragments.layers.get(next as usize) {
+            for (lane, colors) in colors.iter_mut().enumerate() {
+                let over = Vec4::from_array([0, 1, 2, 3].map(|c| layer.colors[c][lane]));
+                for (i, under) in colors[..count].iter_mut().enumerate() {
+                    if layer.samples[lane] >> i & 1 == 1 {
                         *under = over + *under * (1.0 - over.w);
                     }
                 }
             }
-            output.color[start + lane] = encode(average(colors));
+            next = layer.nearer;
+        }
+        let start = y as usize * output.stride + x as usize;
+        for lane in (0..8).filter(|lane| touched >> lane & 1 == 1) {
+            output.color[start + lane] = encode(average(&colors[lane][..count]));
         }
     }
 }
 
-/// Premultiplied red, green, blue and alpha of a layer at eight pixels.
-type Layer = [[f32; 8]; 4];
-
-/// Lights the fragments of eight pixels, the nearest of each first: what next to nothing comes through of
-/// need not be lit, and is clear.
+/// Lights the fragments of eight pixels, the nearest of each first, until next to nothing comes through.
 #[inline(always)]
-fn light_layers<S: Simd>(
+fn light_eight<S: Simd>(
     simd: S,
+    fragments: &mut Fragments,
     pixels: &[&[Fragment]; 8],
-    count: usize,
+    first: usize,
     lit: &mut Lit<'_>,
-    [x, y]: [i32; 2],
-    layers: &mut Vec<Layer>,
 ) {
-    layers.clear();
-    let mut through = [[1.0; MOST_SAMPLES]; 8];
-    let mut open = [true; 8];
+    let count = fragments.offsets.len();
+    let at = [first as i32 % TILE, first as i32 / TILE];
+    let [x, y] = [0, 1].map(|k| fragments.tile[k] + at[k]);
     for number in 0.. {
         let (mut items, mut samples) = ([NO_ITEM; 8], [0; 8]);
+        let mut touched = 0;
         for lane in 0..8 {
             let nearest = pixels[lane].len().checked_sub(number + 1);
-            if let Some(fragment) = nearest.and_then(|i| pixels[lane].get(i)).filter(|_| open[lane])
-            {
+            let open = !fragments.closed[first + lane];
+            if let Some(fragment) = nearest.and_then(|i| pixels[lane].get(i)).filter(|_| open) {
                 (items[lane], samples[lane]) = (fragment.item, fragment.samples);
+                touched |= 1 << lane;
             }
         }
-        if items == [NO_ITEM; 8] {
+        if touched == 0 {
             break;
         }
-        let mut layer = [[0.0; 8]; 4];
-        Lit::colors_x8(simd, lit, &items, x, y, &mut layer);
-        let [r, g, b, a] = &mut layer;
+        let mut colors = [[0.0; 8]; 4];
+        Lit::colors_x8(simd, lit, &items, x, y, &mut colors);
+        let [r, g, b, a] = &mut colors;
         for lane in 0..8 {
             // What is not there may have been shaded as well.
             a[lane] = if items[lane] == NO_ITEM { 0.0 } else { a[lane] };
             r[lane] *= a[lane];
             g[lane] *= a[lane];
             b[lane] *= a[lane];
-            for (i, through) in through[lane][..count].iter_mut().enumerate() {
+            if items[lane] == NO_ITEM {
+                continue;
+            }
+            let start = (first + lane) * count;
+            let through = &mut fragments.through[start..start + count];
+            for (i, through) in through.iter_mut().enumerate() {
                 if samples[lane] >> i & 1 == 1 {
                     *through *= 1.0 - a[lane];
                 }
             }
-            open[lane] &= through[lane][..count].iter().any(|&through| through > LEAST_THROUGH);
+            if through.iter().all(|&through| through <= LEAST_THROUGH) {
+                fragments.closed[first + lane] = true;
+                fragments.closed_count += 1;
+            }
         }
-        layers.push(layer);
+        let (farthest, all_touched) = &mut fragments.farthest[first / 8];
+        let nearer = std::mem::replace(farthest, fragments.layers.len() as u32);
+        *all_touched |= touched;
+        fragments.layers.push(Layer { colors, samples, nearer });
     }
 }
 
@@ -200,7 +306,7 @@ fn behind_eight<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
     first: usize,
-    pixels: &[&[Fragment]; 8],
+    touched: u8,
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     [x, y]: [i32; 2],
@@ -209,7 +315,7 @@ fn behind_eight<S: Simd>(
     let mut colors = [[behind; MOST_SAMPLES]; 8];
     let mut shown = [[NO_ITEM; MOST_SAMPLES]; 8];
     let mut count = 0;
-    for lane in (0..8).filter(|&lane| !pixels[lane].is_empty()) {
+    for lane in (0..8).filter(|&lane| touched >> lane & 1 == 1) {
         (shown[lane], count) = sample_items(planes, first + lane);
     }
     for i in 0..count {

@@ -19,7 +19,7 @@ const BUCKETS: usize = 64;
 /// small, for the nearest layer hides most.
 const PARTS: [usize; 5] = [1, 4, 8, 12, 16];
 
-/// The opaque triangles of one tile.
+/// The triangles of one tile that are ordered.
 #[derive(Default)]
 pub struct FrontToBack<'a> {
     given: Vec<&'a ScreenTriangle>,
@@ -50,6 +50,16 @@ impl<'a> FrontToBack<'a> {
             from += part.len();
             part
         })
+    }
+
+    /// The blended triangles of a tile by the depth of their nearest vertex.
+    pub fn nearest_first(&mut self, bins: &'a [Bins], tile: u32) -> &[&'a ScreenTriangle] {
+        self.given.clear();
+        for bins in bins.iter().filter(|b| b.coverage == Coverage::Blended) {
+            self.given.extend(bins.of_tile(tile));
+        }
+        self.given.sort_by(|s, t| s.depth_min.total_cmp(&t.depth_min));
+        &self.given
     }
 
     /// A counting sort by the depth of the nearest vertex.

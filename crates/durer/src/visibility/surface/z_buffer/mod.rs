@@ -30,7 +30,7 @@ use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
-use blended::Fragments;
+use blended::{Fragments, light_nearer};
 use fearless_simd::dispatch;
 use front_to_back::FrontToBack;
 use rasterize::{AllPass, FragmentTest, rasterize};
@@ -163,6 +163,9 @@ fn bands(framebuffer: &mut Framebuffer) -> Vec<Band<'_>> {
         .collect()
 }
 
+/// After so many blended triangles it is asked whether anything comes through.
+const BLENDED_AT_ONCE: usize = 8;
+
 /// What all tiles share.
 struct Frame<'a> {
     view: &'a View,
@@ -257,6 +260,33 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// Rasterizes the tile's blended triangles, the nearest first, until nothing comes through.
+    fn rasterize_blended(
+        &self,
+        order: &mut FrontToBack<'a>,
+        fragments: &mut Fragments,
+        lit: &mut Lit<'a>,
+        planes: &mut [SamplePlane],
+        area: [[i32; 2]; 2],
+        index: u32,
+    ) {
+        let mut rest = order.nearest_first(self.bins, index);
+        if !rest.is_empty() {
+            fragments.open();
+        }
+        while !rest.is_empty() && !fragments.hide_all(area[1]) {
+            let (part, others) = rest.split_at(rest.len().min(BLENDED_AT_ONCE));
+            rest = others;
+            dispatch!(self.options.level, simd => {
+                let triangles = part.iter().copied();
+                rasterize(simd, planes, area, triangles, Some(&mut *fragments));
+                if let Some(next) = rest.first().filter(|_| fragments.are_many()) {
+                    light_nearer(simd, fragments, next.depth_min, lit, area[1]);
+                }
+            });
+        }
+    }
+
     /// The colours of a tile that shows nothing but the background.
     fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
         let background = background_rows(self.options.background, self.view.height());
@@ -281,7 +311,7 @@ impl<'a> Frame<'a> {
         let mut mask = MaskTest { lit, tile };
         self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
         fragments.clear(tile);
-        self.rasterize(Coverage::Blended, planes, area, index, Some(fragments));
+        self.rasterize_blended(order, fragments, lit, planes, area, index);
         let background = background_rows(self.options.background, self.view.height());
         let area = Area { tile, size, background: &background };
         let mut output = Output { color: &mut band.color[tile[0] as usize..], stride: band.width };
