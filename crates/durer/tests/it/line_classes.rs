@@ -121,3 +121,56 @@ fn walls_hide_from_an_eye_inside_too() {
     assert!(visible([1.6, 1.8]) > 0.1);
     assert_eq!(visible([2.2, 2.4]), 0.0);
 }
+
+/// The lines of a drawing of these triangles in any order, begun anywhere and turned any way.
+fn drawn_in_any_order(triangles: &[Triangle], view: &View) -> Drawing {
+    let drawing = drawn(&soup(triangles), view);
+    let count = triangles.len();
+    for shift in 0..6 {
+        let mut other: Vec<Triangle> =
+            (0..count).map(|i| triangles[(i * 5 + shift) % count]).collect();
+        for (i, t) in other.iter_mut().enumerate() {
+            t.rotate_left(i % 3);
+            if (i + shift) % 4 < shift {
+                t.swap(1, 2);
+            }
+        }
+        assert_eq!(drawn(&soup(&other), view).lines, drawing.lines, "shift {shift}");
+    }
+    drawing
+}
+
+#[test]
+fn a_band_with_one_side_has_no_tear() {
+    let band = |i: usize, side: f64| {
+        let u = i as f64 / 48.0 * std::f64::consts::TAU;
+        // At the end of the round the two sides change their places.
+        let (side, u) = if i == 48 { (-side, 0.0) } else { (side, u) };
+        let across = side * 0.6;
+        let r = 2.0 + across * (u / 2.0).cos();
+        DVec3::new(r * u.cos(), r * u.sin(), across * (u / 2.0).sin())
+    };
+    let quads = (0..48).flat_map(|i| {
+        let [a, b, c, d] = [band(i, -1.0), band(i + 1, -1.0), band(i + 1, 1.0), band(i, 1.0)];
+        [[a, b, c], [a, c, d]]
+    });
+    let triangles: Vec<Triangle> = quads.collect();
+    let view = view(DVec3::ZERO, DVec3::new(0.3, -1.0, 0.8), 8.0, false);
+    let drawing = drawn_in_any_order(&triangles, &view);
+    let classes: std::collections::BTreeSet<_> = drawing.lines.iter().map(|l| l.class).collect();
+    assert!(classes.iter().eq(&[LineClass::Silhouette, LineClass::Border]), "{classes:?}");
+}
+
+#[test]
+fn steps_are_outlines_whichever_side_is_the_front() {
+    // A step with its riser seen edge-on.
+    let [near, far] = [-1.0, 1.0].map(|y| {
+        [[-2.0, 0.0], [0.0, 0.0], [0.0, 1.0], [2.0, 1.0]]
+            .map(|[x, z]: [f64; 2]| DVec3::new(x, y, z))
+    });
+    let strip = |i: usize| [[near[i], near[i + 1], far[i + 1]], [near[i], far[i + 1], far[i]]];
+    let triangles: Vec<Triangle> = (0..3).flat_map(strip).collect();
+    let drawing = drawn_in_any_order(&triangles, &above());
+    assert!((length(&drawing, LineClass::Silhouette) - 2.0).abs() < 1e-6, "{:?}", drawing.lines);
+    assert_eq!(length(&drawing, LineClass::Crease), 0.0);
+}

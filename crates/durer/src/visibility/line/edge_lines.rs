@@ -131,14 +131,32 @@ impl Facing {
         self.turn[item as usize] > 0
     }
 
+    /// Whether one triangle of a pair shows another side than the other; what is seen edge-on shows none. Which
+    /// side of an open body is its front is arbitrary, so fronts and backs count alike.
+    fn differ(&self, pair: &Pair) -> bool {
+        let [a, b] = pair.items.map(|item| self.turn[item as usize]);
+        a != if pair.against { -b } else { b }
+    }
+
     fn thin(&self, item: u32) -> bool {
         self.normals[item as usize] == [0.0; 3]
     }
 
-    fn angle_cosine(&self, a: u32, b: u32) -> f32 {
-        let (a, b) = (self.normals[a as usize], self.normals[b as usize]);
-        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    fn angle_cosine(&self, pair: &Pair) -> f32 {
+        let [a, b] = pair.items.map(|item| self.normals[item as usize]);
+        let cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        if pair.against { -cosine } else { cosine }
     }
+}
+
+/// Two triangles at an edge.
+#[derive(Clone, Copy)]
+struct Pair {
+    ends: [u32; 2],
+    items: [u32; 2],
+    /// Whether they are turned against each other. A surface with one side only, as Möbius' band, has such edges
+    /// somewhere, however its triangles are turned; where is of no matter.
+    against: bool,
 }
 
 fn extent(faces: &Faces) -> f64 {
@@ -215,7 +233,7 @@ impl Rules<'_> {
             if let (Some(class), sharpness) = self.class(ends, sides) {
                 let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
                 let items = [item(0), item(1)];
-                let smooth = class == LineClass::Silhouette && !self.is_sharp(ends, items);
+                let smooth = class == LineClass::Silhouette && sharpness != Sharpness::Sharp;
                 lines.push(EdgeLine { ends, class, items, smooth, sharpness });
             }
         }
@@ -242,29 +260,28 @@ impl Rules<'_> {
         match sides {
             [_] => blunt(self.wanted(LineClass::Border).or_else(|| self.wire())),
             [a, b] => {
-                if self.faces.same_polygon(a.item(), b.item()) {
-                    let outline = self.divided && self.outlines(ends, a.item(), b.item());
-                    let silhouette = outline.then_some(LineClass::Silhouette);
-                    return blunt(silhouette.and_then(|c| self.wanted(c)));
-                }
                 let against = (a.forward() == b.forward())
                     ^ self.bodies.turned(a.item())
                     ^ self.bodies.turned(b.item());
-                if against {
-                    return blunt(self.wanted(LineClass::NonManifold).or_else(|| self.wire()));
+                let pair = Pair { ends, items: [a.item(), b.item()], against };
+                if self.faces.same_polygon(a.item(), b.item()) {
+                    let outline = self.divided && self.facing.differ(&self.stand_ins(pair));
+                    let silhouette = outline.then_some(LineClass::Silhouette);
+                    return blunt(silhouette.and_then(|c| self.wanted(c)));
                 }
-                self.class_of_two(ends, a.item(), b.item())
+                self.class_of_two(pair)
             }
             _ => blunt(self.wanted(LineClass::NonManifold).or_else(|| self.wire())),
         }
     }
 
     /// The same between two triangles of one surface.
-    fn class_of_two(&self, ends: [u32; 2], a: u32, b: u32) -> (Option<LineClass>, Sharpness) {
-        let (turns, sharpness) = self.turn(ends, a, b);
+    fn class_of_two(&self, pair: Pair) -> (Option<LineClass>, Sharpness) {
+        let (turns, sharpness) = self.turn(pair);
         let outline = turns.then_some(LineClass::Silhouette).and_then(|c| self.wanted(c));
         let crease =
             |least| (sharpness == least).then_some(LineClass::Crease).and_then(|c| self.wanted(c));
+        let [a, b] = pair.items;
         let differ = |m: &Vec<u32>| m[a as usize] != m[b as usize];
         let border = || {
             let differs = self.materials.as_ref().is_some_and(differ);
@@ -286,18 +303,13 @@ impl Rules<'_> {
         caps.any(|c| Some(c) != first)
     }
 
-    fn is_sharp(&self, ends: [u32; 2], [a, b]: [u32; 2]) -> bool {
-        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
-        self.facing.angle_cosine(a, b) < self.crease
-    }
-
-    /// Whether one of two triangles shows its front and one its back, and how sharp the edge is.
-    fn turn(&self, ends: [u32; 2], a: u32, b: u32) -> (bool, Sharpness) {
-        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
-        if a == b {
+    /// Whether two triangles show different sides, and how sharp the edge is.
+    fn turn(&self, pair: Pair) -> (bool, Sharpness) {
+        let pair = self.stand_ins(pair);
+        if pair.items[0] == pair.items[1] {
             return (false, Sharpness::Blunt);
         }
-        let cosine = self.facing.angle_cosine(a, b);
+        let cosine = self.facing.angle_cosine(&pair);
         let sharpness = if cosine < self.crease {
             Sharpness::Sharp
         } else if cosine < self.crease_end {
@@ -305,12 +317,11 @@ impl Rules<'_> {
         } else {
             Sharpness::Blunt
         };
-        (self.facing.front(a) != self.facing.front(b), sharpness)
+        (self.facing.differ(&pair), sharpness)
     }
 
-    fn outlines(&self, ends: [u32; 2], a: u32, b: u32) -> bool {
-        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
-        self.facing.front(a) != self.facing.front(b)
+    fn stand_ins(&self, pair: Pair) -> Pair {
+        Pair { items: pair.items.map(|item| self.stand_in(pair.ends, item)), ..pair }
     }
 
     /// The triangle itself, or for one that is too thin to be turned any way, the neighbour
