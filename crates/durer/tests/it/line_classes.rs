@@ -94,6 +94,38 @@ fn triangles_without_a_height_make_no_creases() {
 }
 
 #[test]
+fn slivers_that_rounding_turns_out_of_a_surface_make_no_lines() {
+    // The same, with coordinates of five digits: upright, turned over, leaning.
+    let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+        .map(|[x, y]: [f64; 2]| DVec3::new(x, y, 0.0));
+    let shown = |triangles: &[Triangle], tolerance: f64| {
+        let options = Options { tolerance, ..Options::default() };
+        let found = draw(&soup(triangles), &above(), &options, &mut NoTrace).expect("drawing");
+        [LineClass::Silhouette, LineClass::Crease].map(|c| length(&found, c)).iter().sum::<f64>()
+    };
+    let down = DVec3::new(-3e-5, 3e-5, -4e-5);
+    for m in [DVec3::new(0.0, 0.0, 5e-5), down, DVec3::new(3e-5, -3e-5, 5e-5)] {
+        let sheet: Vec<Triangle> = vec![[a, b, m], [b, c, m], [a, c, d], [a, m, c]];
+        assert_eq!(shown(&sheet, 5e-5), 0.0, "{m}");
+        // Below that tolerance they are as high as others.
+        assert!(shown(&sheet, 1e-6) > 2.7, "{m}");
+    }
+    // A step as low as that has a riser of two, and a ridge has faces that go on in nothing.
+    let [near, far] = [-1.0, 1.0].map(|y| {
+        [[-1.0, 0.0], [0.0, 0.0], [0.0, 5e-5], [1.0, 5e-5]]
+            .map(|[x, z]: [f64; 2]| DVec3::new(x, y, z))
+    });
+    let strip = |i: usize| [[near[i], near[i + 1], far[i + 1]], [near[i], far[i + 1], far[i]]];
+    let step: Vec<Triangle> = (0..3).flat_map(strip).collect();
+    assert!((shown(&step, 5e-5) - 2.0).abs() < 1e-4);
+    let [low, high] = [-1e-5, 1e-5].map(|x| DVec3::new(x, 1.0, 0.0));
+    let eaves = [DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1.0, 0.0, -1.0)];
+    let roof =
+        [[DVec3::NEG_Y, high, low], [DVec3::NEG_Y, low, eaves[0]], [high, DVec3::NEG_Y, eaves[1]]];
+    assert!(shown(&roof, 5e-5) > 1.9);
+}
+
+#[test]
 fn faces_that_share_or_touch_with_a_vertex_meet_beyond_it_too() {
     let plane =
         [DVec3::new(-2.0, -2.0, 0.0), DVec3::new(2.0, -2.0, 0.0), DVec3::new(0.0, 2.0, 0.0)];

@@ -1,8 +1,6 @@
 //! Which edges are lines: silhouettes, creases, borders and the like.
 
-use super::page::{Projected, orient};
-use super::smooth_silhouette::Whole;
-use crate::math::DVec3;
+use super::facing::{Facing, Pair};
 use crate::target::drawing::LineClass;
 use crate::visibility::object::{Bodies, Edges, Faces, Side};
 
@@ -83,111 +81,6 @@ pub(super) enum Sharpness {
     Weak,
     /// Enough for a crease.
     Sharp,
-}
-
-/// How faces are turned, for all that asks.
-pub(super) struct Facing {
-    /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
-    turn: Vec<i8>,
-    /// Unit normals after turning; zero where a triangle is too thin to have one.
-    normals: Vec<[f32; 3]>,
-}
-
-/// Triangles thinner than this part of the scene's extent have no normal: coordinates have 24 bits, so
-/// at 2⁻²⁰ it is uncertain by some degrees.
-const THIN: f64 = 1.0 / (1u64 << 20) as f64;
-
-/// A triangle on the grid lower than this many steps is seen edge-on.
-const EDGE_ON: f64 = 2.0;
-
-impl Facing {
-    /// Normals are those of the whole triangles.
-    pub fn new(faces: &Faces, bodies: &Bodies, projected: &Projected, whole: Whole<'_>) -> Self {
-        let thin = extent(faces) * THIN;
-        let mut found = Self { turn: vec![0; faces.len()], normals: vec![[0.0; 3]; faces.len()] };
-        for (item, t) in faces.triangles() {
-            let points = t.map(|v| faces.points()[v as usize]);
-            let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
-            let i = item as usize;
-            let of_whole = whole.corners(faces, item);
-            if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
-                found.normals[i] = (normal * sign).as_vec3().to_array();
-            }
-            found.turn[i] = match projected.corners(t) {
-                Some(c) => turned_on_grid(c.map(|c| c.at)),
-                None => {
-                    let n = (points[1] - points[0]).cross(points[2] - points[0]);
-                    let towards = -n.dot(projected.plane.sight_at(points[0]));
-                    if towards > 0.0 { 1 } else { -1 }
-                }
-            } * sign as i8;
-        }
-        found
-    }
-
-    /// Whether the front is seen.
-    #[inline]
-    pub fn front(&self, item: u32) -> bool {
-        self.turn[item as usize] > 0
-    }
-
-    /// Whether one triangle of a pair shows another side than the other; what is seen edge-on shows none. Which
-    /// side of an open body is its front is arbitrary, so fronts and backs count alike.
-    fn differ(&self, pair: &Pair) -> bool {
-        let [a, b] = pair.items.map(|item| self.turn[item as usize]);
-        a != if pair.against { -b } else { b }
-    }
-
-    fn thin(&self, item: u32) -> bool {
-        self.normals[item as usize] == [0.0; 3]
-    }
-
-    fn angle_cosine(&self, pair: &Pair) -> f32 {
-        let [a, b] = pair.items.map(|item| self.normals[item as usize]);
-        let cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        if pair.against { -cosine } else { cosine }
-    }
-}
-
-/// Two triangles at an edge.
-#[derive(Clone, Copy)]
-struct Pair {
-    ends: [u32; 2],
-    items: [u32; 2],
-    /// Whether they are turned against each other. A surface with one side only, as Möbius' band, has such edges
-    /// somewhere, however its triangles are turned; where is of no matter.
-    against: bool,
-}
-
-fn extent(faces: &Faces) -> f64 {
-    let bounds = crate::scene::Aabb::around(faces.points().iter().copied());
-    bounds.map_or(0.0, |b| b.size().max_element())
-}
-
-fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
-    let (u, v) = (b - a, c - a);
-    let n = u.cross(v);
-    let double_area = n.length();
-    let longest = u.length_squared().max(v.length_squared()).max((c - b).length_squared()).sqrt();
-    (double_area > longest * thin && double_area > 0.0 && double_area.is_finite())
-        .then(|| n / double_area)
-}
-
-/// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
-pub(super) fn turned_on_grid(c: [super::page::GridPoint; 3]) -> i8 {
-    let area = orient(c[0], c[1], c[2]) as f64;
-    let squared = |a: usize, b: usize| {
-        let [x, y] = c[a].minus(c[b]).map(|d| d as f64);
-        x * x + y * y
-    };
-    let longest = squared(0, 1).max(squared(1, 2)).max(squared(2, 0));
-    if area * area <= longest * (EDGE_ON * EDGE_ON) {
-        0
-    } else if area > 0.0 {
-        1
-    } else {
-        -1
-    }
 }
 
 /// What decides which edges are lines.

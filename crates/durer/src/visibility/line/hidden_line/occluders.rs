@@ -4,7 +4,7 @@
 //! line runs through; each list is in the order of the nearest depth, so that a line stops where
 //! nothing nearer comes.
 
-use super::super::edge_lines::{Facing, turned_on_grid};
+use super::super::facing::{Facing, turned_on_grid};
 use super::super::page::{GridPoint, Page, Projected, Vertex};
 use crate::visibility::object::{Bodies, Faces};
 
