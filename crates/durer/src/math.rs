@@ -135,6 +135,11 @@ impl Rect {
     }
 }
 
+/// An order of points: by x, then y, then z.
+pub(crate) fn by_coordinates(a: &DVec3, b: &DVec3) -> std::cmp::Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
+}
+
 /// `x` to the power `y` for `x ≥ 0`, the same bits on every machine.
 ///
 /// The platform's `powf` differs between C libraries; this one uses only IEEE basic operations.

@@ -94,6 +94,38 @@ fn triangles_without_a_height_make_no_creases() {
 }
 
 #[test]
+fn slivers_that_rounding_turns_out_of_a_surface_make_no_lines() {
+    // The same, with coordinates of five digits: upright, turned over, leaning.
+    let [a, b, c, d] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+        .map(|[x, y]: [f64; 2]| DVec3::new(x, y, 0.0));
+    let shown = |triangles: &[Triangle], tolerance: f64| {
+        let options = Options { tolerance, ..Options::default() };
+        let found = draw(&soup(triangles), &above(), &options, &mut NoTrace).expect("drawing");
+        [LineClass::Silhouette, LineClass::Crease].map(|c| length(&found, c)).iter().sum::<f64>()
+    };
+    let down = DVec3::new(-3e-5, 3e-5, -4e-5);
+    for m in [DVec3::new(0.0, 0.0, 5e-5), down, DVec3::new(3e-5, -3e-5, 5e-5)] {
+        let sheet: Vec<Triangle> = vec![[a, b, m], [b, c, m], [a, c, d], [a, m, c]];
+        assert_eq!(shown(&sheet, 5e-5), 0.0, "{m}");
+        // Below that tolerance they are as high as others.
+        assert!(shown(&sheet, 1e-6) > 2.7, "{m}");
+    }
+    // A step as low as that has a riser of two, and a ridge has faces that go on in nothing.
+    let [near, far] = [-1.0, 1.0].map(|y| {
+        [[-1.0, 0.0], [0.0, 0.0], [0.0, 5e-5], [1.0, 5e-5]]
+            .map(|[x, z]: [f64; 2]| DVec3::new(x, y, z))
+    });
+    let strip = |i: usize| [[near[i], near[i + 1], far[i + 1]], [near[i], far[i + 1], far[i]]];
+    let step: Vec<Triangle> = (0..3).flat_map(strip).collect();
+    assert!((shown(&step, 5e-5) - 2.0).abs() < 1e-4);
+    let [low, high] = [-1e-5, 1e-5].map(|x| DVec3::new(x, 1.0, 0.0));
+    let eaves = [DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1.0, 0.0, -1.0)];
+    let roof =
+        [[DVec3::NEG_Y, high, low], [DVec3::NEG_Y, low, eaves[0]], [high, DVec3::NEG_Y, eaves[1]]];
+    assert!(shown(&roof, 5e-5) > 1.9);
+}
+
+#[test]
 fn faces_that_share_or_touch_with_a_vertex_meet_beyond_it_too() {
     let plane =
         [DVec3::new(-2.0, -2.0, 0.0), DVec3::new(2.0, -2.0, 0.0), DVec3::new(0.0, 2.0, 0.0)];
@@ -120,4 +152,57 @@ fn walls_hide_from_an_eye_inside_too() {
     };
     assert!(visible([1.6, 1.8]) > 0.1);
     assert_eq!(visible([2.2, 2.4]), 0.0);
+}
+
+/// The lines of a drawing of these triangles in any order, begun anywhere and turned any way.
+fn drawn_in_any_order(triangles: &[Triangle], view: &View) -> Drawing {
+    let drawing = drawn(&soup(triangles), view);
+    let count = triangles.len();
+    for shift in 0..6 {
+        let mut other: Vec<Triangle> =
+            (0..count).map(|i| triangles[(i * 5 + shift) % count]).collect();
+        for (i, t) in other.iter_mut().enumerate() {
+            t.rotate_left(i % 3);
+            if (i + shift) % 4 < shift {
+                t.swap(1, 2);
+            }
+        }
+        assert_eq!(drawn(&soup(&other), view).lines, drawing.lines, "shift {shift}");
+    }
+    drawing
+}
+
+#[test]
+fn a_band_with_one_side_has_no_tear() {
+    let band = |i: usize, side: f64| {
+        let u = i as f64 / 48.0 * std::f64::consts::TAU;
+        // At the end of the round the two sides change their places.
+        let (side, u) = if i == 48 { (-side, 0.0) } else { (side, u) };
+        let across = side * 0.6;
+        let r = 2.0 + across * (u / 2.0).cos();
+        DVec3::new(r * u.cos(), r * u.sin(), across * (u / 2.0).sin())
+    };
+    let quads = (0..48).flat_map(|i| {
+        let [a, b, c, d] = [band(i, -1.0), band(i + 1, -1.0), band(i + 1, 1.0), band(i, 1.0)];
+        [[a, b, c], [a, c, d]]
+    });
+    let triangles: Vec<Triangle> = quads.collect();
+    let view = view(DVec3::ZERO, DVec3::new(0.3, -1.0, 0.8), 8.0, false);
+    let drawing = drawn_in_any_order(&triangles, &view);
+    let classes: std::collections::BTreeSet<_> = drawing.lines.iter().map(|l| l.class).collect();
+    assert!(classes.iter().eq(&[LineClass::Silhouette, LineClass::Border]), "{classes:?}");
+}
+
+#[test]
+fn steps_are_outlines_whichever_side_is_the_front() {
+    // A step with its riser seen edge-on.
+    let [near, far] = [-1.0, 1.0].map(|y| {
+        [[-2.0, 0.0], [0.0, 0.0], [0.0, 1.0], [2.0, 1.0]]
+            .map(|[x, z]: [f64; 2]| DVec3::new(x, y, z))
+    });
+    let strip = |i: usize| [[near[i], near[i + 1], far[i + 1]], [near[i], far[i + 1], far[i]]];
+    let triangles: Vec<Triangle> = (0..3).flat_map(strip).collect();
+    let drawing = drawn_in_any_order(&triangles, &above());
+    assert!((length(&drawing, LineClass::Silhouette) - 2.0).abs() < 1e-6, "{:?}", drawing.lines);
+    assert_eq!(length(&drawing, LineClass::Crease), 0.0);
 }

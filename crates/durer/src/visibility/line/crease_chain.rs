@@ -6,7 +6,7 @@
 //! to a second angle, as long as it goes straight on. O(n log n) for n edges that are sharp or weak.
 
 use super::edge_lines::{EdgeLine, Sharpness};
-use crate::math::DVec3;
+use crate::math::{DVec3, by_coordinates};
 use crate::target::drawing::LineClass;
 
 /// The cosine of the turn up to which an edge goes on in the next: 45°.
@@ -73,11 +73,11 @@ fn partners(lines: &[EdgeLine], points: &[DVec3]) -> Vec<u32> {
         }
     }
     // Around a vertex by direction: what is straightest of equals must not be left to the order of the lines.
-    let by_direction = |a: &DVec3, b: &DVec3| {
-        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z))
-    };
     ends.sort_unstable_by(|a, b| {
-        a.vertex.cmp(&b.vertex).then_with(|| by_direction(&a.away, &b.away)).then(a.end.cmp(&b.end))
+        a.vertex
+            .cmp(&b.vertex)
+            .then_with(|| by_coordinates(&a.away, &b.away))
+            .then(a.end.cmp(&b.end))
     });
     let mut partner = vec![NONE; lines.len() * 2];
     for around in ends.chunk_by(|a, b| a.vertex == b.vertex).filter(|a| a.len() <= HUB) {

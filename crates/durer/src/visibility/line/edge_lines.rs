@@ -1,8 +1,6 @@
 //! Which edges are lines: silhouettes, creases, borders and the like.
 
-use super::page::{Projected, orient};
-use super::smooth_silhouette::Whole;
-use crate::math::DVec3;
+use super::facing::{Facing, Pair};
 use crate::target::drawing::LineClass;
 use crate::visibility::object::{Bodies, Edges, Faces, Side};
 
@@ -85,93 +83,6 @@ pub(super) enum Sharpness {
     Sharp,
 }
 
-/// How faces are turned, for all that asks.
-pub(super) struct Facing {
-    /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
-    turn: Vec<i8>,
-    /// Unit normals after turning; zero where a triangle is too thin to have one.
-    normals: Vec<[f32; 3]>,
-}
-
-/// Triangles thinner than this part of the scene's extent have no normal: coordinates have 24 bits, so
-/// at 2⁻²⁰ it is uncertain by some degrees.
-const THIN: f64 = 1.0 / (1u64 << 20) as f64;
-
-/// A triangle on the grid lower than this many steps is seen edge-on.
-const EDGE_ON: f64 = 2.0;
-
-impl Facing {
-    /// Normals are those of the whole triangles.
-    pub fn new(faces: &Faces, bodies: &Bodies, projected: &Projected, whole: Whole<'_>) -> Self {
-        let thin = extent(faces) * THIN;
-        let mut found = Self { turn: vec![0; faces.len()], normals: vec![[0.0; 3]; faces.len()] };
-        for (item, t) in faces.triangles() {
-            let points = t.map(|v| faces.points()[v as usize]);
-            let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
-            let i = item as usize;
-            let of_whole = whole.corners(faces, item);
-            if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
-                found.normals[i] = (normal * sign).as_vec3().to_array();
-            }
-            found.turn[i] = match projected.corners(t) {
-                Some(c) => turned_on_grid(c.map(|c| c.at)),
-                None => {
-                    let n = (points[1] - points[0]).cross(points[2] - points[0]);
-                    let towards = -n.dot(projected.plane.sight_at(points[0]));
-                    if towards > 0.0 { 1 } else { -1 }
-                }
-            } * sign as i8;
-        }
-        found
-    }
-
-    /// Whether the front is seen.
-    #[inline]
-    pub fn front(&self, item: u32) -> bool {
-        self.turn[item as usize] > 0
-    }
-
-    fn thin(&self, item: u32) -> bool {
-        self.normals[item as usize] == [0.0; 3]
-    }
-
-    fn angle_cosine(&self, a: u32, b: u32) -> f32 {
-        let (a, b) = (self.normals[a as usize], self.normals[b as usize]);
-        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    }
-}
-
-fn extent(faces: &Faces) -> f64 {
-    let bounds = crate::scene::Aabb::around(faces.points().iter().copied());
-    bounds.map_or(0.0, |b| b.size().max_element())
-}
-
-fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
-    let (u, v) = (b - a, c - a);
-    let n = u.cross(v);
-    let double_area = n.length();
-    let longest = u.length_squared().max(v.length_squared()).max((c - b).length_squared()).sqrt();
-    (double_area > longest * thin && double_area > 0.0 && double_area.is_finite())
-        .then(|| n / double_area)
-}
-
-/// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
-pub(super) fn turned_on_grid(c: [super::page::GridPoint; 3]) -> i8 {
-    let area = orient(c[0], c[1], c[2]) as f64;
-    let squared = |a: usize, b: usize| {
-        let [x, y] = c[a].minus(c[b]).map(|d| d as f64);
-        x * x + y * y
-    };
-    let longest = squared(0, 1).max(squared(1, 2)).max(squared(2, 0));
-    if area * area <= longest * (EDGE_ON * EDGE_ON) {
-        0
-    } else if area > 0.0 {
-        1
-    } else {
-        -1
-    }
-}
-
 /// What decides which edges are lines.
 pub(super) struct Rules<'a> {
     pub faces: &'a Faces,
@@ -215,7 +126,7 @@ impl Rules<'_> {
             if let (Some(class), sharpness) = self.class(ends, sides) {
                 let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
                 let items = [item(0), item(1)];
-                let smooth = class == LineClass::Silhouette && !self.is_sharp(ends, items);
+                let smooth = class == LineClass::Silhouette && sharpness != Sharpness::Sharp;
                 lines.push(EdgeLine { ends, class, items, smooth, sharpness });
             }
         }
@@ -242,29 +153,28 @@ impl Rules<'_> {
         match sides {
             [_] => blunt(self.wanted(LineClass::Border).or_else(|| self.wire())),
             [a, b] => {
-                if self.faces.same_polygon(a.item(), b.item()) {
-                    let outline = self.divided && self.outlines(ends, a.item(), b.item());
-                    let silhouette = outline.then_some(LineClass::Silhouette);
-                    return blunt(silhouette.and_then(|c| self.wanted(c)));
-                }
                 let against = (a.forward() == b.forward())
                     ^ self.bodies.turned(a.item())
                     ^ self.bodies.turned(b.item());
-                if against {
-                    return blunt(self.wanted(LineClass::NonManifold).or_else(|| self.wire()));
+                let pair = Pair { ends, items: [a.item(), b.item()], against };
+                if self.faces.same_polygon(a.item(), b.item()) {
+                    let outline = self.divided && self.facing.differ(&self.stand_ins(pair));
+                    let silhouette = outline.then_some(LineClass::Silhouette);
+                    return blunt(silhouette.and_then(|c| self.wanted(c)));
                 }
-                self.class_of_two(ends, a.item(), b.item())
+                self.class_of_two(pair)
             }
             _ => blunt(self.wanted(LineClass::NonManifold).or_else(|| self.wire())),
         }
     }
 
     /// The same between two triangles of one surface.
-    fn class_of_two(&self, ends: [u32; 2], a: u32, b: u32) -> (Option<LineClass>, Sharpness) {
-        let (turns, sharpness) = self.turn(ends, a, b);
+    fn class_of_two(&self, pair: Pair) -> (Option<LineClass>, Sharpness) {
+        let (turns, sharpness) = self.turn(pair);
         let outline = turns.then_some(LineClass::Silhouette).and_then(|c| self.wanted(c));
         let crease =
             |least| (sharpness == least).then_some(LineClass::Crease).and_then(|c| self.wanted(c));
+        let [a, b] = pair.items;
         let differ = |m: &Vec<u32>| m[a as usize] != m[b as usize];
         let border = || {
             let differs = self.materials.as_ref().is_some_and(differ);
@@ -286,18 +196,13 @@ impl Rules<'_> {
         caps.any(|c| Some(c) != first)
     }
 
-    fn is_sharp(&self, ends: [u32; 2], [a, b]: [u32; 2]) -> bool {
-        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
-        self.facing.angle_cosine(a, b) < self.crease
-    }
-
-    /// Whether one of two triangles shows its front and one its back, and how sharp the edge is.
-    fn turn(&self, ends: [u32; 2], a: u32, b: u32) -> (bool, Sharpness) {
-        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
-        if a == b {
+    /// Whether two triangles show different sides, and how sharp the edge is.
+    fn turn(&self, pair: Pair) -> (bool, Sharpness) {
+        let pair = self.stand_ins(pair);
+        if pair.items[0] == pair.items[1] {
             return (false, Sharpness::Blunt);
         }
-        let cosine = self.facing.angle_cosine(a, b);
+        let cosine = self.facing.angle_cosine(&pair);
         let sharpness = if cosine < self.crease {
             Sharpness::Sharp
         } else if cosine < self.crease_end {
@@ -305,12 +210,11 @@ impl Rules<'_> {
         } else {
             Sharpness::Blunt
         };
-        (self.facing.front(a) != self.facing.front(b), sharpness)
+        (self.facing.differ(&pair), sharpness)
     }
 
-    fn outlines(&self, ends: [u32; 2], a: u32, b: u32) -> bool {
-        let (a, b) = (self.stand_in(ends, a), self.stand_in(ends, b));
-        self.facing.front(a) != self.facing.front(b)
+    fn stand_ins(&self, pair: Pair) -> Pair {
+        Pair { items: pair.items.map(|item| self.stand_in(pair.ends, item)), ..pair }
     }
 
     /// The triangle itself, or for one that is too thin to be turned any way, the neighbour

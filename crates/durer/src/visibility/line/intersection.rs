@@ -9,8 +9,9 @@
 //! O(n log n) for the hierarchy, and as many tests as boxes overlap.
 
 use super::edge_lines::Intersections;
-use crate::math::DVec3;
+use crate::math::{DVec3, by_coordinates};
 use crate::visibility::object::{Bodies, Faces};
+use std::cmp::Ordering::Greater;
 
 /// A line in which two faces meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -160,9 +161,8 @@ impl<'a> Tree<'a> {
                 if let (Some(one), Some(other)) = (face, other)
                     && one.may_meet(&other)
                 {
-                    let (first, second) = if x < y { (&*one, &other) } else { (&other, &*one) };
                     let items = [x.min(y), x.max(y)];
-                    let ends = meeting(first.corners, second.corners);
+                    let ends = meeting(one.corners, other.corners);
                     found.extend(ends.map(|ends| Meeting { ends, items }));
                 }
             }
@@ -306,8 +306,14 @@ fn side([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
     robust::orient3d(coord(a), coord(b), coord(c), coord(&p))
 }
 
-/// The segment that two triangles share, unless they are coplanar or touch in a point.
-fn meeting(s: [DVec3; 3], t: [DVec3; 3]) -> Option<[DVec3; 2]> {
+/// The segment that two triangles share, unless they are coplanar or touch in a point. The same to the bit
+/// whichever comes first, and wherever they begin.
+fn meeting(mut s: [DVec3; 3], mut t: [DVec3; 3]) -> Option<[DVec3; 2]> {
+    s.sort_unstable_by(by_coordinates);
+    t.sort_unstable_by(by_coordinates);
+    if s.iter().zip(&t).map(|(p, q)| by_coordinates(p, q)).find(|o| o.is_ne()) == Some(Greater) {
+        std::mem::swap(&mut s, &mut t);
+    }
     let apart = |d: &[f64; 3]| d.iter().all(|d| *d > 0.0) || d.iter().all(|d| *d < 0.0);
     let of_t = t.map(|p| side(&s, p));
     if apart(&of_t) || of_t == [0.0; 3] {
@@ -333,7 +339,7 @@ fn meeting(s: [DVec3; 3], t: [DVec3; 3]) -> Option<[DVec3; 2]> {
     best.map(|(_, ends)| ends)
 }
 
-/// Where the edges of one triangle go through the other; `sides` are those of its corners.
+/// Where the edges of one triangle, whose corners are sorted, go through the other; `sides` are those of its corners.
 fn piercings(
     edges_of: &[DVec3; 3],
     sides: &[f64; 3],
@@ -341,10 +347,11 @@ fn piercings(
     points: &mut Vec<DVec3>,
 ) {
     for i in 0..3 {
-        let k = (i + 1) % 3;
-        let ((p, dp), (q, dq)) = ((edges_of[i], sides[i]), (edges_of[k], sides[k]));
-        if dp == 0.0 && inside(through, p, edges_of[i] + normal(through)) {
-            points.push(p);
+        // From the smaller to the larger corner: both faces at an edge find the same place.
+        let [a, b] = [[0, 1], [1, 2], [0, 2]][i];
+        let ((p, dp), (q, dq)) = ((edges_of[a], sides[a]), (edges_of[b], sides[b]));
+        if sides[i] == 0.0 && inside(through, edges_of[i], edges_of[i] + normal(through)) {
+            points.push(edges_of[i]);
         }
         if (dp > 0.0) != (dq > 0.0) && dp != 0.0 && dq != 0.0 && inside(through, p, q) {
             points.push(p + (q - p) * (dp / (dp - dq)));

@@ -4,6 +4,7 @@ mod arrange;
 mod chain;
 mod crease_chain;
 pub mod edge_lines;
+mod facing;
 pub mod floating_horizon;
 pub mod hidden_line;
 mod intersection;

@@ -51,13 +51,18 @@ pub(super) fn drawn_once(
     sliver: f64,
 ) -> Vec<Piece> {
     pieces.retain(|p| p.ends[0] != p.ends[1]);
-    pieces.sort_unstable_by_key(Piece::rank);
+    // The first in rank comes last, and is taken from there.
+    pieces.sort_unstable_by_key(|p| Reverse(p.rank()));
     let Some(table) = Table::new(&pieces, close) else { return pieces };
     let (mut table, entered) = (table, close);
     let mut kept: Vec<Piece> = Vec::with_capacity(pieces.len());
     let mut near: Vec<u32> = Vec::new();
     let mut gone: Vec<(f64, f64)> = Vec::new();
-    for piece in pieces {
+    while let Some(piece) = pieces.pop() {
+        // All edges of a large mesh are many: what is done gives way to what is kept.
+        if pieces.len() < pieces.capacity() / 8 * 7 {
+            pieces.shrink_to_fit();
+        }
         near.clear();
         let close = if piece.may_end_anywhere() { close.max(beside) } else { close };
         table.cells(&piece.ends, close, |list| near.extend_from_slice(list));

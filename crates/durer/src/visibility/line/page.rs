@@ -152,8 +152,9 @@ impl Projected {
             if t.iter().all(|v| self.inside[*v as usize]) {
                 continue;
             }
-            let corners = t.map(|v| self.plane.view_from_world(faces.points()[v as usize]));
-            let ring = self.plane.clip_face(&corners, volume);
+            let Some(corners) = faces.sorted_corners(item) else { continue };
+            let ring =
+                self.plane.clip_face(&corners.map(|p| self.plane.view_from_world(p)), volume);
             let snapped: Vec<Vertex> =
                 ring.iter().map(|p| self.page.snap(self.plane.plane_from_view(*p))).collect();
             for i in 1..snapped.len().saturating_sub(1) {
@@ -253,7 +254,7 @@ impl Around {
         let mut depths = Self::default();
         let volume = Borders { depth: true, sides: Some(GUARD) };
         for (item, _) in faces.triangles() {
-            let Some(corners) = faces.corners(item) else { continue };
+            let Some(corners) = faces.sorted_corners(item) else { continue };
             let ring = plane.clip_face(&corners.map(|p| plane.view_from_world(p)), volume);
             ring.iter().for_each(|p| depths.add(plane.plane_from_view(*p)));
         }

@@ -37,6 +37,10 @@ const HEAD_ON: f64 = 0.866;
 /// What lies within this part of a stub meets on paper: a pen's stroke is as wide.
 const MEETS: f64 = 0.1;
 
+/// A line that another leaves so near its tip, in parts of a stub, ends there, if the other runs on beside it: where
+/// an outline changes from one edge to the next, the edges of a round rim pass each other.
+const BESIDE: f64 = 0.4;
+
 /// Silhouettes and creases shorter than this part of a stub are dust, sharp or not: they do not hold
 /// each other.
 const DUST: f64 = 0.3;
@@ -147,10 +151,39 @@ impl<'a> Lines<'a> {
             for ends in &ways {
                 if self.may_end_anywhere(ends[0]) && self.is_in_the_open(ends, meets) {
                     self.cut_back(ends, &mut cuts);
+                } else if self.is_in_the_open(ends, self.touch)
+                    && let Some(at) = self.left_beside(ends[0], meets)
+                {
+                    cuts.push(Cut::Until(ends[0], at));
                 }
             }
         }
         cuts
+    }
+
+    /// Where another line leaves the piece with this tip, if it runs on to the tip at most `aside` beside the
+    /// piece, so that nothing is missed between.
+    fn left_beside(&mut self, end: u32, aside: f64) -> Option<GridPoint> {
+        let (pieces, touch, most) = (self.pieces, self.touch, self.length * BESIDE);
+        let piece = &pieces[end as usize / 2];
+        let tip = point(pieces, end);
+        let mut first: Option<(f64, GridPoint)> = None;
+        self.table.cells(&[tip, tip], most, |near| {
+            for &i in near.iter().filter(|i| **i != end / 2) {
+                let other = &pieces[i as usize];
+                if !counts(piece, other) || distance(tip, other) > aside {
+                    continue;
+                }
+                for p in other.ends.into_iter().filter(|p| distance(*p, piece) <= touch) {
+                    let along = tip.distance(p);
+                    let leaves = along > touch && along <= most && along < piece.length() - touch;
+                    if leaves && first.is_none_or(|f| (along, p) < f) {
+                        first = Some((along, p));
+                    }
+                }
+            }
+        });
+        first.map(|f| f.1)
     }
 
     /// Whether no other line lies within `radius` of the first point of a walk.
@@ -341,6 +374,20 @@ mod tests {
         // Sharp edges end where they end; and longer ones have a reason.
         assert_eq!(without_stubs(frame(false), 1000.0, 10.0), frame(false));
         assert_eq!(without_stubs(frame(true), 100.0, 10.0), frame(true));
+    }
+
+    #[test]
+    fn sharp_edges_that_pass_each_other_end_where_one_leaves_the_other() {
+        let rim = |aside: i32| {
+            let next = piece([100_000, 0], [150_000, aside * 10], false);
+            vec![piece([0, 0], [105_000, 0], false), next]
+        };
+        let cut = without_stubs(rim(1000), 15_000.0, 10.0);
+        assert_eq!(ends(&cut)[0], [0, 0, 100_000, 0]);
+        assert_eq!(chains_of(&cut), 1);
+        // Further aside there is a corner to be seen, and further on a line.
+        assert_eq!(without_stubs(rim(5000), 15_000.0, 10.0), rim(5000));
+        assert_eq!(without_stubs(rim(1000), 10_000.0, 10.0), rim(1000));
     }
 
     #[test]

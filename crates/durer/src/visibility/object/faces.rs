@@ -1,7 +1,7 @@
 //! Triangles in item order, with their vertices welded by position, in world space.
 
 use super::weld::{Welded, weld};
-use crate::math::DVec3;
+use crate::math::{DVec3, by_coordinates};
 use crate::scene::{Mesh, Scene, Topology};
 use crate::visibility::surface::setup::runs;
 use crate::{Error, Result};
@@ -157,6 +157,14 @@ impl Faces {
     #[inline]
     pub fn corners(&self, item: u32) -> Option<[DVec3; 3]> {
         Some(self.triangle(item)?.map(|v| self.points[v as usize]))
+    }
+
+    /// The same by coordinates, whichever comes first in the file and however it turns: copies of a triangle
+    /// are rounded alike.
+    pub(in crate::visibility) fn sorted_corners(&self, item: u32) -> Option<[DVec3; 3]> {
+        let mut corners = self.corners(item)?;
+        corners.sort_unstable_by(by_coordinates);
+        Some(corners)
     }
 
     /// Runs of one instance and material, in item order.

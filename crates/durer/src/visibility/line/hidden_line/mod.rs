@@ -26,8 +26,9 @@ use self::occluders::Occluders;
 use super::arrange::{How, SLIVER, arrange};
 use super::crease_chain::connected;
 use super::edge_lines::{
-    ClassSet, EdgeLine, Facing, Intersections, NO_ITEM, Rules, material_number, materials,
+    ClassSet, EdgeLine, Intersections, NO_ITEM, Rules, material_number, materials,
 };
+use super::facing::Facing;
 use super::intersection::intersections;
 use super::overlap::Piece;
 use super::page::{GridPoint, Page, Projected, Vertex, arranged, on_page};
@@ -81,7 +82,9 @@ pub struct Options {
     pub hidden: bool,
     /// How far a line may lie from where it is, as a part of the drawing's larger side: polylines are
     /// simplified within it, those shorter are left out, and lines much closer than it to another
-    /// along their whole length are drawn once. 0 gives all that the grid has.
+    /// along their whole length are drawn once. A triangle lower than that, as a part of the model's extent,
+    /// between two that go on in each other makes no line, however rounding has turned it. 0 gives all that
+    /// the grid has.
     pub tolerance: f64,
     /// Silhouettes of round parts and creases that end in the open are cut back to the next junction,
     /// or left out, where that takes at most this part of the drawing's larger side, or four times as
@@ -225,7 +228,7 @@ fn pieces(
 ) -> Vec<Piece> {
     t.step(|| Step::Page(projected.page));
     let (bodies, edges) = Bodies::find(faces);
-    let facing = Facing::new(faces, &bodies, projected, whole);
+    let facing = Facing::new(faces, &bodies, &edges, projected, whole, options.tolerance);
     let lines = Lines::new(faces, &bodies, edges, &facing, options, projected);
     let all = lines.some(0..lines.len()).map(|l| l.ends);
     let occluders = Occluders::new(faces, &bodies, &facing, projected, all);

@@ -4,7 +4,7 @@
 //! line runs through; each list is in the order of the nearest depth, so that a line stops where
 //! nothing nearer comes.
 
-use super::super::edge_lines::{Facing, turned_on_grid};
+use super::super::facing::{Facing, turned_on_grid};
 use super::super::page::{GridPoint, Page, Projected, Vertex};
 use crate::visibility::object::{Bodies, Faces};
 
@@ -191,11 +191,20 @@ impl<'a> Occluders<'a> {
             (cut.item, cut.corners)
         };
         let [a, b, c] = corners;
-        match turned_on_grid(corners.map(|c| c.at)) {
-            1 => Some(Occluder { item, corners }),
-            -1 => Some(Occluder { item, corners: [a, c, b] }),
-            _ => None,
-        }
+        let [a, b, c] = match turned_on_grid(corners.map(|c| c.at)) {
+            1 => [a, b, c],
+            -1 => [a, c, b],
+            _ => return None,
+        };
+        // From the smallest corner on: copies of a face that begin elsewhere are rounded alike.
+        let corners = if b.at < a.at && b.at < c.at {
+            [b, c, a]
+        } else if c.at < a.at {
+            [c, a, b]
+        } else {
+            [a, b, c]
+        };
+        Some(Occluder { item, corners })
     }
 
     /// The grid.

@@ -1,0 +1,160 @@
+//! How faces are turned: towards the eye or away, and against each other.
+
+use super::page::{GridPoint, Projected, orient};
+use super::smooth_silhouette::Whole;
+use crate::math::DVec3;
+use crate::visibility::object::{Bodies, Edges, Faces};
+
+/// How faces are turned, for all that asks.
+pub(super) struct Facing {
+    /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
+    turn: Vec<i8>,
+    /// Unit normals after turning; zero where a triangle is too thin to have one.
+    normals: Vec<[f32; 3]>,
+}
+
+/// Triangles thinner than this part of the scene's extent have no normal: coordinates have 24 bits, so
+/// at 2⁻²⁰ it is uncertain by some degrees.
+const THIN: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// A triangle on the grid lower than this many steps is seen edge-on.
+const EDGE_ON: f64 = 2.0;
+
+/// The cosine within which the faces on both sides of a sliver are one surface: 20°.
+const ONE_SURFACE: f32 = 0.94;
+
+impl Facing {
+    /// Normals are those of the whole triangles. Slivers lower than `tolerance`, a part of the scene's extent,
+    /// that lie in a surface and are turned away from it only by rounding have none either.
+    pub fn new(
+        faces: &Faces,
+        bodies: &Bodies,
+        edges: &Edges,
+        projected: &Projected,
+        whole: Whole<'_>,
+        tolerance: f64,
+    ) -> Self {
+        let extent = extent(faces);
+        let mut found = Self::of_each(faces, bodies, projected, whole, extent * THIN);
+        let in_surface =
+            |item: &u32| found.lies_in_surface(faces, edges, *item, extent * tolerance);
+        let slivers: Vec<u32> = (0..faces.len() as u32).filter(in_surface).collect();
+        slivers.iter().for_each(|item| found.normals[*item as usize] = [0.0; 3]);
+        found
+    }
+
+    fn of_each(
+        faces: &Faces,
+        bodies: &Bodies,
+        projected: &Projected,
+        whole: Whole<'_>,
+        thin: f64,
+    ) -> Self {
+        let mut found = Self { turn: vec![0; faces.len()], normals: vec![[0.0; 3]; faces.len()] };
+        for (item, t) in faces.triangles() {
+            let points = t.map(|v| faces.points()[v as usize]);
+            let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
+            let i = item as usize;
+            let of_whole = whole.corners(faces, item);
+            if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
+                found.normals[i] = (normal * sign).as_vec3().to_array();
+            }
+            found.turn[i] = match projected.corners(t) {
+                Some(c) => turned_on_grid(c.map(|c| c.at)),
+                None => {
+                    let n = (points[1] - points[0]).cross(points[2] - points[0]);
+                    let towards = -n.dot(projected.plane.sight_at(points[0]));
+                    if towards > 0.0 { 1 } else { -1 }
+                }
+            } * sign as i8;
+        }
+        found
+    }
+
+    /// Whether a triangle is lower than `tolerance`, and between two faces that are not and go on in each
+    /// other, though not in it. Coordinates of a file are rounded too, often to few digits, and such a triangle
+    /// may then be turned any way.
+    fn lies_in_surface(&self, faces: &Faces, edges: &Edges, item: u32, tolerance: f64) -> bool {
+        let is_low = |item| faces.corners(item).is_none_or(|c| normal(c, tolerance).is_none());
+        let Some(t) = faces.triangle(item).filter(|_| is_low(item)) else { return false };
+        let length = |[a, b]: &[u32; 2]| {
+            (faces.points()[*a as usize] - faces.points()[*b as usize]).length_squared()
+        };
+        let mut ends = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+        ends.sort_by(|a, b| length(b).total_cmp(&length(a)));
+        let across = |ends: [u32; 2]| match edges.at([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
+            [a, b] if a.forward() != b.forward() => {
+                Some(if a.item() == item { b.item() } else { a.item() })
+            }
+            _ => None,
+        };
+        let (Some(a), Some(b)) = (across(ends[0]), across(ends[1])) else { return false };
+        let cosine =
+            |a, b| self.angle_cosine(&Pair { ends: ends[0], items: [a, b], against: false });
+        !is_low(a) && !is_low(b) && cosine(a, b) > ONE_SURFACE && cosine(a, item) < ONE_SURFACE
+    }
+
+    /// Whether the front is seen.
+    #[inline]
+    pub fn front(&self, item: u32) -> bool {
+        self.turn[item as usize] > 0
+    }
+
+    /// Whether one triangle of a pair shows another side than the other; what is seen edge-on shows none. Which
+    /// side of an open body is its front is arbitrary, so fronts and backs count alike.
+    pub fn differ(&self, pair: &Pair) -> bool {
+        let [a, b] = pair.items.map(|item| self.turn[item as usize]);
+        a != if pair.against { -b } else { b }
+    }
+
+    pub fn thin(&self, item: u32) -> bool {
+        self.normals[item as usize] == [0.0; 3]
+    }
+
+    pub fn angle_cosine(&self, pair: &Pair) -> f32 {
+        let [a, b] = pair.items.map(|item| self.normals[item as usize]);
+        let cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        if pair.against { -cosine } else { cosine }
+    }
+}
+
+/// Two triangles at an edge.
+#[derive(Clone, Copy)]
+pub(super) struct Pair {
+    pub ends: [u32; 2],
+    pub items: [u32; 2],
+    /// Whether they are turned against each other. A surface with one side only, as Möbius' band, has such edges
+    /// somewhere, however its triangles are turned; where is of no matter.
+    pub against: bool,
+}
+
+fn extent(faces: &Faces) -> f64 {
+    let bounds = crate::scene::Aabb::around(faces.points().iter().copied());
+    bounds.map_or(0.0, |b| b.size().max_element())
+}
+
+fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
+    let (u, v) = (b - a, c - a);
+    let n = u.cross(v);
+    let double_area = n.length();
+    let longest = u.length_squared().max(v.length_squared()).max((c - b).length_squared()).sqrt();
+    (double_area > longest * thin && double_area > 0.0 && double_area.is_finite())
+        .then(|| n / double_area)
+}
+
+/// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
+pub(super) fn turned_on_grid(c: [GridPoint; 3]) -> i8 {
+    let area = orient(c[0], c[1], c[2]) as f64;
+    let squared = |a: usize, b: usize| {
+        let [x, y] = c[a].minus(c[b]).map(|d| d as f64);
+        x * x + y * y
+    };
+    let longest = squared(0, 1).max(squared(1, 2)).max(squared(2, 0));
+    if area * area <= longest * (EDGE_ON * EDGE_ON) {
+        0
+    } else if area > 0.0 {
+        1
+    } else {
+        -1
+    }
+}
