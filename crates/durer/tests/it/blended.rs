@@ -61,6 +61,30 @@ fn all_methods_compose_what_the_z_buffer_sorts() {
     }
 }
 
+/// So many panes through each other that they are lit in several turns, and of which the last are not seen.
+#[test]
+fn all_methods_agree_where_next_to_nothing_comes_through_many_panes() {
+    let mut numbers = Numbers(5);
+    let triangles: Vec<[Vec3; 3]> =
+        (0..160).map(|_| [0; 3].map(|_| numbers.point(3.0) * Vec3::new(1.0, 1.0, 0.3))).collect();
+    let mut scene = of_triangles(&triangles);
+    for i in 0..triangles.len() {
+        let alpha = if i % 40 == 0 { 1.0 } else { 0.1 + 0.5 * numbers.next() };
+        scene.materials.push(Material {
+            model: ShadingModel::Unlit,
+            base_color: numbers.point(0.5).abs().extend(alpha),
+            alpha_mode: AlphaMode::Blend,
+            ..Material::default()
+        });
+        let range = i as u32..i as u32 + 1;
+        scene.meshes[0].parts.push(Part { range, material: Some(i), name: String::new() });
+    }
+    let expected = picture(&scene, SurfaceMethod::ScanLineZ, Samples::One);
+    let found = picture(&scene, SurfaceMethod::ZBuffer, Samples::One);
+    let pairs = found.color.data().iter().zip(expected.color.data());
+    assert_eq!(pairs.filter(|(a, b)| a != b).count(), 0);
+}
+
 /// Quads that face the eye, whose edges are those of pixels, at random depths: the picture is known by
 /// sorting and compositing.
 #[test]
