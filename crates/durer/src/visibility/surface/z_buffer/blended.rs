@@ -56,10 +56,12 @@ pub struct Fragments {
     limit: usize,
 }
 
+/// Premultiplied red, green, blue and alpha of eight pixels.
+type Colors = [[f32; 8]; 4];
+
 /// What is lit of eight pixels.
 struct Layer {
-    /// Premultiplied red, green, blue and alpha.
-    colors: [[f32; 8]; 4],
+    colors: Colors,
     /// The samples that each covers.
     samples: [u32; 8],
     /// The next nearer layer.
@@ -117,8 +119,8 @@ impl Fragments {
         self.closed_count >= (size[0] * size[1]) as usize
     }
 
-    /// Brings the fragments of each pixel together, far ones first; of equally far ones the higher
-    /// item first, so that the lower is seen.
+    /// Brings the fragments of each pixel together, near ones first; of equally near ones the lower
+    /// item first, which is seen. Mostly they came in that order.
     fn sort(&mut self) {
         // They came triangle by triangle, so those of one item at one pixel follow each other.
         let mut next = [0; TILE_PIXELS + 1];
@@ -146,7 +148,7 @@ impl Fragments {
             same
         });
         for of_pixel in self.list.chunk_by_mut(|a, b| a.pixel == b.pixel) {
-            of_pixel.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(b.item.cmp(&a.item)));
+            of_pixel.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
         }
     }
 }
@@ -192,8 +194,8 @@ pub fn light_nearer<S: Simd>(
         for of_pixel in of_eight.chunk_by(|a, b| a.pixel == b.pixel) {
             let lane = of_pixel[0].pixel as usize - first;
             if x + (lane as i32) < size[0] {
-                let farther = of_pixel.iter().take_while(|f| f.depth >= bound).count();
-                pixels[lane] = &of_pixel[farther..];
+                let nearer = of_pixel.iter().take_while(|f| f.depth < bound).count();
+                pixels[lane] = &of_pixel[..nearer];
             }
         }
         light_eight(simd, fragments, &pixels, first, lit);
@@ -222,22 +224,30 @@ pub fn resolve_blended<S: Simd>(
         let first = group * 8;
         let (x, y) = (first as i32 % TILE, first as i32 / TILE);
         let at = [area.tile[0] + x, area.tile[1] + y];
-        let (mut colors, count) = behind_eight(simd, planes, first, touched, lit, area, at);
+        let (mut under, count) = behind_eight(simd, planes, first, touched, lit, area, at);
         let mut next = farthest;
         while let Some(layer) = fragments.layers.get(next as usize) {
-            for (lane, colors) in colors.iter_mut().enumerate() {
-                let over = Vec4::from_array([0, 1, 2, 3].map(|c| layer.colors[c][lane]));
-                for (i, under) in colors[..count].iter_mut().enumerate() {
-                    if layer.samples[lane] >> i & 1 == 1 {
-                        *under = over + *under * (1.0 - over.w);
-                    }
-                }
+            for (i, under) in under[..count].iter_mut().enumerate() {
+                lay_over(layer, i, under);
             }
             next = layer.nearer;
         }
         let start = y as usize * output.stride + x as usize;
         for lane in (0..8).filter(|lane| touched >> lane & 1 == 1) {
-            output.color[start + lane] = encode(average(&colors[lane][..count]));
+            output.color[start + lane] = encode(average(&under[..count], lane));
+        }
+    }
+}
+
+/// Lays a layer over what shows at sample `i` of eight pixels.
+#[inline(always)]
+fn lay_over(layer: &Layer, i: usize, under: &mut Colors) {
+    let [r, g, b, a] = &layer.colors;
+    for (over, under) in [r, g, b, a].into_iter().zip(under) {
+        for lane in 0..8 {
+            let sum = over[lane] + under[lane] * (1.0 - a[lane]);
+            let covered = layer.samples[lane] >> i & 1 == 1;
+            under[lane] = if covered { sum } else { under[lane] };
         }
     }
 }
@@ -258,9 +268,8 @@ fn light_eight<S: Simd>(
         let (mut items, mut samples) = ([NO_ITEM; 8], [0; 8]);
         let mut touched = 0;
         for lane in 0..8 {
-            let nearest = pixels[lane].len().checked_sub(number + 1);
             let open = !fragments.closed[first + lane];
-            if let Some(fragment) = nearest.and_then(|i| pixels[lane].get(i)).filter(|_| open) {
+            if let Some(fragment) = pixels[lane].get(number).filter(|_| open) {
                 (items[lane], samples[lane]) = (fragment.item, fragment.samples);
                 touched |= 1 << lane;
             }
@@ -310,9 +319,9 @@ fn behind_eight<S: Simd>(
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     [x, y]: [i32; 2],
-) -> ([[Vec4; MOST_SAMPLES]; 8], usize) {
+) -> ([Colors; MOST_SAMPLES], usize) {
     let behind = premultiply((area.background)(y));
-    let mut colors = [[behind; MOST_SAMPLES]; 8];
+    let mut colors = [behind.to_array().map(|v| [v; 8]); MOST_SAMPLES];
     let mut shown = [[NO_ITEM; MOST_SAMPLES]; 8];
     let mut count = 0;
     for lane in (0..8).filter(|&lane| touched >> lane & 1 == 1) {
@@ -323,24 +332,32 @@ fn behind_eight<S: Simd>(
         for lane in 0..8 {
             let (before, item) = (&shown[lane][..i], shown[lane][i]);
             match before.iter().position(|&other| other == item) {
-                Some(earlier) => colors[lane][i] = colors[lane][earlier],
+                Some(earlier) => {
+                    for c in 0..4 {
+                        colors[i][c][lane] = colors[earlier][c][lane];
+                    }
+                }
                 None => items[lane] = item,
             }
         }
         if items != [NO_ITEM; 8] {
             let mut lit_here = [[0.0; 8]; 4];
             Lit::colors_x8(simd, lit, &items, x, y, &mut lit_here);
-            let [r, g, b, _] = lit_here;
+            lit_here[3] = [1.0; 8];
             for lane in (0..8).filter(|&lane| items[lane] != NO_ITEM) {
-                colors[lane][i] = Vec4::new(r[lane], g[lane], b[lane], 1.0);
+                for (to, from) in colors[i].iter_mut().zip(&lit_here) {
+                    to[lane] = from[lane];
+                }
             }
         }
     }
     (colors, count)
 }
 
-fn average(colors: &[Vec4]) -> Vec4 {
-    let sum = colors.iter().fold(Vec4::ZERO, |sum, &c| sum + c);
+/// The mean of a pixel's samples.
+fn average(colors: &[Colors], lane: usize) -> Vec4 {
+    let at = |colors: &Colors| Vec4::from_array([0, 1, 2, 3].map(|c| colors[c][lane]));
+    let sum = colors.iter().fold(Vec4::ZERO, |sum, colors| sum + at(colors));
     // The number of samples is a power of two, so this is exact.
     sum * (1.0 / colors.len() as f32)
 }
