@@ -333,9 +333,8 @@ fn behind_eight<S: Simd>(
             let (before, item) = (&shown[lane][..i], shown[lane][i]);
             match before.iter().position(|&other| other == item) {
                 Some(earlier) => {
-                    for c in 0..4 {
-                        colors[i][c][lane] = colors[earlier][c][lane];
-                    }
+                    let from = colors[earlier].map(|channel| channel[lane]);
+                    colors[i].iter_mut().zip(from).for_each(|(to, from)| to[lane] = from);
                 }
                 None => items[lane] = item,
             }
