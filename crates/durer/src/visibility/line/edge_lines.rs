@@ -218,7 +218,7 @@ impl Rules<'_> {
     }
 
     /// The triangle itself, or for one that is too thin to be turned any way, the neighbour
-    /// across its longest other edge.
+    /// across its longest other edge, if there is one and no more.
     fn stand_in(&self, ends: [u32; 2], item: u32) -> u32 {
         let (mut item, mut ends) = (item, ends);
         // Several thin ones may lie beside each other; more than these are not worth the walk.
@@ -236,9 +236,9 @@ impl Rules<'_> {
                 .filter(|e| *e != ends)
                 .max_by(|x, y| length(*x).total_cmp(&length(*y)));
             let Some(edge) = longest else { return item };
-            let next = self.edges.at(edge).iter().find(|s| s.item() != item);
-            let Some(next) = next else { return item };
-            (item, ends) = (next.item(), edge);
+            // Of three or more, which comes first would be left to the order of the triangles.
+            let [a, b] = self.edges.at(edge) else { return item };
+            (item, ends) = (if a.item() == item { b.item() } else { a.item() }, edge);
         }
         item
     }
