@@ -15,7 +15,7 @@ pub const HALF_PIXEL: i32 = SUBPIXELS / 2;
 /// Screen coordinates beyond ± this many pixels must be clipped before they are snapped.
 ///
 /// Edge functions of coordinates within this guard band fit i64 with room to spare, and i32 inside a
-/// block of 8 × 8 pixels that an edge crosses; the coordinates are at most 2¹⁷ · 2⁸ = 2²⁵.
+/// block of 16 × 8 pixels that an edge crosses; the coordinates are at most 2¹⁷ · 2⁸ = 2²⁵.
 pub const GUARD_BAND: f64 = 131_072.0;
 
 /// The grid point nearest to a screen coordinate in pixels, ties to even.

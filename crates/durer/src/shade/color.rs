@@ -5,7 +5,7 @@
 
 use crate::math::{Vec3, Vec4};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, u32x8};
+use fearless_simd::{Simd, f32x16, u32x16};
 
 /// Linear value of each 8-bit sRGB code, correctly rounded from double precision.
 pub static LINEAR_FROM_SRGB: [f32; 256] = linear_table();
@@ -128,38 +128,33 @@ pub fn encode_srgb8(linear: f32) -> u8 {
     code + u8::from(linear >= THRESHOLD[usize::from(code)])
 }
 
-/// Eight opaque linear colours, by channel, to 8-bit sRGB: for each channel what [`encode_srgb8`] gives.
+/// Sixteen opaque linear colours, by channel, to 8-bit sRGB, for each channel what [`encode_srgb8`] gives:
+/// of each pixel the four bytes, the first one lowest.
 ///
 /// Cost: one look-up per channel.
 #[inline(always)]
-pub fn encode_opaque_x8<S: Simd>(simd: S, channels: &[[f32; 8]; 4]) -> [[u8; 4]; 8] {
+pub fn encode_opaque_x16<S: Simd>(simd: S, channels: &[[f32; 16]; 4]) -> u32x16<S> {
     let [r, g, b, _] = channels;
-    let (r, g, b) = (codes_x8(simd, r), codes_x8(simd, g), codes_x8(simd, b));
-    let packed = r | (g << 8u32) | (b << 16u32) | (255 << 24);
-    let packed: [u32; 8] = packed.into();
-    let mut pixels = [[0; 4]; 8];
-    for i in 0..8 {
-        pixels[i] = packed[i].to_le_bytes();
-    }
-    pixels
+    let (r, g, b) = (codes_x16(simd, r), codes_x16(simd, g), codes_x16(simd, b));
+    r | (g << 8u32) | (b << 16u32) | (255 << 24)
 }
 
 #[inline(always)]
-fn codes_x8<S: Simd>(simd: S, linear: &[f32; 8]) -> u32x8<S> {
+fn codes_x16<S: Simd>(simd: S, linear: &[f32; 16]) -> u32x16<S> {
     // From the first bucket to the largest number below 1; NaN is not above the first.
     let (least, most) = (f32::from_bits(FIRST_BUCKET << BUCKET_SHIFT), 1.0 - f32::EPSILON / 2.0);
-    let linear = f32x8::from_slice(simd, linear);
-    let (least, most) = (f32x8::splat(simd, least), f32x8::splat(simd, most));
+    let linear = f32x16::from_slice(simd, linear);
+    let (least, most) = (f32x16::splat(simd, least), f32x16::splat(simd, most));
     let linear = linear.simd_gt(least).select(linear, least);
     let linear = linear.simd_lt(most).select(linear, most);
-    let bits: u32x8<S> = linear.bitcast();
-    let buckets: [u32; 8] = ((bits >> BUCKET_SHIFT) - FIRST_BUCKET).into();
-    let mut steps = [0; 8];
-    for i in 0..8 {
+    let bits: u32x16<S> = linear.bitcast();
+    let buckets: [u32; 16] = ((bits >> BUCKET_SHIFT) - FIRST_BUCKET).into();
+    let mut steps = [0; 16];
+    for i in 0..16 {
         steps[i] = BUCKET_STEP[(buckets[i] & 2047) as usize];
     }
     let below = bits & ((1 << BUCKET_SHIFT) - 1);
-    (u32x8::simd_from(simd, steps) + below) >> BUCKET_SHIFT
+    (u32x16::simd_from(simd, steps) + below) >> BUCKET_SHIFT
 }
 
 /// Linear RGBA to 8-bit sRGB with 8-bit linear alpha.
@@ -269,21 +264,21 @@ mod tests {
     }
 
     #[test]
-    fn eight_at_a_time_have_the_codes_of_one() {
+    fn sixteen_at_a_time_have_the_codes_of_one() {
         let strange = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY, -1.0, 0.0, 1e-40, 1.0, 7.0];
         let around = |t: f32| [t, f32::from_bits(t.to_bits() - 1), f32::from_bits(t.to_bits() + 1)];
         let mut values: Vec<f32> = THRESHOLD[..255].iter().flat_map(|t| around(*t)).collect();
         values.extend(strange);
         values.extend((0..=1000).map(|i| i as f32 * 1e-3));
         for level in crate::simd::levels() {
-            for eight in values.chunks_exact(8) {
-                let r: [f32; 8] = std::array::from_fn(|i| eight[i]);
+            for &r in values.as_chunks::<16>().0 {
                 let g = r.map(|v| v * 0.5);
-                let codes = fearless_simd::dispatch!(level, simd =>
-                    encode_opaque_x8(simd, &[r, g, [0.5; 8], [0.5; 8]]));
+                let codes: [u32; 16] = fearless_simd::dispatch!(level, simd =>
+                    encode_opaque_x16(simd, &[r, g, [0.5; 16], [0.5; 16]]).into());
+                let codes = codes.map(u32::to_le_bytes);
                 let half = encode_srgb8(0.5);
                 let one = |i: usize| [encode_srgb8(r[i]), encode_srgb8(g[i]), half, 255];
-                assert_eq!(codes, std::array::from_fn(one), "{eight:?}");
+                assert_eq!(codes, std::array::from_fn(one), "{r:?}");
             }
         }
     }

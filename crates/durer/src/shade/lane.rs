@@ -4,7 +4,7 @@
 //! done in the same order, so a pixel has the same bits whichever way it was shaded.
 
 use crate::math::Vec3;
-use fearless_simd::{f32x8, i32x8, prelude::*};
+use fearless_simd::{f32x8, f32x16, i32x8, i32x16, prelude::*};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// An `f32`, or several side by side.
@@ -26,6 +26,8 @@ pub trait Lane:
     fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self;
     /// The larger of two; where either is NaN, `other`.
     fn larger(self, other: Self) -> Self;
+    /// Whether all lanes are at most `limit`; NaN is not.
+    fn all_at_most(self, limit: f32) -> bool;
     /// Splits a positive number into its exponent and a mantissa between √½ and √2.
     fn split(self) -> (Self, Self);
     /// Two to the power `self`, a whole number between −126 and 127.
@@ -57,14 +59,16 @@ pub trait Lane:
     #[inline(always)]
     fn power(self, mut exponent: u32) -> Self {
         let (mut result, mut square) = (self.splat(1.0), self);
-        while exponent > 0 {
+        loop {
             if exponent & 1 == 1 {
                 result = result * square;
             }
-            square = square * square;
             exponent >>= 1;
+            if exponent == 0 {
+                return result;
+            }
+            square = square * square;
         }
-        result
     }
 
     /// `self`, at least 1e-37, to any power: relative error below 1e-6 · (1 + |exponent · log2 self|).
@@ -119,6 +123,10 @@ impl Lane for f32 {
         if self > other { self } else { other }
     }
     #[inline(always)]
+    fn all_at_most(self, limit: f32) -> bool {
+        self <= limit
+    }
+    #[inline(always)]
     fn split(self) -> (Self, Self) {
         let bits = (self.to_bits() as i32).wrapping_sub(SQRT_HALF_BITS);
         let mantissa = (bits & MANTISSA).wrapping_add(SQRT_HALF_BITS);
@@ -138,46 +146,89 @@ impl Lane for f32 {
     }
 }
 
-impl<S: Simd> Lane for f32x8<S> {
-    #[inline(always)]
-    fn splat(self, value: f32) -> Self {
-        self.simd.splat_f32x8(value)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.simd.sqrt_f32x8(self)
-    }
-    #[inline(always)]
-    fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self {
-        let limit = self.simd.splat_f32x8(limit);
-        self.simd.select_f32x8(self.simd.simd_gt_f32x8(self, limit), then, otherwise)
-    }
-    #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        self.simd.select_f32x8(self.simd.simd_gt_f32x8(self, other), self, other)
-    }
-    #[inline(always)]
-    fn split(self) -> (Self, Self) {
-        let bits = self.bitcast::<i32x8<S>>() - SQRT_HALF_BITS;
-        let mantissa = (bits & MANTISSA) + SQRT_HALF_BITS;
-        (self.simd.cvt_f32_i32x8(bits >> 23), mantissa.bitcast())
-    }
-    #[inline(always)]
-    fn exp2_whole(self) -> Self {
-        ((self.simd.cvt_i32_f32x8(self) + 127) << 23).bitcast()
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        self.simd.floor_f32x8(self)
-    }
-    #[inline(always)]
-    fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self {
-        let lanes = values.map(<[f32; 8]>::from);
-        let result: [f32; 8] = std::array::from_fn(|i| f(std::array::from_fn(|k| lanes[k][i])));
-        // Without values there is nothing to compute; nobody asks for that.
-        f32x8::from_slice(values[0].simd, &result)
-    }
+/// [`Lane`] for a vector of floats, by the vector of whole numbers that is as long, and the names of its
+/// operations.
+macro_rules! lanes {
+    ($floats:ident, $wholes:ident, $count:literal, [$splat:ident, $sqrt:ident, $select:ident, $gt:ident,
+     $le:ident, $to_float:ident, $to_whole:ident, $floor:ident]) => {
+        impl<S: Simd> Lane for $floats<S> {
+            #[inline(always)]
+            fn splat(self, value: f32) -> Self {
+                self.simd.$splat(value)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.simd.$sqrt(self)
+            }
+            #[inline(always)]
+            fn if_above(self, limit: f32, then: Self, otherwise: Self) -> Self {
+                let limit = self.simd.$splat(limit);
+                self.simd.$select(self.simd.$gt(self, limit), then, otherwise)
+            }
+            #[inline(always)]
+            fn larger(self, other: Self) -> Self {
+                self.simd.$select(self.simd.$gt(self, other), self, other)
+            }
+            #[inline(always)]
+            fn all_at_most(self, limit: f32) -> bool {
+                self.simd.$le(self, self.simd.$splat(limit)).all_true()
+            }
+            #[inline(always)]
+            fn split(self) -> (Self, Self) {
+                let bits = self.bitcast::<$wholes<S>>() - SQRT_HALF_BITS;
+                let mantissa = (bits & MANTISSA) + SQRT_HALF_BITS;
+                (self.simd.$to_float(bits >> 23), mantissa.bitcast())
+            }
+            #[inline(always)]
+            fn exp2_whole(self) -> Self {
+                ((self.simd.$to_whole(self) + 127) << 23).bitcast()
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                self.simd.$floor(self)
+            }
+            #[inline(always)]
+            fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self {
+                let lanes = values.map(<[f32; $count]>::from);
+                let result: [f32; $count] =
+                    std::array::from_fn(|i| f(std::array::from_fn(|k| lanes[k][i])));
+                // Without values there is nothing to compute; nobody asks for that.
+                $floats::from_slice(values[0].simd, &result)
+            }
+        }
+    };
 }
+
+lanes!(
+    f32x8,
+    i32x8,
+    8,
+    [
+        splat_f32x8,
+        sqrt_f32x8,
+        select_f32x8,
+        simd_gt_f32x8,
+        simd_le_f32x8,
+        cvt_f32_i32x8,
+        cvt_i32_f32x8,
+        floor_f32x8
+    ]
+);
+lanes!(
+    f32x16,
+    i32x16,
+    16,
+    [
+        splat_f32x16,
+        sqrt_f32x16,
+        select_f32x16,
+        simd_gt_f32x16,
+        simd_le_f32x16,
+        cvt_f32_i32x16,
+        cvt_i32_f32x16,
+        floor_f32x16
+    ]
+);
 
 /// A vector or a linear colour, in lanes.
 #[derive(Debug, Clone, Copy)]
@@ -274,11 +325,17 @@ impl<L: Lane> Vec3Lane<L> {
         )
     }
 
+    /// Unit length, where the squared length has a reciprocal; elsewhere anything.
+    #[inline(always)]
+    pub fn unit(self) -> Self {
+        let length2 = self.dot(self);
+        self.scale(length2.splat(1.0) / length2.sqrt())
+    }
+
     /// Unit length; `otherwise` where there is no direction: zero, NaN, or beyond 1e18.
     #[inline(always)]
     pub fn unit_or(self, otherwise: Self) -> Self {
-        let length2 = self.dot(self);
-        let unit = self.scale(length2.splat(1.0) / length2.sqrt());
+        let (length2, unit) = (self.dot(self), self.unit());
         let bounded = Self::if_above(length2, LENGTH2.1, otherwise, unit);
         Self::if_above(length2, LENGTH2.0, bounded, otherwise)
     }

@@ -154,7 +154,7 @@ impl<'a> PreparedMaterial<'a> {
         if shading == Shading::Unlit {
             return (tone::display(base), alpha);
         }
-        let frame = face_viewer(points.view, points.geometric_normal, points.normal);
+        let frame = points.frame();
         let texels = Texels {
             emissive: sampled_x8(simd, &this.emissive_slot, at),
             occlusion: sampled_x8(simd, &this.occlusion_slot, at),

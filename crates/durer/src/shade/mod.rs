@@ -34,7 +34,7 @@ pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub use lookup::TexCoords;
 pub use material::{PreparedMaterial, PreparedMaterials, shade};
-pub use plain::{Points, shade_points};
+pub use plain::{Faces, Points, shade_points, shade_points_x16};
 pub use sample::{Sample, Samples};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;

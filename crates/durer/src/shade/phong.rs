@@ -99,17 +99,40 @@ pub(super) fn reflect<L: Lane>(
         diffuse: lights.environment.diffuse(frame.normal).scale(occlusion),
         specular: Vec3Lane::splat(one, Vec3::ZERO),
     };
-    for (i, light) in lights.directional.iter().enumerate() {
-        let l = Vec3Lane::splat(one, light.to_light);
-        let reach = shadow::reach(lights.shadows.directional.get(i), position, frame.face, l);
-        sums.add(frame, l, light.color, reach, shininess);
-    }
-    for (i, light) in lights.points.iter().enumerate() {
-        let (l, strength) = light.seen_from(position);
-        let reach = shadow::reach(lights.shadows.points.get(i), position, frame.face, l);
-        sums.add(frame, l, light.color, strength * reach, shininess);
+    // Apart, for calls by which shadows are looked up cost time even where there are none.
+    if lights.shadows.is_empty() {
+        add_lights::<L, false>(frame, position, lights, shininess, &mut sums);
+    } else {
+        add_lights::<L, true>(frame, position, lights, shininess, &mut sums);
     }
     (sums.diffuse, sums.specular)
+}
+
+/// Adds all lights; where `SHADOWED`, what is left of them in the shadows.
+#[inline(always)]
+fn add_lights<L: Lane, const SHADOWED: bool>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    lights: &PreparedLights,
+    shininess: Shininess,
+    sums: &mut Sums<L>,
+) {
+    let maps = &lights.shadows;
+    for (i, light) in lights.directional.iter().enumerate() {
+        let l = Vec3Lane::splat(position.x, light.to_light);
+        let mut strength = position.x.splat(1.0);
+        if SHADOWED {
+            strength = shadow::reach(maps.directional.get(i), position, frame.face, l);
+        }
+        sums.add(frame, l, light.color, strength, shininess);
+    }
+    for (i, light) in lights.points.iter().enumerate() {
+        let (l, mut strength) = light.seen_from(position);
+        if SHADOWED {
+            strength = strength * shadow::reach(maps.points.get(i), position, frame.face, l);
+        }
+        sums.add(frame, l, light.color, strength, shininess);
+    }
 }
 
 /// The same for one point.

@@ -1,11 +1,11 @@
-//! Eight samples of one plain material at a time.
+//! Eight or sixteen samples of one plain material at a time.
 
-use super::lane::Vec3Lane;
+use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::material::PreparedMaterial;
-use super::normal::face_viewer;
+use super::normal::{Frame, face_viewer};
 use super::{Shading, formula};
-use fearless_simd::{f32x8, prelude::*};
+use fearless_simd::{f32x8, f32x16, prelude::*};
 use fearless_simd_macros::simd;
 
 /// Surface points, component by component; lanes without a sample may hold anything.
@@ -17,8 +17,32 @@ pub struct Points<L> {
     pub view: Vec3Lane<L>,
     /// Interpolated normals, any length.
     pub normal: Vec3Lane<L>,
-    /// Unit normals of the faces' planes.
-    pub geometric_normal: Vec3Lane<L>,
+    /// By what it is known which side of the surface is seen.
+    pub faces: Faces<L>,
+}
+
+/// By what it is known which side of a surface is seen at several points.
+#[derive(Debug, Clone, Copy)]
+pub enum Faces<L> {
+    /// The unit normals of the faces' planes.
+    Normals(Vec3Lane<L>),
+    /// Nothing needs to be known: faces are seen from their fronts, interpolated normals have a length
+    /// and are on the fronts' sides, and neither flat shading nor shadows ask for the faces' own normals.
+    Settled,
+}
+
+impl<L: Lane> Points<L> {
+    /// The unit vectors at the points, all on the viewer's side.
+    #[inline(always)]
+    pub(super) fn frame(&self) -> Frame<L> {
+        match self.faces {
+            Faces::Normals(face) => face_viewer(self.view, face, self.normal),
+            Faces::Settled => {
+                let normal = self.normal.unit();
+                Frame { view: self.view.unit(), face: normal, normal }
+            }
+        }
+    }
 }
 
 /// Linear red, green and blue of several samples, each bit for bit what [`super::shade`] gives.
@@ -34,10 +58,75 @@ pub fn shade_points<S: Simd>(
     lights: &PreparedLights,
     shading: Shading,
 ) -> [[f32; 8]; 3] {
-    let frame = face_viewer(points.view, points.geometric_normal, points.normal);
-    let inputs = material.constant_inputs(points.position.x);
-    let color = formula::display(&frame, points.position, &inputs, None, lights, shading);
+    let color = shade_lanes(points, material, lights, shading);
     [color.x.into(), color.y.into(), color.z.into()]
+}
+
+/// [`shade_points`] for sixteen samples; where eight lanes are native, for eight twice.
+#[simd]
+pub fn shade_points_x16<S: Simd>(
+    simd: S,
+    points: &Points<f32x16<S>>,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> [[f32; 16]; 3] {
+    if has_sixteen_lanes::<S>() {
+        let color = shade_lanes(points, material, lights, shading);
+        return [color.x.into(), color.y.into(), color.z.into()];
+    }
+    let mut colors = [[0.0; 16]; 3];
+    for (half, first) in points.halves(simd).iter().zip([0, 8]) {
+        let eight = shade_points(simd, half, material, lights, shading);
+        for (to, from) in colors.iter_mut().zip(eight) {
+            to[first..first + 8].copy_from_slice(&from);
+        }
+    }
+    colors
+}
+
+/// Whether sixteen numbers fit one of the machine's registers.
+#[inline(always)]
+fn has_sixteen_lanes<S: Simd>() -> bool {
+    size_of::<S::f32s>() >= size_of::<[f32; 16]>()
+}
+
+#[inline(always)]
+fn shade_lanes<L: Lane>(
+    points: &Points<L>,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> Vec3Lane<L> {
+    let frame = points.frame();
+    let inputs = material.constant_inputs(points.position.x);
+    formula::display(&frame, points.position, &inputs, None, lights, shading)
+}
+
+impl<S: Simd> Points<f32x16<S>> {
+    /// The first eight and the last eight.
+    #[inline(always)]
+    fn halves(&self, simd: S) -> [Points<f32x8<S>>; 2] {
+        let [position, view] = [split(simd, self.position), split(simd, self.view)];
+        let normal = split(simd, self.normal);
+        let faces = match self.faces {
+            Faces::Normals(face) => split(simd, face).map(Faces::Normals),
+            Faces::Settled => [Faces::Settled; 2],
+        };
+        let half = |i: usize| Points {
+            position: position[i],
+            view: view[i],
+            normal: normal[i],
+            faces: faces[i],
+        };
+        [half(0), half(1)]
+    }
+}
+
+#[inline(always)]
+fn split<S: Simd>(simd: S, v: Vec3Lane<f32x16<S>>) -> [Vec3Lane<f32x8<S>>; 2] {
+    let (x, y, z) = (simd.split_f32x16(v.x), simd.split_f32x16(v.y), simd.split_f32x16(v.z));
+    [Vec3Lane::new(x.0, y.0, z.0), Vec3Lane::new(x.1, y.1, z.1)]
 }
 
 #[cfg(test)]
@@ -70,9 +159,35 @@ mod tests {
             position: load(simd, position),
             view: load(simd, view),
             normal: load(simd, normal),
-            geometric_normal: load(simd, geometric_normal),
+            faces: Faces::Normals(load(simd, geometric_normal)),
         };
         shade_points(simd, &points, material, lights, shading)
+    }
+
+    /// The colours of two times eight points, at once.
+    #[simd]
+    fn shade_sixteen<S: Simd>(
+        simd: S,
+        both: &[Eight; 2],
+        material: &PreparedMaterial<'_>,
+        lights: &PreparedLights,
+        shading: Shading,
+    ) -> [[f32; 16]; 3] {
+        let both_of = |i: usize| {
+            let [a, b] = [load(simd, &both[0][i]), load(simd, &both[1][i])];
+            Vec3Lane::new(
+                simd.combine_f32x8(a.x, b.x),
+                simd.combine_f32x8(a.y, b.y),
+                simd.combine_f32x8(a.z, b.z),
+            )
+        };
+        let points = Points {
+            position: both_of(0),
+            view: both_of(1),
+            normal: both_of(2),
+            faces: Faces::Normals(both_of(3)),
+        };
+        shade_points_x16(simd, &points, material, lights, shading)
     }
 
     fn camera() -> Camera {
@@ -146,11 +261,16 @@ mod tests {
             {
                 let material = prepared.get(Some(material));
                 assert!(material.is_plain());
+                let mut points = eight_points(&mut seed);
                 for _ in 0..60 {
-                    let points = eight_points(&mut seed);
+                    let before = points;
+                    points = eight_points(&mut seed);
                     for level in levels() {
                         let colors = dispatch!(level, simd =>
                             shade_eight(simd, &points, material, &lights, shading));
+                        let both = [before, points];
+                        let sixteen = dispatch!(level, simd =>
+                            shade_sixteen(simd, &both, material, &lights, shading));
                         for i in 0..8 {
                             let surface = Surface {
                                 position: lane(&points[0], i),
@@ -163,6 +283,8 @@ mod tests {
                             let eight = lane(&colors, i);
                             let bits = |v: Vec3| v.to_array().map(f32::to_bits);
                             assert_eq!(bits(one.truncate()), bits(eight), "{shading} {level:?}");
+                            let sixteen = Vec3::from(sixteen.map(|channel| channel[8 + i]));
+                            assert_eq!(bits(sixteen), bits(eight), "{shading} {level:?}");
                             // No NaN, whatever goes in.
                             assert!(one.min_element() >= 0.0 && one.max_element() <= 1.0);
                         }

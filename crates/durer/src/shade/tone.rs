@@ -13,7 +13,11 @@ const BRIGHTEST: f32 = 1e6;
 #[inline(always)]
 pub(super) fn display<L: Lane>(color: Vec3Lane<L>) -> Vec3Lane<L> {
     let c = Vec3Lane::new(held(color.x), held(color.y), held(color.z));
-    let scale = c.x.splat(1.0) / c.x.larger(c.y).larger(c.z).at_least(1.0);
+    let brightest = c.x.larger(c.y).larger(c.z);
+    if brightest.all_at_most(1.0) {
+        return c;
+    }
+    let scale = c.x.splat(1.0) / brightest.at_least(1.0);
     let white = scale.one_minus() * BLEACH;
     Vec3Lane::new(
         bleached(c.x * scale, white),

@@ -1,11 +1,11 @@
 //! Points of several triangles side by side, so that they can be shaded in one go.
 
 use crate::math::Vec3;
-use crate::shade::Points;
-use crate::shade::lane::Vec3Lane;
+use crate::shade::lane::{Lane, Vec3Lane};
+use crate::shade::{Faces, Points};
 use crate::visibility::surface::attributes::{Row, VisibleTriangle};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, f32x8, f32x16};
 
 /// Up to eight points from anywhere; those not set hold what was there before.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,21 +28,49 @@ impl Gathered {
     /// The points, component by component.
     #[inline(always)]
     pub fn points<S: Simd>(&self, simd: S, parallel_view: Option<Vec3>) -> Points<f32x8<S>> {
-        let [px, py, pz, nx, ny, nz, _, _] = transpose(simd, &self.rows);
+        let (rows, [x, y, z]) = self.columns(simd);
+        points(rows, Faces::Normals(Vec3Lane::new(x, y, z)), parallel_view)
+    }
+
+    /// The points of two, one after the other.
+    #[inline(always)]
+    pub fn both<S: Simd>(
+        simd: S,
+        [a, b]: &[Self; 2],
+        parallel_view: Option<Vec3>,
+    ) -> Points<f32x16<S>> {
+        let ((a, a_face), (b, b_face)) = (a.columns(simd), b.columns(simd));
+        let [x, y, z] = combine(simd, a_face, b_face);
+        points(combine(simd, a, b), Faces::Normals(Vec3Lane::new(x, y, z)), parallel_view)
+    }
+
+    /// Positions and normals, and the faces' normals.
+    #[inline(always)]
+    fn columns<S: Simd>(&self, simd: S) -> ([f32x8<S>; 6], [f32x8<S>; 3]) {
+        let mut rows = [simd.splat_f32x8(0.0); 8];
+        for (to, row) in rows.iter_mut().zip(&self.rows) {
+            *to = f32x8::from_slice(simd, row);
+        }
+        let [px, py, pz, nx, ny, nz, _, _] = transpose(simd, rows);
         let [x, y, z] = &self.face_normals;
         let (x, y) = (f32x8::from_slice(simd, x), f32x8::from_slice(simd, y));
-        let face_normal = Vec3Lane::new(x, y, f32x8::from_slice(simd, z));
-        points([px, py, pz, nx, ny, nz], face_normal, parallel_view)
+        ([px, py, pz, nx, ny, nz], [x, y, f32x8::from_slice(simd, z)])
     }
+}
+
+/// The numbers of eight lanes, and of eight more.
+#[inline(always)]
+fn combine<S: Simd, const N: usize>(simd: S, a: [f32x8<S>; N], b: [f32x8<S>; N]) -> [f32x16<S>; N] {
+    let mut both = [simd.splat_f32x16(0.0); N];
+    for i in 0..N {
+        both[i] = simd.combine_f32x8(a[i], b[i]);
+    }
+    both
 }
 
 /// Rows to columns.
 #[inline(always)]
-fn transpose<S: Simd>(simd: S, rows: &[Row; 8]) -> [f32x8<S>; 8] {
-    let mut from = [f32x8::splat(simd, 0.0); 8];
-    for (to, row) in from.iter_mut().zip(rows) {
-        *to = f32x8::from_slice(simd, row);
-    }
+pub fn transpose<S: Simd>(simd: S, mut from: [f32x8<S>; 8]) -> [f32x8<S>; 8] {
     // Each shuffle rotates the six bits of a number's row and lane by one; three exchange them.
     for _ in 0..3 {
         let mut to = from;
@@ -57,15 +85,15 @@ fn transpose<S: Simd>(simd: S, rows: &[Row; 8]) -> [f32x8<S>; 8] {
 
 /// Points of positions and normals, component by component.
 #[inline(always)]
-pub fn points<S: Simd>(
-    [px, py, pz, nx, ny, nz]: [f32x8<S>; 6],
-    geometric_normal: Vec3Lane<f32x8<S>>,
+pub fn points<L: Lane>(
+    [px, py, pz, nx, ny, nz]: [L; 6],
+    faces: Faces<L>,
     parallel_view: Option<Vec3>,
-) -> Points<f32x8<S>> {
+) -> Points<L> {
     let view = match parallel_view {
         Some(v) => Vec3Lane::splat(px, v),
-        None => Vec3Lane::new(-px, -py, -pz),
+        None => Vec3Lane::new(px, py, pz).reversed(),
     };
     let (position, normal) = (Vec3Lane::new(px, py, pz), Vec3Lane::new(nx, ny, nz));
-    Points { position, view, normal, geometric_normal }
+    Points { position, view, normal, faces }
 }

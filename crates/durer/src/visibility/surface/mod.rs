@@ -20,6 +20,7 @@ pub mod setup;
 pub mod shadow_map;
 pub mod spanning_scan_line;
 pub(crate) mod textured;
+pub(crate) mod triangles;
 pub(crate) mod visible;
 pub mod warnock;
 pub mod z_buffer;

@@ -3,7 +3,7 @@
 use super::{Lit, RunInfo};
 use crate::math::{Vec2, Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{Points, PreparedMaterial, Sample, Samples, shade_points};
+use crate::shade::{Faces, Points, PreparedMaterial, Sample, Samples, shade_points};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::attributes::VisibleTriangle;
 use crate::visibility::surface::gather::{Gathered, points};
@@ -170,7 +170,7 @@ impl<'a> Lit<'a> {
             }
         }
         let [nx, ny, nz] = normal;
-        points(row, Vec3Lane::new(nx, ny, nz), self.parallel_view)
+        points(row, Faces::Normals(Vec3Lane::new(nx, ny, nz)), self.parallel_view)
     }
 
     /// Shades the chosen of eight pixels, of a run whose textures are looked up together.
@@ -301,8 +301,8 @@ fn points_x8<S: Simd>(
     [x, y]: [i32; 2],
     parallel_view: Option<Vec3>,
 ) -> Points<f32x8<S>> {
-    let geometric_normal = Vec3Lane::splat(f32x8::splat(simd, 0.0), t.face_normal);
-    points(t.points_x8(simd, x, y), geometric_normal, parallel_view)
+    let face = Vec3Lane::splat(f32x8::splat(simd, 0.0), t.face_normal);
+    points(t.points_x8(simd, x, y), Faces::Normals(face), parallel_view)
 }
 
 #[inline(always)]

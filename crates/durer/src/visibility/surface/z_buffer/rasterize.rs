@@ -1,10 +1,11 @@
-//! Triangles into the samples of a tile: coverage, depth test, write.
+//! Triangles into the samples of a tile: coverage, depth test, write; as many samples at a time as the
+//! machine's registers hold.
 
-use super::tile::{BLOCK, SamplePlane, TILE};
+use super::tile::{BLOCK, MOST_LANES, SamplePlane, TILE};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, i32x8, u32x8};
+use fearless_simd::{Simd, i32x8};
 use fearless_simd_macros::simd;
 
 /// Is asked for each fragment that passes the depth test, with its tile-local pixel; a fragment is
@@ -23,7 +24,7 @@ impl FragmentTest for AllPass {
 }
 
 /// Edge functions of triangles of less than this extent fit i32, in units of 1/65536 pixel², at all
-/// pixels of their bounding box and seven beside it: at most 2 · 2¹⁴ · (2¹⁴ + 2¹²) < 2³⁰.
+/// pixels of their bounding box and fifteen beside it: at most 2 · 2¹⁴ · (2¹⁴ + 2¹²) < 2³⁰.
 const SMALL_EXTENT: i32 = 64 * SUBPIXELS;
 
 /// Small triangles of at most this many pixels on a side within the tile skip the test of whole blocks.
@@ -63,23 +64,29 @@ fn top_left(dx: i32, dy: i32) -> bool {
     (i64::from(dy) << 33) - i64::from(dx) < 0
 }
 
-/// Edge functions of eight samples, in i32.
+/// Samples that are tested at a time.
+#[inline(always)]
+const fn lanes<S: Simd>() -> usize {
+    size_of::<S::i32s>() / size_of::<i32>()
+}
+
+/// Edge functions of consecutive samples, in i32.
 #[derive(Clone, Copy)]
 struct LaneEdges<S: Simd> {
-    row: [i32x8<S>; 3],
+    row: [S::i32s; 3],
     step_y: [i32; 3],
 }
 
 impl<S: Simd> LaneEdges<S> {
     /// Sign bit set where the sample is outside an edge.
     #[inline(always)]
-    fn outside(&self) -> i32x8<S> {
+    fn outside(&self) -> S::i32s {
         self.row[0] | self.row[1] | self.row[2]
     }
 
     /// [`Self::outside`] so many rows further down.
     #[inline(always)]
-    fn outside_in_row(&self, row: i32) -> i32x8<S> {
+    fn outside_in_row(&self, row: i32) -> S::i32s {
         let [a, b, c] = &self.row;
         let [step_a, step_b, step_c] = self.step_y;
         (*a + step_a.wrapping_mul(row))
@@ -134,7 +141,7 @@ pub fn rasterize<'a, S: Simd, T: FragmentTest>(
     }
 }
 
-/// Small triangles: all rows of their bounding box, eight samples at a time.
+/// Small triangles: all rows of their bounding box.
 #[inline(always)]
 fn rasterize_box<S: Simd, T: FragmentTest>(
     simd: S,
@@ -144,13 +151,13 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     [x0, y0, x1, y1]: [i32; 4],
     test: &mut Option<&mut T>,
 ) {
-    let columns = 8 >> plane.shift;
+    let columns = lanes::<S>() as i32 >> plane.shift;
     // Not on a multiple of the columns, so that fewer steps reach over a small box.
     let mut x = x0.min(TILE - columns);
     let px = (tile[0] + x) * SUBPIXELS + HALF_PIXEL;
     let py = (tile[1] + y0) * SUBPIXELS + HALF_PIXEL;
-    let lane_x = i32x8::from_slice(simd, &plane.lanes[0]);
-    let lane_y = i32x8::from_slice(simd, &plane.lanes[1]);
+    let lane_x = S::i32s::from_slice(simd, &plane.lanes[0][..lanes::<S>()]);
+    let lane_y = S::i32s::from_slice(simd, &plane.lanes[1][..lanes::<S>()]);
     let mut edges = LaneEdges { row: [lane_x; 3], step_y: [0; 3] };
     let mut step_x = [0; 3];
     for (i, step_x) in step_x.iter_mut().enumerate() {
@@ -176,7 +183,8 @@ fn rasterize_box<S: Simd, T: FragmentTest>(
     }
 }
 
-/// Large triangles: whole blocks of 8 × 8 pixels are rejected or accepted by their corners.
+/// Large triangles: whole blocks of 8 × 8 pixels, or wider ones where more are tested at a time, are rejected
+/// or accepted by their corners.
 #[inline(always)]
 fn rasterize_blocks<S: Simd, T: FragmentTest>(
     simd: S,
@@ -187,28 +195,29 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
     test: &mut Option<&mut T>,
 ) {
     let Edges { at, dx, dy } = Edges::new(t, tile);
-    let columns = 8 >> plane.shift;
+    let columns = lanes::<S>() as i32 >> plane.shift;
+    let width = columns.max(BLOCK);
     let [[left, right], [up, down]] = plane.reach;
     // Edge functions divided by 256 and rounded down keep their signs, for whole pixels change them
-    // by multiples of 256. What they are more at eight samples than at the pixel's centre:
-    let mut lanes = [i32x8::splat(simd, 0); 3];
+    // by multiples of 256. What they are more at the samples than at the pixel's centre:
+    let mut at_lanes = [S::i32s::splat(simd, 0); 3];
     // What they change at least and at most from the centre of a block's first pixel to its samples.
     let (mut lowest, mut highest) = ([0; 3], [0; 3]);
-    // What they are at most among eight samples in each row of a block, from the same place.
+    // What they are at most among the samples in each row of a block, from the same place.
     let mut rows = [i32x8::splat(simd, 0); 3];
     let row_numbers = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     for i in 0..3 {
         let (dx, dy) = (i64::from(dx[i]), i64::from(dy[i]));
         let rest = at[i] & i64::from(SUBPIXELS - 1);
-        let mut lane = [0; 8];
+        let mut lane = [0; MOST_LANES];
         for (l, lane) in lane.iter_mut().enumerate() {
             let (x, y) = (i64::from(plane.lanes[0][l]), i64::from(plane.lanes[1][l]));
             *lane = ((rest + dx * x + dy * y) >> SUBPIXEL_BITS) as i32;
         }
-        lanes[i] = i32x8::from_slice(simd, &lane);
-        let last = 7 * SUBPIXELS;
-        let (x_first, x_last) = (dx * i64::from(left), dx * i64::from(last + right));
-        let (y_first, y_last) = (dy * i64::from(up), dy * i64::from(last + down));
+        at_lanes[i] = S::i32s::from_slice(simd, &lane[..lanes::<S>()]);
+        let (last_x, last_y) = ((width - 1) * SUBPIXELS, (BLOCK - 1) * SUBPIXELS);
+        let (x_first, x_last) = (dx * i64::from(left), dx * i64::from(last_x + right));
+        let (y_first, y_last) = (dy * i64::from(up), dy * i64::from(last_y + down));
         lowest[i] = x_first.min(x_last) + y_first.min(y_last);
         highest[i] = x_first.max(x_last) + y_first.max(y_last);
         let x_last = dx * i64::from((columns - 1) * SUBPIXELS + right);
@@ -216,17 +225,17 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
         let most = (rest + x_first.max(x_last) + y_first.max(y_last)) >> SUBPIXEL_BITS;
         rows[i] = row_numbers * dy as i32 + most as i32;
     }
-    let (x0, mut y) = (x0 & -BLOCK, y0 & -BLOCK);
+    let (x0, mut y) = (x0 & -width, y0 & -BLOCK);
     let nearest = t.depth_min.to_bits() as i32;
     while y <= y1 {
         let mut x = x0;
         while x <= x1 {
-            if plane.hides([x, y, x, y], nearest) {
-                x += BLOCK;
+            if plane.hides([x, y, x + width - 1, y], nearest) {
+                x += width;
                 continue;
             }
             let (fx, fy) = (i64::from(x * SUBPIXELS), i64::from(y * SUBPIXELS));
-            let mut edges = LaneEdges { row: [i32x8::splat(simd, 0); 3], step_y: [0; 3] };
+            let mut edges = LaneEdges { row: [S::i32s::splat(simd, 0); 3], step_y: [0; 3] };
             let mut most = [i32x8::splat(simd, 0); 3];
             let (mut step_x, mut outside) = ([0; 3], false);
             for i in 0..3 {
@@ -234,7 +243,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
                 outside |= here + highest[i] < 0;
                 // An edge that the whole block lies inside of is left out; the others fit i32.
                 if here + lowest[i] < 0 {
-                    edges.row[i] = lanes[i] + (here >> SUBPIXEL_BITS) as i32;
+                    edges.row[i] = at_lanes[i] + (here >> SUBPIXEL_BITS) as i32;
                     most[i] = rows[i] + (here >> SUBPIXEL_BITS) as i32;
                     edges.step_y[i] = dy[i];
                     step_x[i] = dx[i].wrapping_mul(columns);
@@ -243,7 +252,7 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
             if !outside {
                 let in_box = (2u64 << (y1 - y).min(7)) - 1;
                 let mut column = 0;
-                while column < BLOCK {
+                while column < width {
                     // Rows with a sample that may be inside; thin triangles have few of them.
                     let inside = (most[0] | most[1] | most[2]).simd_ge(i32x8::splat(simd, 0));
                     let found = inside.to_bitmask() & in_box;
@@ -255,13 +264,13 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
                     column += columns;
                 }
             }
-            x += BLOCK;
+            x += width;
         }
         y += BLOCK;
     }
 }
 
-/// Eight samples wide from column x, rows y0 … y1: coverage, depth test, write.
+/// One step wide from column x, rows y0 … y1: coverage, depth test, write.
 #[inline(always)]
 fn fill_rows<S: Simd, T: FragmentTest>(
     simd: S,
@@ -277,13 +286,13 @@ fn fill_rows<S: Simd, T: FragmentTest>(
         let outside = edges.outside();
         edges.next_row();
         // Thin triangles leave most rows of their boxes empty.
-        if outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+        if outside.simd_ge(S::i32s::splat(simd, 0)).any_true() {
             fill_row(simd, plane, t, &depths, outside, [x, y], test);
         }
     }
 }
 
-/// Eight samples wide from column x, the rows from y on whose bits are set in `rows`.
+/// One step wide from column x, the rows from y on whose bits are set in `rows`.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "one call, all of it a block's state")]
 fn fill_found<S: Simd, T: FragmentTest>(
@@ -304,18 +313,18 @@ fn fill_found<S: Simd, T: FragmentTest>(
         let row = rows.trailing_zeros() as i32;
         rows &= rows - 1;
         let outside = edges.outside_in_row(row);
-        if outside.simd_ge(i32x8::splat(simd, 0)).any_true() {
+        if outside.simd_ge(S::i32s::splat(simd, 0)).any_true() {
             fill_row(simd, plane, t, &depths, outside, [x, y + row], test);
         }
     }
 }
 
-/// The depth of a triangle at eight samples side by side.
+/// The depth of a triangle at samples side by side.
 struct LaneDepths<S: Simd> {
     /// What x adds to the depth.
-    from_x: f32x8<S>,
+    from_x: S::f32s,
     /// Where the samples lie in their row.
-    lanes_y: f32x8<S>,
+    lanes_y: S::f32s,
     /// From row 0 of the tile to the row that depths are counted from.
     rows: i32,
 }
@@ -326,43 +335,44 @@ impl<S: Simd> LaneDepths<S> {
     fn new(simd: S, plane: &SamplePlane, t: &ScreenTriangle, [x, tile_y]: [i32; 2]) -> Self {
         let origin = t.origin();
         let [lanes_x, lanes_y] = &plane.lanes_in_pixels;
-        let from_x = f32x8::from_slice(simd, lanes_x) + (x - origin[0]) as f32;
-        let lanes_y = f32x8::from_slice(simd, lanes_y);
+        let from_x = S::f32s::from_slice(simd, &lanes_x[..lanes::<S>()]) + (x - origin[0]) as f32;
+        let lanes_y = S::f32s::from_slice(simd, &lanes_y[..lanes::<S>()]);
         Self { from_x: from_x * t.depth_dx, lanes_y, rows: tile_y - origin[1] }
     }
 
     /// The bits of the depths in a row of the tile.
     #[inline(always)]
-    fn at(&self, simd: S, t: &ScreenTriangle, y: i32) -> i32x8<S> {
+    fn at(&self, simd: S, t: &ScreenTriangle, y: i32) -> S::i32s {
         let from_y = (self.lanes_y + (y + self.rows) as f32) * t.depth_dy;
         let depth = (self.from_x + from_y) + t.depth;
-        let depth = depth.max(f32x8::splat(simd, t.depth_min)).min(f32x8::splat(simd, t.depth_max));
+        let depth = depth.max(S::f32s::splat(simd, t.depth_min));
+        let depth = depth.min(S::f32s::splat(simd, t.depth_max));
         depth.bitcast()
     }
 }
 
-/// Eight samples of row y from column x, some of which lie inside all edges: depth test, write.
+/// A step's samples of row y from column x, some of which lie inside all edges: depth test, write.
 #[inline(always)]
 fn fill_row<S: Simd, T: FragmentTest>(
     simd: S,
     plane: &mut SamplePlane,
     t: &ScreenTriangle,
     depths: &LaneDepths<S>,
-    outside: i32x8<S>,
+    outside: S::i32s,
     [x, y]: [i32; 2],
     test: &mut Option<&mut T>,
 ) {
     let index = ((y * TILE + x) << plane.shift) as usize;
     let depth = depths.at(simd, t, y);
-    let stored = &mut plane.depth[index..index + 8];
-    let old = i32x8::from_slice(simd, stored);
+    let stored = &mut plane.depth[index..index + lanes::<S>()];
+    let old = S::i32s::from_slice(simd, stored);
     // Both are bits of floats ≥ 0, so the difference keeps its sign.
     let mut write = !((old - depth) | outside) >> 31u32;
-    if !write.simd_lt(i32x8::splat(simd, 0)).any_true() {
+    if !write.simd_lt(S::i32s::splat(simd, 0)).any_true() {
         return;
     }
-    let items = &mut plane.item[index..index + 8];
-    let old_item: i32x8<S> = u32x8::from_slice(simd, items).bitcast();
+    let items = &mut plane.item[index..index + lanes::<S>()];
+    let old_item: S::i32s = S::u32s::from_slice(simd, items).bitcast();
     let item = t.item as i32;
     // At equal depths the lower item wins, whatever the order of drawing.
     let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
@@ -372,26 +382,27 @@ fn fill_row<S: Simd, T: FragmentTest>(
     }
     // Not a select: that would become a masked store, which is far slower.
     (old ^ ((old ^ depth) & write)).store_slice(stored);
-    let new_item: u32x8<S> = (old_item ^ ((old_item ^ item) & write)).bitcast();
+    let new_item: S::u32s = (old_item ^ ((old_item ^ item) & write)).bitcast();
     new_item.store_slice(items);
 }
 
 #[inline(never)]
 fn tested<S: Simd, T: FragmentTest>(
     simd: S,
-    write: i32x8<S>,
+    write: S::i32s,
     t: &ScreenTriangle,
     [x, y]: [i32; 2],
     (first, shift): (usize, u32),
     test: &mut T,
-) -> i32x8<S> {
-    let mut lanes = [0i32; 8];
-    write.store_slice(&mut lanes);
-    for (i, lane) in lanes.iter_mut().enumerate() {
+) -> S::i32s {
+    let mut written = [0i32; MOST_LANES];
+    let written = &mut written[..lanes::<S>()];
+    write.store_slice(written);
+    for (i, lane) in written.iter_mut().enumerate() {
         let (pixel, sample) = (i >> shift, i & ((1 << shift) - 1));
         if *lane != 0 && !test.passes(t, x + pixel as i32, y, first + sample) {
             *lane = 0;
         }
     }
-    i32x8::from_slice(simd, &lanes)
+    S::i32s::from_slice(simd, written)
 }

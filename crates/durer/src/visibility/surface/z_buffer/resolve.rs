@@ -5,13 +5,13 @@ use super::blended::{Fragments, resolve_blended};
 use super::rasterize::FragmentTest;
 use super::tile::{SamplePlane, TILE};
 use crate::math::Vec4;
-use crate::shade::color::{encode_opaque_x8, premultiply};
+use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::Lit;
+use crate::visibility::surface::lit::{Lit, are_few};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, u32x8};
+use fearless_simd::{Simd, f32x16, u32x8, u32x16};
 use fearless_simd_macros::simd;
 
 /// Samples that a pixel has at most.
@@ -78,18 +78,36 @@ fn resolve_opaque<S: Simd>(
         let behind = premultiply((area.background)(area.tile[1] + y));
         *row = (behind, encode(behind));
     }
-    // Column by column of eight pixels: the next row shows mostly the same triangles.
+    // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
         let width = 8.min(area.size[0] - x) as usize;
-        for (y, &(behind, encoded)) in (0..area.size[1]).zip(&rows) {
-            let index = (y * TILE + x) as usize;
+        expect_column(simd, planes, x, area.size[1], lit);
+        for y in (0..area.size[1]).step_by(2) {
             let at = [area.tile[0] + x, area.tile[1] + y];
-            let start = y as usize * output.stride + x as usize;
-            let out = &mut output.color[start..start + width];
-            let (whole, differs) = whole_pixels(simd, planes, index);
-            resolve_eight(simd, out, &whole, lit, encoded, at);
-            if differs != [0; 8] {
-                add_mixed(simd, planes, index, &differs[..width], mixed, lit, behind, at);
+            let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
+            let behind = [y as usize, y as usize + 1].map(|y| rows[y.min(rows.len() - 1)]);
+            if let Some(pixels) = resolve_block(simd, planes, first, lit, behind, at) {
+                let (pixels, _) = pixels.as_chunks::<8>();
+                for (pixels, y) in pixels.iter().zip(y..area.size[1]) {
+                    let start = y as usize * output.stride + x as usize;
+                    put(&mut output.color[start..start + width], pixels);
+                }
+                continue;
+            }
+            let (above, differs) = whole_pixels(simd, planes, first);
+            let (below, differs_below) = whole_pixels(simd, planes, second);
+            let whole = simd.combine_u32x8(above, below);
+            let pixels = resolve_sixteen(simd, lit, whole, behind.map(|(_, encoded)| encoded), at);
+            let (pixels, _) = pixels.as_chunks::<8>();
+            for (i, index) in (0..2.min(area.size[1] - y)).zip([first, second]) {
+                let start = (y + i) as usize * output.stride + x as usize;
+                put(&mut output.color[start..start + width], &pixels[i as usize]);
+                let differs = if i == 0 { &differs } else { &differs_below };
+                if *differs != [0; 8] {
+                    let (behind, _) = behind[i as usize];
+                    let (differs, at) = (&differs[..width], [at[0], at[1] + i]);
+                    add_mixed(simd, planes, index, differs, mixed, lit, behind, at);
+                }
             }
         }
     }
@@ -100,45 +118,138 @@ fn resolve_opaque<S: Simd>(
     }
 }
 
+/// Makes what a column of eight pixels shows ready to be lit.
+#[inline(always)]
+fn expect_column<S: Simd>(simd: S, planes: &[SamplePlane], x: i32, height: i32, lit: &mut Lit<'_>) {
+    let none = u32x8::splat(simd, NO_ITEM);
+    for plane in planes {
+        let mut rows_above = [none; 4];
+        for y in 0..height {
+            let items = plane.items_of_eight((y * TILE + x) as usize);
+            for (eight, above) in items.as_chunks::<8>().0.iter().zip(&mut rows_above) {
+                let shown = u32x8::from_slice(simd, eight);
+                // Most that is beside the same or below it has been asked for.
+                let beside = simd.slide_u32x8::<7>(none, shown);
+                let above_left = simd.slide_u32x8::<7>(none, *above);
+                let above_right = simd.slide_u32x8::<1>(*above, none);
+                let mut new = shown.simd_ne(none) & shown.simd_ne(beside) & shown.simd_ne(*above);
+                new &= shown.simd_ne(above_left) & shown.simd_ne(above_right);
+                *above = shown;
+                let mut left = new.to_bitmask();
+                while left != 0 {
+                    lit.expect(eight[left.trailing_zeros() as usize % 8]);
+                    left &= left - 1;
+                }
+            }
+        }
+    }
+    lit.make_ready();
+}
+
 /// Of eight pixels in a row the item that they show at all samples, [`NO_ITEM`] where there is none;
 /// and a number that is 0 only where all samples show the same.
 #[inline(always)]
-fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> ([u32; 8], [u32; 8]) {
+fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> (u32x8<S>, [u32; 8]) {
     let [first, mut differs] = planes[0].eight(simd, index);
     for plane in &planes[1..] {
         let [other, differs_there] = plane.eight(simd, index);
         differs |= differs_there | (first ^ other);
     }
     // All bits of NO_ITEM are set.
-    let mixed: u32x8<S> = {
-        let same = differs.simd_eq(u32x8::splat(simd, 0));
-        same.select(first, u32x8::splat(simd, NO_ITEM))
-    };
-    (mixed.into(), differs.into())
+    let same = differs.simd_eq(u32x8::splat(simd, 0));
+    (same.select(first, u32x8::splat(simd, NO_ITEM)), differs.into())
 }
 
-/// Of eight pixels in a row, those that show one item at all samples.
+/// Sixteen pixels, eight in each of two rows, with several samples each, where they show few items of plain
+/// materials on something opaque: each item is lit at all of them, and weighted by its samples.
 #[inline(always)]
-fn resolve_eight<S: Simd>(
+fn resolve_block<S: Simd>(
     simd: S,
-    out: &mut [[u8; 4]],
-    whole: &[u32; 8],
+    planes: &[SamplePlane],
+    index: usize,
     lit: &mut Lit<'_>,
-    behind: [u8; 4],
-    [x, y]: [i32; 2],
-) {
-    if *whole == [NO_ITEM; 8] {
-        return out.fill(behind);
+    [above, below]: [(Vec4, [u8; 4]); 2],
+    at: [i32; 2],
+) -> Option<[[u8; 4]; 16]> {
+    let none = u32x16::splat(simd, NO_ITEM);
+    let (mut samples, mut count) = ([none; MOST_SAMPLES], 0);
+    for plane in planes.iter().filter(|plane| plane.shift > 0) {
+        let above = plane.four_of_eight(simd, index);
+        let below = plane.four_of_eight(simd, index + TILE as usize);
+        for (above, below) in above.into_iter().zip(below) {
+            samples[count] = simd.combine_u32x8(above, below);
+            count += 1;
+        }
     }
-    let mut colors = [[0.0; 8]; 4];
-    Lit::colors_x8(simd, lit, whole, x, y, &mut colors);
-    let encoded = encode_opaque_x8(simd, &colors);
-    if whole.iter().all(|&item| item != NO_ITEM) {
-        out.copy_from_slice(&encoded[..out.len()]);
-        return;
+    let samples = &samples[..count];
+    if count == 0 || above.0.w < 1.0 || below.0.w < 1.0 || !are_few(simd, samples[0]) {
+        return None;
     }
-    for (i, out) in out.iter_mut().enumerate() {
-        *out = if whole[i] != NO_ITEM { encoded[i] } else { behind };
+    let zero = f32x16::splat(simd, 0.0);
+    let share = f32x16::splat(simd, 1.0 / count as f32);
+    let mut sums = [zero; 3];
+    // By sample, the pixels whose item is not yet lit.
+    let mut left = [u64::from(u16::MAX); MOST_SAMPLES];
+    while let Some(k) = (0..count).find(|&k| left[k] != 0) {
+        let items: [u32; 16] = samples[k].into();
+        let item = items[left[k].trailing_zeros() as usize % 16];
+        let (mut weight, mut there) = (zero, 0);
+        for (sample, left) in samples.iter().zip(&mut left) {
+            let same = sample.simd_eq(u32x16::splat(simd, item));
+            weight += same.select(share, zero);
+            there |= same.to_bitmask();
+            *left &= !same.to_bitmask();
+        }
+        let mut colors = [zero; 3];
+        if item == NO_ITEM {
+            let (above, below) = (above.0.to_array(), below.0.to_array());
+            for (i, to) in colors.iter_mut().enumerate() {
+                let (above, below) = (simd.splat_f32x8(above[i]), simd.splat_f32x8(below[i]));
+                *to = simd.combine_f32x8(above, below);
+            }
+        } else {
+            let shaded = lit.colors_of_one_x16(simd, item, there, at)?;
+            for (to, from) in colors.iter_mut().zip(&shaded) {
+                *to = f32x16::from_slice(simd, from);
+            }
+        }
+        for (sum, color) in sums.iter_mut().zip(colors) {
+            *sum += color * weight;
+        }
+    }
+    let [r, g, b] = sums;
+    let colors = [r.into(), g.into(), b.into(), [1.0; 16]];
+    let pixels: [u32; 16] = encode_opaque_x16(simd, &colors).into();
+    Some(pixels.map(u32::to_le_bytes))
+}
+
+/// Of two rows of eight pixels, those that show one item at all samples; the others show what is behind.
+#[inline(always)]
+fn resolve_sixteen<S: Simd>(
+    simd: S,
+    lit: &mut Lit<'_>,
+    whole: u32x16<S>,
+    behind: [[u8; 4]; 2],
+    at: [i32; 2],
+) -> [[u8; 4]; 16] {
+    let [above, below] = behind.map(|behind| simd.splat_u32x8(u32::from_le_bytes(behind)));
+    let behind = simd.combine_u32x8(above, below);
+    let there = whole.simd_ne(u32x16::splat(simd, NO_ITEM));
+    let mut pixels: [u32; 16] = behind.into();
+    if there.any_true() {
+        let mut colors = [[0.0; 16]; 4];
+        Lit::colors_x16(simd, lit, whole, at, &mut colors);
+        pixels = there.select(encode_opaque_x16(simd, &colors), behind).into();
+    }
+    pixels.map(u32::to_le_bytes)
+}
+
+/// Writes a row of up to eight pixels.
+#[inline(always)]
+fn put(out: &mut [[u8; 4]], pixels: &[[u8; 4]; 8]) {
+    match <&mut [[u8; 4]; 8]>::try_from(&mut *out) {
+        Ok(out) => *out = *pixels,
+        Err(_) => out.copy_from_slice(&pixels[..out.len()]),
     }
 }
 

@@ -22,6 +22,9 @@ pub const BLOCK: i32 = 8;
 /// Blocks of a tile.
 const BLOCKS: usize = (TILE * TILE / (BLOCK * BLOCK)) as usize;
 
+/// Samples that are tested at a time where registers are widest.
+pub const MOST_LANES: usize = 16;
+
 /// Bits of 1.0, the cleared depth.
 const FAR: i32 = 0x3f80_0000;
 
@@ -37,10 +40,11 @@ pub struct SamplePlane {
     pub shift: u32,
     /// The least and the largest offset of a sample, x and y.
     pub reach: [[i32; 2]; 2],
-    /// Where eight consecutive samples lie, from the first one's pixel's centre, in 1/256 pixel.
-    pub lanes: [[i32; 8]; 2],
+    /// Where as many consecutive samples lie as any machine tests at a time, from the first one's pixel's
+    /// centre, in 1/256 pixel.
+    pub lanes: [[i32; MOST_LANES]; 2],
     /// The same in pixels.
-    pub lanes_in_pixels: [[f32; 8]; 2],
+    pub lanes_in_pixels: [[f32; MOST_LANES]; 2],
     /// Bits of a depth for each block of 8 × 8 pixels, row by row, beyond which nothing is seen there.
     pub farthest: [i32; BLOCKS],
     /// Bits of the depths.
@@ -65,7 +69,7 @@ impl SamplePlane {
                 pixels * SUBPIXELS + offsets[lane % count][axis]
             })
         };
-        let lanes: [[i32; 8]; 2] = [lane(0), lane(1)];
+        let lanes: [[i32; MOST_LANES]; 2] = [lane(0), lane(1)];
         let least = |axis: usize| offsets.iter().map(|o| o[axis]).min().unwrap_or(0);
         let largest = |axis: usize| offsets.iter().map(|o| o[axis]).max().unwrap_or(0);
         Self {
@@ -107,19 +111,20 @@ impl SamplePlane {
         &self.item[pixel << self.shift..(pixel + 1) << self.shift]
     }
 
+    /// The items at the samples of eight pixels in a row.
+    #[inline(always)]
+    pub fn items_of_eight(&self, pixel: usize) -> &[u32] {
+        &self.item[pixel << self.shift..(pixel + 8) << self.shift]
+    }
+
     /// The depth at the first sample of a pixel.
     pub fn depth(&self, pixel: usize) -> f32 {
         f32::from_bits(self.depth[pixel << self.shift] as u32)
     }
 
-    /// The item at the first sample of each of eight pixels in a row, and a number for each that is
-    /// 0 only where all samples of the pixel show it.
+    /// The items at the samples of eight pixels in a row, four each, by sample.
     #[inline(always)]
-    pub fn eight<S: Simd>(&self, simd: S, pixel: usize) -> [u32x8<S>; 2] {
-        if self.shift == 0 {
-            let items = u32x8::from_slice(simd, &self.item[pixel..pixel + 8]);
-            return [items, u32x8::splat(simd, 0)];
-        }
+    pub fn four_of_eight<S: Simd>(&self, simd: S, pixel: usize) -> [u32x8<S>; 4] {
         let items = &self.item[4 * pixel..4 * pixel + 32];
         let a = u32x8::from_slice(simd, &items[..8]);
         let b = u32x8::from_slice(simd, &items[8..16]);
@@ -132,6 +137,18 @@ impl SamplePlane {
         let third = simd.unzip_high_u32x8(even_ab, even_cd);
         let second = simd.unzip_low_u32x8(odd_ab, odd_cd);
         let fourth = simd.unzip_high_u32x8(odd_ab, odd_cd);
+        [first, second, third, fourth]
+    }
+
+    /// The item at the first sample of each of eight pixels in a row, and a number for each that is
+    /// 0 only where all samples of the pixel show it.
+    #[inline(always)]
+    pub fn eight<S: Simd>(&self, simd: S, pixel: usize) -> [u32x8<S>; 2] {
+        if self.shift == 0 {
+            let items = u32x8::from_slice(simd, &self.item[pixel..pixel + 8]);
+            return [items, u32x8::splat(simd, 0)];
+        }
+        let [first, second, third, fourth] = self.four_of_eight(simd, pixel);
         [first, (first ^ second) | (first ^ third) | (first ^ fourth)]
     }
 }
