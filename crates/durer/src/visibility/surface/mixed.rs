@@ -2,7 +2,7 @@
 
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, unpremultiply};
-use crate::visibility::surface::lit::{Lit, Queue, Queued};
+use crate::visibility::surface::lit::{Lit, QUEUE, Queue, Queued};
 use fearless_simd::Simd;
 use fearless_simd_macros::simd;
 
@@ -13,7 +13,7 @@ pub struct Mixed {
     /// Linear, premultiplied; by pixel.
     pub sums: Vec<Vec4>,
     /// Pixel and weight of each entry of the queue.
-    waiting: [(u32, f32); 8],
+    waiting: [(u32, f32); QUEUE],
     queue: Queue,
 }
 
@@ -23,7 +23,7 @@ impl Mixed {
         Self {
             pixels: Vec::new(),
             sums: vec![Vec4::ZERO; pixels],
-            waiting: [(0, 0.0); 8],
+            waiting: [(0, 0.0); QUEUE],
             queue: Queue::default(),
         }
     }
@@ -52,19 +52,19 @@ impl Mixed {
         weight: f32,
         at: [i32; 2],
     ) {
-        match lit.queue(simd, item, at, &mut self.queue) {
+        match lit.queue(item, at, &mut self.queue) {
             Queued::Done => {}
             Queued::OtherRun => {
                 Self::flush(simd, self, lit);
-                lit.queue(simd, item, at, &mut self.queue);
+                lit.queue(item, at, &mut self.queue);
             }
             Queued::Never => {
                 let color = lit.color(item, at[0], at[1]).truncate().extend(1.0);
                 return self.add_color(index, color, weight);
             }
         }
-        self.waiting[(self.queue.count - 1) % 8] = (index, weight);
-        if self.queue.count == 8 {
+        self.waiting[(self.queue.count - 1) % QUEUE] = (index, weight);
+        if self.queue.count == QUEUE {
             Self::flush(simd, self, lit);
         }
     }

@@ -234,56 +234,6 @@ impl<'a> Lit<'a> {
         let points = gathered.points(simd, self.parallel_view);
         shade_points(simd, &points, info.material, self.shared.lights, info.shading)
     }
-
-    /// Adds a pixel of an item to a queue that is not full.
-    #[inline(always)]
-    pub fn queue<S: Simd>(
-        &mut self,
-        simd: S,
-        item: u32,
-        at: [i32; 2],
-        queue: &mut Queue,
-    ) -> Queued {
-        let RunInfo { run, first_item, plain, .. } = self.run_info(item);
-        if !plain {
-            return Queued::Never;
-        }
-        if queue.count > 0 && queue.first_item != first_item {
-            return Queued::OtherRun;
-        }
-        queue.first_item = first_item;
-        queue.gathered.set(simd, queue.count, self.triangles.get(item, run), at);
-        queue.count += 1;
-        Queued::Done
-    }
-
-    /// Shades the pixels that [`Self::queue`] has added.
-    #[inline(always)]
-    pub fn shade_queue<S: Simd>(&mut self, simd: S, queue: &Queue) -> [[f32; 8]; 3] {
-        let info = self.run_info(queue.first_item);
-        self.shade_gathered(simd, &info, &queue.gathered)
-    }
-}
-
-/// Whether an item has been queued.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Queued {
-    /// It has.
-    Done,
-    /// Not yet: what waits is of another run and has to be shaded first.
-    OtherRun,
-    /// Its pixels have to be shaded one by one.
-    Never,
-}
-
-/// Up to eight pixels of one plain run, from anywhere.
-#[derive(Default)]
-pub struct Queue {
-    gathered: Gathered,
-    /// How many pixels there are.
-    pub count: usize,
-    /// The first item of their run.
-    first_item: u32,
 }
 
 #[inline(always)]

@@ -1,9 +1,10 @@
 //! Lighting visible items: one pixel with everything a material can have; in [`eight`] several at a time.
 
 mod eight;
+mod queue;
 mod sixteen;
 
-pub use eight::{Queue, Queued};
+pub use queue::{QUEUE, Queue, Queued};
 pub use sixteen::are_few;
 
 use crate::math::{DMat3, Vec2, Vec3, Vec4};
