@@ -4,6 +4,7 @@ use super::page::{GridPoint, Projected, orient};
 use super::smooth_silhouette::Whole;
 use crate::math::DVec3;
 use crate::visibility::object::{Bodies, Edges, Faces};
+use std::cmp::Ordering;
 
 /// How faces are turned, for all that asks.
 pub(super) struct Facing {
@@ -61,11 +62,7 @@ impl Facing {
             }
             found.turn[i] = match projected.corners(t) {
                 Some(c) => turned_on_grid(c.map(|c| c.at)),
-                None => {
-                    let n = (points[1] - points[0]).cross(points[2] - points[0]);
-                    let towards = -n.dot(projected.plane.sight_at(points[0]));
-                    if towards > 0.0 { 1 } else { -1 }
-                }
+                None => turned_in_space(faces, item, points, projected),
             } * sign as i8;
         }
         found
@@ -140,6 +137,20 @@ fn normal([a, b, c]: [DVec3; 3], thin: f64) -> Option<DVec3> {
     let longest = u.length_squared().max(v.length_squared()).max((c - b).length_squared()).sqrt();
     (double_area > longest * thin && double_area > 0.0 && double_area.is_finite())
         .then(|| n / double_area)
+}
+
+/// The same as [`turned_on_grid`] for a triangle that is not all in front of the eye. From its sorted corners,
+/// so that copies that begin elsewhere are rounded alike, and such that turn the other way are opposite.
+fn turned_in_space(faces: &Faces, item: u32, points: [DVec3; 3], projected: &Projected) -> i8 {
+    let Some([a, b, c]) = faces.sorted_corners(item) else { return 0 };
+    let towards = -(b - a).cross(c - a).dot(projected.plane.sight_at(a));
+    let same_way = (0..3).any(|i| points[i] == a && points[(i + 1) % 3] == b);
+    match towards.partial_cmp(&0.0) {
+        Some(Ordering::Greater) if same_way => 1,
+        Some(Ordering::Less) if !same_way => 1,
+        Some(Ordering::Greater | Ordering::Less) => -1,
+        _ => 0,
+    }
 }
 
 /// 1 where the points turn counter-clockwise, 0 where the triangle is hardly more than a line.
