@@ -43,6 +43,9 @@ const KEPT: usize = 1024;
 #[derive(Debug, Clone, Copy, Default)]
 struct Wanted {
     items: [u32; 8],
+    /// Their vertices in the mesh: read when they are wanted, for where they lie is asked for soon after, and
+    /// neither is in the cache.
+    corners: [[u32; 3]; 8],
     count: usize,
     run: usize,
 }
@@ -77,27 +80,41 @@ impl<'a> Triangles<'a> {
         }
         self.wanted.run = run;
         self.wanted.items[self.wanted.count] = item;
+        self.wanted.corners[self.wanted.count] = self.corners(item, run);
         self.wanted.count += 1;
         self.kept[place(item)].item = item;
     }
 
+    /// The vertices of an item in its mesh; of a line its ends and the first again.
+    fn corners(&self, item: u32, run: usize) -> [u32; 3] {
+        let run = &self.runs[run];
+        let mesh = &self.scene.meshes[run.mesh];
+        let primitive = (run.range.start + (item - run.first_item)) as usize;
+        if mesh.topology == Topology::Triangles {
+            return mesh.triangle(primitive);
+        }
+        let [a, b] = mesh.line_or_point(primitive);
+        [a, b, a]
+    }
+
     /// Makes all items ready that are wanted.
     pub fn make_ready(&mut self) {
-        let Wanted { mut items, count, run: index } = self.wanted;
+        let Wanted { mut items, mut corners, count, run: index } = self.wanted;
         if count == 0 {
             return;
         }
         self.wanted.count = 0;
-        let first = items[0];
-        items[count..].fill(first);
-        let run = &self.runs[index];
-        let mesh = &self.scene.meshes[run.mesh];
+        for i in count..8 {
+            (items[i], corners[i]) = (items[0], corners[0]);
+        }
+        let mesh = &self.scene.meshes[self.runs[index].mesh];
         if self.transform.as_ref().is_none_or(|t| t.run != index) {
-            self.transform = Some(RunTransform::new(index, run, self.scene, self.view));
+            self.transform =
+                Some(RunTransform::new(index, &self.runs[index], self.scene, self.view));
         }
         let Some(t) = &self.transform else { return };
         let kept = &mut *self.kept;
-        dispatch!(self.level, simd => prepare(simd, t, mesh, run, &items, kept));
+        dispatch!(self.level, simd => prepare(simd, t, mesh, (&items, &corners), kept));
     }
 }
 
@@ -124,25 +141,22 @@ fn prepare<S: Simd>(
     simd: S,
     t: &RunTransform,
     mesh: &Mesh,
-    run: &Run,
-    items: &[u32; 8],
+    (items, corners): (&[u32; 8], &[[u32; 3]; 8]),
     kept: &mut [VisibleTriangle; KEPT],
 ) {
     let is_triangle = mesh.topology == Topology::Triangles;
-    let mut corners = [[0; 3]; 8];
-    // By corner and axis.
-    let mut at = [[[0.0; 8]; 3]; 3];
-    for (lane, &item) in items.iter().enumerate() {
-        let primitive = (run.range.start + (item - run.first_item)) as usize;
-        corners[lane] = if is_triangle {
-            mesh.triangle(primitive)
-        } else {
-            let [a, b] = mesh.line_or_point(primitive);
-            [a, b, a]
-        };
-        for (at, corner) in at.iter_mut().zip(corners[lane]) {
+    // By corner and axis; all that is read first, for it has to be waited for.
+    let (mut at, mut vertex_normals) = ([[[0.0; 8]; 3]; 3], [[[0.0; 8]; 3]; 3]);
+    for (lane, corners) in corners.iter().enumerate() {
+        for (i, &corner) in corners.iter().enumerate() {
             let p = mesh.positions[corner as usize];
-            (at[0][lane], at[1][lane], at[2][lane]) = (p.x, p.y, p.z);
+            (at[i][0][lane], at[i][1][lane], at[i][2][lane]) = (p.x, p.y, p.z);
+        }
+        if !mesh.normals.is_empty() {
+            for (to, &corner) in vertex_normals.iter_mut().zip(corners) {
+                let n = mesh.normals[corner as usize];
+                (to[0][lane], to[1][lane], to[2][lane]) = (n.x, n.y, n.z);
+            }
         }
     }
     let zero = simd.splat_f64x8(0.0);
@@ -166,7 +180,7 @@ fn prepare<S: Simd>(
         (x[2], y[2]) = beside_the_line(simd, &x, &y, &w);
     }
     let (origins, edges) = edges(simd, &x, &y, &w);
-    store(simd, items, &corners, &origins, &edges, &face, kept);
+    store(simd, items, corners, &origins, &edges, &face, kept);
 
     let m = &t.normal_from_mesh;
     let none = simd.splat_f32x8(0.0);
@@ -174,13 +188,9 @@ fn prepare<S: Simd>(
     for (i, [px, py, pz]) in eye.into_iter().enumerate() {
         positions[i] = [narrowed(simd, px), narrowed(simd, py), narrowed(simd, pz)];
         if !mesh.normals.is_empty() {
-            let mut n = [[0.0; 8]; 3];
-            for (lane, corners) in corners.iter().enumerate() {
-                let normal = mesh.normals[corners[i] as usize];
-                (n[0][lane], n[1][lane], n[2][lane]) = (normal.x, normal.y, normal.z);
-            }
-            let (nx, ny) = (f32x8::from_slice(simd, &n[0]), f32x8::from_slice(simd, &n[1]));
-            let nz = f32x8::from_slice(simd, &n[2]);
+            let [nx, ny, nz] = &vertex_normals[i];
+            let (nx, ny) = (f32x8::from_slice(simd, nx), f32x8::from_slice(simd, ny));
+            let nz = f32x8::from_slice(simd, nz);
             normals[i] = [
                 nx * m.x_axis.x + ny * m.y_axis.x + nz * m.z_axis.x,
                 nx * m.x_axis.y + ny * m.y_axis.y + nz * m.z_axis.y,

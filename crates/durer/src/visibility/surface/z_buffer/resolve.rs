@@ -86,27 +86,24 @@ fn resolve_opaque<S: Simd>(
             let at = [area.tile[0] + x, area.tile[1] + y];
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let behind = [y as usize, y as usize + 1].map(|y| rows[y.min(rows.len() - 1)]);
-            if let Some(pixels) = resolve_block(simd, planes, first, lit, behind, at) {
-                let (pixels, _) = pixels.as_chunks::<8>();
-                for (pixels, y) in pixels.iter().zip(y..area.size[1]) {
-                    let start = y as usize * output.stride + x as usize;
-                    put(&mut output.color[start..start + width], pixels);
+            let (pixels, differs) = match resolve_block(simd, planes, first, lit, behind, at) {
+                Some(pixels) => (pixels, [[0; 8]; 2]),
+                None => {
+                    let (above, differs) = whole_pixels(simd, planes, first);
+                    let (below, differs_below) = whole_pixels(simd, planes, second);
+                    let whole = simd.combine_u32x8(above, below);
+                    let encoded = behind.map(|(_, encoded)| encoded);
+                    let pixels = resolve_sixteen(simd, lit, whole, encoded, at);
+                    (pixels, [differs, differs_below])
                 }
-                continue;
-            }
-            let (above, differs) = whole_pixels(simd, planes, first);
-            let (below, differs_below) = whole_pixels(simd, planes, second);
-            let whole = simd.combine_u32x8(above, below);
-            let pixels = resolve_sixteen(simd, lit, whole, behind.map(|(_, encoded)| encoded), at);
-            let (pixels, _) = pixels.as_chunks::<8>();
-            for (i, index) in (0..2.min(area.size[1] - y)).zip([first, second]) {
-                let start = (y + i) as usize * output.stride + x as usize;
-                put(&mut output.color[start..start + width], &pixels[i as usize]);
-                let differs = if i == 0 { &differs } else { &differs_below };
-                if *differs != [0; 8] {
-                    let (behind, _) = behind[i as usize];
-                    let (differs, at) = (&differs[..width], [at[0], at[1] + i]);
-                    add_mixed(simd, planes, index, differs, mixed, lit, behind, at);
+            };
+            for i in 0..2.min(area.size[1] - y) as usize {
+                let start = (y as usize + i) * output.stride + x as usize;
+                put(&mut output.color[start..start + width], &pixels.as_chunks::<8>().0[i]);
+                if differs[i] != [0; 8] {
+                    let (behind, _) = behind[i];
+                    let (differs, at) = (&differs[i][..width], [at[0], at[1] + i as i32]);
+                    add_mixed(simd, planes, [first, second][i], differs, mixed, lit, behind, at);
                 }
             }
         }
