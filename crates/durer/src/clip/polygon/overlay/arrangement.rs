@@ -38,8 +38,6 @@ pub struct Edge {
     pub high: u32,
     /// Winding on the left less winding on the right, seen from `low` to `high`.
     pub step: Winding,
-    /// Where its inner nodes start and end in the list of all.
-    pub(super) inner: [u32; 2],
 }
 
 /// An edge in one of its directions: 2e runs from the low node of edge e to its high node, 2e + 1
@@ -85,6 +83,8 @@ pub struct Arrangement<'a, C> {
     pub right: Vec<Winding>,
     pub(super) patches: Vec<Patch>,
     inner: Vec<u32>,
+    /// Where the inner nodes of each edge start and end; empty where no edge has any.
+    inner_of: Vec<[u32; 2]>,
     /// Of an inner node its index in `inner`, of the others `NONE`; empty where there are none.
     place: Vec<u32>,
     /// The edge of an inner node is that of the last start that is not above its place.
@@ -147,6 +147,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
             right: Vec::new(),
             patches: patches.collect(),
             inner: edges.inner,
+            inner_of: edges.inner_of,
             place: Vec::new(),
             inner_starts: Vec::new(),
             starts: Vec::new(),
@@ -176,7 +177,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
     /// The nodes within an edge, from low to high.
     #[inline(always)]
     pub fn inner(&self, edge: usize) -> &[u32] {
-        let [start, end] = self.edges[edge].inner;
+        let [start, end] = self.inner_of.get(edge).copied().unwrap_or_default();
         &self.inner[start as usize..end as usize]
     }
 
@@ -251,8 +252,9 @@ impl<'a, C: Coord> Arrangement<'a, C> {
 
     /// The node that follows an inner node of an edge.
     fn beside(&self, place: u32, forward: Half) -> u32 {
-        let edge = &self.edges[forward.edge()];
-        if place + 1 < edge.inner[1] { self.inner[place as usize + 1] } else { edge.high }
+        let [_, end] = self.inner_of[forward.edge()];
+        let high = self.edges[forward.edge()].high;
+        if place + 1 < end { self.inner[place as usize + 1] } else { high }
     }
 
     #[inline(never)]
@@ -264,9 +266,8 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         for (&node, place) in self.inner.iter().zip(0..) {
             self.place[node as usize] = place;
         }
-        let with_inner =
-            self.edges.iter().zip(0..).filter(|(edge, _)| edge.inner[0] < edge.inner[1]);
-        self.inner_starts = with_inner.map(|(edge, e)| (edge.inner[0], e)).collect();
+        let with_inner = self.inner_of.iter().zip(0..).filter(|(inner, _)| inner[0] < inner[1]);
+        self.inner_starts = with_inner.map(|(inner, e)| (inner[0], e)).collect();
         self.inner_starts.sort_unstable();
     }
 
@@ -388,12 +389,16 @@ impl<'a, C: Coord> Arrangement<'a, C> {
                 renamed[e] = if drops { NONE } else { kept as u32 };
                 if !drops {
                     self.edges[kept] = edge;
+                    if let Some(&inner) = self.inner_of.get(e) {
+                        self.inner_of[kept] = inner;
+                    }
                     kept += 1;
                 }
             }
             patch.edges = start..kept;
         }
         self.edges.truncate(kept);
+        self.inner_of.truncate(kept);
         let mut filled = 0;
         for node in 0..self.nodes.len() {
             let range = self.starts[node] as usize..self.starts[node + 1] as usize;

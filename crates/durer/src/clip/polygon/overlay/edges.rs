@@ -28,12 +28,22 @@ pub struct Edges {
     pub ends: Vec<u32>,
     /// The nodes within edges.
     pub inner: Vec<u32>,
+    /// Where those of each edge start and end; empty where no edge has any.
+    pub inner_of: Vec<[u32; 2]>,
+}
+
+/// Edges of one patch.
+#[derive(Debug, Clone, Default)]
+struct Bin {
+    edges: Vec<Edge>,
+    /// Which of them have inner nodes, and where those start and end.
+    inner: Vec<(u32, [u32; 2])>,
 }
 
 /// The edges that one task finds.
 struct Batch<'a, C> {
     noding: &'a Noding<C>,
-    patches: Vec<Vec<Edge>>,
+    patches: Vec<Bin>,
     /// The patch of the last edge, and its nodes: the next edge is likely to start there too.
     patch: (usize, Range<usize>),
     inner: Vec<u32>,
@@ -89,31 +99,44 @@ impl Edges {
     }
 
     fn merge<C: Coord>(noding: &Noding<C>, batches: Vec<Batch<C>>) -> Self {
-        let length = |patch: usize| batches.iter().map(|batch| batch.patches[patch].len()).sum();
+        let length = |patch: usize| batches.iter().map(|b| b.patches[patch].edges.len()).sum();
         let ends = parallel::ends((0..noding.patch_ends.len()).map(length));
         let inner = parallel::concat(&batches.iter().map(|b| &b.inner[..]).collect::<Vec<_>>());
-        let inner_ends = parallel::ends(batches.iter().map(|b| b.inner.len()));
-        let mut list = vec![Edge::default(); ends.last().copied().unwrap_or(0) as usize];
+        let count = ends.last().copied().unwrap_or(0) as usize;
+        let mut list = vec![Edge::default(); count];
         let tasks = parallel::cut(&mut list, &ends).into_iter().enumerate().collect();
         parallel::map(tasks, |(patch, mut list): (usize, &mut [Edge])| {
-            for (k, batch) in batches.iter().enumerate() {
-                let edges = &batch.patches[patch];
+            for batch in &batches {
+                let edges = &batch.patches[patch].edges;
                 let (here, rest) = list.split_at_mut(edges.len());
-                let offset = parallel::range(&inner_ends, k).start as u32;
-                for (to, from) in here.iter_mut().zip(edges) {
-                    let inner = [from.inner[0] + offset, from.inner[1] + offset];
-                    *to = Edge { inner, ..*from };
-                }
+                here.copy_from_slice(edges);
                 list = rest;
             }
         });
-        Self { list, ends, inner }
+        let mut inner_of = Vec::new();
+        if !inner.is_empty() {
+            inner_of = vec![[0; 2]; count];
+            let inner_ends = parallel::ends(batches.iter().map(|b| b.inner.len()));
+            let tasks = parallel::cut(&mut inner_of, &ends).into_iter().enumerate().collect();
+            parallel::map(tasks, |(patch, mut list): (usize, &mut [[u32; 2]])| {
+                for (k, batch) in batches.iter().enumerate() {
+                    let bin = &batch.patches[patch];
+                    let (here, rest) = list.split_at_mut(bin.edges.len());
+                    let offset = parallel::range(&inner_ends, k).start as u32;
+                    for &(edge, range) in &bin.inner {
+                        here[edge as usize] = range.map(|place| place + offset);
+                    }
+                    list = rest;
+                }
+            });
+        }
+        Self { list, ends, inner, inner_of }
     }
 }
 
 impl<'a, C: Coord> Batch<'a, C> {
     fn new(noding: &'a Noding<C>) -> Self {
-        let patches = vec![Vec::new(); noding.patch_ends.len()];
+        let patches = vec![Bin::default(); noding.patch_ends.len()];
         Self { noding, patches, patch: (0, 0..0), inner: Vec::new() }
     }
 
@@ -259,28 +282,30 @@ impl<'a, C: Coord> Batch<'a, C> {
         self.inner.extend_from_slice(inner);
         self.inner.extend_from_slice(more);
         let inner = [start, self.inner.len() as u32];
-        self.push(Edge { low: from, high: to, step: across, inner });
+        let bin = self.bin(from);
+        bin.inner.push((bin.edges.len() as u32, inner));
+        bin.edges.push(Edge { low: from, high: to, step: across });
     }
 
     #[inline(always)]
     fn straight(&mut self, from: u32, to: u32, across: Winding) {
         let nodes = &self.noding.nodes;
         let edge = if nodes[from as usize] < nodes[to as usize] {
-            Edge { low: from, high: to, step: across, inner: [0; 2] }
+            Edge { low: from, high: to, step: across }
         } else {
-            let step = Winding::default().minus(across);
-            Edge { low: to, high: from, step, inner: [0; 2] }
+            Edge { low: to, high: from, step: Winding::default().minus(across) }
         };
-        self.push(edge);
+        self.bin(edge.low).edges.push(edge);
     }
 
+    /// Of the patch of a node.
     #[inline(always)]
-    fn push(&mut self, edge: Edge) {
-        if !self.patch.1.contains(&(edge.low as usize)) {
+    fn bin(&mut self, low: u32) -> &mut Bin {
+        if !self.patch.1.contains(&(low as usize)) {
             let ends = &self.noding.patch_ends;
-            let patch = ends.partition_point(|&end| end <= edge.low);
+            let patch = ends.partition_point(|&end| end <= low);
             self.patch = (patch, parallel::range(ends, patch));
         }
-        self.patches[self.patch.0].push(edge);
+        &mut self.patches[self.patch.0]
     }
 }
