@@ -423,6 +423,7 @@ impl<P: Vertex> Job<'_, P> {
         let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
         let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
         let rings = rings::link(&graph, &search, inside);
+        drop(graph);
         self.report(&noding, t);
         self.output(&rings, &noding, &segments, &sources, t)
     }
@@ -475,19 +476,29 @@ impl<P: Vertex> Job<'_, P> {
     fn shapes<C: Coord>(&self, rings: &Rings, noding: &Noding<C>) -> Shapes<P> {
         /// How many rings one task handles.
         const TASK: usize = if cfg!(test) { 2 } else { 1 << 12 };
-        let ends = parallel::ends(rings.order.iter().map(|&ring| rings.ring(ring).len()));
-        let mut points = vec![P::default(); ends.last().copied().unwrap_or(0) as usize];
-        let tasks: Vec<&[u32]> = rings.order.chunks(TASK).collect();
-        let task_ends: Vec<u32> =
-            ends.chunks(TASK).filter_map(|some| some.last().copied()).collect();
-        let tasks = parallel::cut(&mut points, &task_ends).into_iter().zip(tasks).collect();
-        parallel::map(tasks, |(points, order): (&mut [P], &[u32])| {
-            let nodes = order.iter().flat_map(|&ring| rings.ring(ring));
-            for (point, &node) in points.iter_mut().zip(nodes) {
-                *point = self.lattice.unsnap(noding.nodes[node as usize]);
-            }
+        let mut end = 0;
+        let ring_ends = rings.order.iter().map(|&ring| {
+            end += rings.ring(ring).len();
+            end
         });
-        let ring_ends = ends.into_iter().map(|end| end as usize).collect();
+        let ring_ends: Vec<usize> = ring_ends.collect();
+        let point = |node: &u32| self.lattice.unsnap(noding.nodes[*node as usize]);
+        let points = if parallel::threads() == 1 {
+            let mut points = Vec::with_capacity(end);
+            rings.order.iter().for_each(|&ring| points.extend(rings.ring(ring).iter().map(point)));
+            points
+        } else {
+            let mut points = vec![P::default(); end];
+            let ends: Vec<u32> =
+                ring_ends.chunks(TASK).filter_map(|some| Some(*some.last()? as u32)).collect();
+            let tasks = parallel::cut(&mut points, &ends).into_iter();
+            let tasks = tasks.zip(rings.order.chunks(TASK)).collect();
+            parallel::map(tasks, |(points, order): (&mut [P], &[u32])| {
+                let nodes = order.iter().flat_map(|&ring| rings.ring(ring));
+                points.iter_mut().zip(nodes).for_each(|(to, node)| *to = point(node));
+            });
+            points
+        };
         let polygon_ends = rings.polygon_ends.iter().map(|&end| end as usize).collect();
         Shapes::from_parts(points, ring_ends, polygon_ends)
     }

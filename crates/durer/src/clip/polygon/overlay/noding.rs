@@ -1,6 +1,8 @@
 //! Finds the hot pixels, those that hold an end or a crossing of segments, and which segments pass
 //! through each: snap rounding after Hobby (1999), leaf by leaf of the grid.
 
+use std::ops::Range;
+
 use super::grid::{Band, Grid, Leaf};
 use super::lattice::{Coord, Point, Segment};
 use super::parallel;
@@ -79,6 +81,11 @@ impl<C> Noding<C> {
     /// The nodes that a segment passes, from its first to its second end.
     pub fn chain(&self, segment: usize) -> &[u32] {
         &self.hits[self.starts[segment] as usize..self.starts[segment + 1] as usize]
+    }
+
+    /// How many nodes some segments pass, one after the other.
+    pub fn hits_of(&self, segments: &Range<usize>) -> usize {
+        (self.starts[segments.end] - self.starts[segments.start]) as usize
     }
 
     /// What made the nodes hot.
