@@ -82,7 +82,7 @@ impl Edges {
         let (mut batches, loose): (Vec<_>, Vec<_>) =
             parallel::map(parallel::ranges(count, TASK), |range| {
                 let mut batch = Batch::new(noding);
-                batch.edges.reserve(noding.hits_of(&range));
+                batch.edges.reserve(noding.edges_of(&range));
                 let loose = batch.rings(rings, range);
                 batch.end_run();
                 (batch, loose)
@@ -104,7 +104,7 @@ impl Edges {
         let tasks = parallel::ranges(noding.starts.len() - 1, TASK);
         let batches = parallel::map(tasks, |range| {
             let mut batch = Batch::new(noding);
-            batch.edges.reserve(noding.hits_of(&range));
+            batch.edges.reserve(noding.edges_of(&range));
             for i in range {
                 for pair in noding.chain(i).windows(2) {
                     batch.straight(pair[0], pair[1], step(i));

@@ -422,8 +422,7 @@ impl<P: Vertex> Job<'_, P> {
         };
         let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
         let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
-        let rings = rings::link(&graph, &search, inside);
-        drop(graph);
+        let rings = rings::link(graph, &search, inside);
         self.report(&noding, t);
         self.output(&rings, &noding, &segments, &sources, t)
     }

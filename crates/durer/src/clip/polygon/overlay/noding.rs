@@ -83,9 +83,10 @@ impl<C> Noding<C> {
         &self.hits[self.starts[segment] as usize..self.starts[segment + 1] as usize]
     }
 
-    /// How many nodes some segments pass, one after the other.
-    pub fn hits_of(&self, segments: &Range<usize>) -> usize {
-        (self.starts[segments.end] - self.starts[segments.start]) as usize
+    /// How many edges some segments are cut into, or fewer where some are but points.
+    pub fn edges_of(&self, segments: &Range<usize>) -> usize {
+        let hits = self.starts[segments.end] - self.starts[segments.start];
+        (hits as usize).saturating_sub(segments.len())
     }
 
     /// What made the nodes hot.

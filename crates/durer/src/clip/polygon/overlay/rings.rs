@@ -47,8 +47,8 @@ struct Walk {
     outer: u32,
 }
 
-struct Linker<'a, 'b, C> {
-    graph: &'a Arrangement<'b, C>,
+struct Linker<'b, C> {
+    graph: Arrangement<'b, C>,
     courses: Vec<Course>,
     /// What follows an edge on the result's border, as the word of a half-edge.
     next: Vec<u32>,
@@ -61,13 +61,16 @@ struct Linker<'a, 'b, C> {
 /// Links the edges where `inside` differs between the two sides.
 #[inline(never)]
 pub fn link<C: Coord>(
-    graph: &Arrangement<C>,
+    mut graph: Arrangement<C>,
     search: &Search<C>,
     inside: impl Fn(Winding) -> bool + Sync,
 ) -> Rings {
+    let courses = courses(&graph, inside);
+    // They have told all they know, and what follows needs the room.
+    graph.right = Vec::new();
     let mut linker = Linker {
         graph,
-        courses: courses(graph, inside),
+        courses,
         next: Vec::new(),
         walk_of: Vec::new(),
         walks: Vec::new(),
@@ -75,7 +78,10 @@ pub fn link<C: Coord>(
     };
     linker.pair();
     linker.trace();
-    linker.nest(search);
+    let owners = linker.owners(search);
+    linker.next = Vec::new();
+    linker.walk_of = Vec::new();
+    linker.sort(&owners);
     linker.rings
 }
 
@@ -98,7 +104,7 @@ fn courses<C: Coord>(
     courses
 }
 
-impl<C: Coord> Linker<'_, '_, C> {
+impl<C: Coord> Linker<'_, C> {
     /// At each node, an edge that arrives goes on with the edge that leaves on the other side of
     /// the piece of inside to its left, so that pieces that only touch stay apart.
     #[inline(never)]
@@ -154,6 +160,11 @@ impl<C: Coord> Linker<'_, '_, C> {
         let group_sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
         let mut found = parallel::map(groups, |group: Vec<(&mut [u32], &Patch)>| {
             let mut found = Found::default();
+            let on = |patch: &Patch| {
+                let courses = self.courses[patch.edges.clone()].iter();
+                courses.filter(|&&course| course != Course::No).count()
+            };
+            found.nodes.reserve(group.iter().map(|(_, patch)| on(patch)).sum());
             for (walk_of, patch) in group {
                 let starts = patch.edges.clone().map(|e| e as u32);
                 found = Trace { linker: &*self, patch, walk_of, found }.run(starts);
@@ -179,10 +190,10 @@ impl<C: Coord> Linker<'_, '_, C> {
         let left: Vec<u32> = found.iter().flat_map(|found| found.left.iter().copied()).collect();
         if !left.is_empty() {
             let all = Patch { nodes: 0..self.graph.nodes.len(), edges: 0..self.graph.edges.len() };
-            let first_walk = first_walks.last().copied().unwrap_or(0);
-            let rest = Found { first_walk, ..Found::default() };
+            let mut last = found.pop().unwrap_or_default();
+            last.first_walk = parallel::range(&first_walks, found.len()).start as u32;
             let walk_of = &mut walk_of[..];
-            let trace = Trace { linker: &*self, patch: &all, walk_of, found: rest };
+            let trace = Trace { linker: &*self, patch: &all, walk_of, found: last };
             found.push(trace.run(left.into_iter()));
         }
         self.walk_of = walk_of;
@@ -219,12 +230,12 @@ impl<C: Coord> Linker<'_, '_, C> {
         self.graph.around(node).iter().filter(on).count() > 2
     }
 
-    /// Gives every walk without an outer ring to the piece it is a hole of: that of the edge below
-    /// its first node. Such walks that start further left are done before.
+    /// The outer ring of each ring's polygon. Every walk without an outer ring is a hole of the piece
+    /// of the edge below its first node. Such walks that start further left are done before.
     #[inline(never)]
-    fn nest(&mut self, search: &Search<C>) {
+    fn owners(&self, search: &Search<C>) -> Vec<u32> {
         let nodes = self.graph.nodes;
-        // The outer ring of each walk's polygon, and of each ring.
+        // The outer ring of each walk's polygon.
         let mut outer_of: Vec<u32> = self.walks.iter().map(|walk| walk.outer).collect();
         let mut holes: Vec<(Point<C>, u32)> = (self.walks.iter().zip(0..))
             .filter(|(walk, _)| walk.outer == NONE && walk.first != NONE)
@@ -236,7 +247,7 @@ impl<C: Coord> Linker<'_, '_, C> {
             parallel::map(holes.chunks(SEARCHES).collect(), |some: &[(Point<C>, u32)]| {
                 let first = |id: u32| self.walks[id as usize].first;
                 some.iter()
-                    .map(|&(_, id)| search.below(self.graph, first(id), on))
+                    .map(|&(_, id)| search.below(&self.graph, first(id), on))
                     .collect::<Vec<_>>()
             });
         for ((_, id), below) in holes.into_iter().zip(below.into_iter().flatten()) {
@@ -247,7 +258,7 @@ impl<C: Coord> Linker<'_, '_, C> {
         for (walk, outer) in self.walks.iter().zip(outer_of) {
             owners.resize(walk.ring_end as usize, outer);
         }
-        self.sort(&owners);
+        owners
     }
 
     /// Puts polygons in the order of their outer rings' points, and the holes of each likewise.
@@ -365,15 +376,15 @@ struct Found {
 }
 
 /// The walks through one patch.
-struct Trace<'a, 'b, 'c, C> {
-    linker: &'a Linker<'b, 'c, C>,
+struct Trace<'a, 'b, C> {
+    linker: &'a Linker<'b, C>,
     patch: &'a Patch,
     /// Of the patch's edges.
     walk_of: &'a mut [u32],
     found: Found,
 }
 
-impl<C: Coord> Trace<'_, '_, '_, C> {
+impl<C: Coord> Trace<'_, '_, C> {
     /// Follows the walks through edges that no walk was through before.
     fn run(mut self, starts: impl Iterator<Item = u32>) -> Found {
         if self.found.position.len() < self.patch.nodes.len() {
