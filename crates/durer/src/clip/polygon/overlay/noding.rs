@@ -192,6 +192,11 @@ fn work<C: Coord>(
             pixels: Vec::new(),
             strips: Strips::default(),
         };
+        // About as many nodes as come out of this many entries.
+        let load = leaves.iter().map(|leaf| band.items(leaf).len()).sum::<usize>() * 5 / 8;
+        part.nodes.reserve(load);
+        part.causes.reserve(load);
+        part.passed.reserve(load);
         for leaf in leaves {
             bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part);
         }

@@ -160,11 +160,9 @@ impl<C: Coord> Linker<'_, C> {
         let group_sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
         let mut found = parallel::map(groups, |group: Vec<(&mut [u32], &Patch)>| {
             let mut found = Found::default();
-            let on = |patch: &Patch| {
-                let courses = self.courses[patch.edges.clone()].iter();
-                courses.filter(|&&course| course != Course::No).count()
-            };
-            found.nodes.reserve(group.iter().map(|(_, patch)| on(patch)).sum());
+            let edges = group.iter().flat_map(|(_, patch)| patch.edges.clone());
+            let on = edges.filter(|&e| self.courses[e] != Course::No);
+            found.nodes.reserve(on.map(|e| 1 + self.graph.inner(e).len()).sum());
             for (walk_of, patch) in group {
                 let starts = patch.edges.clone().map(|e| e as u32);
                 found = Trace { linker: &*self, patch, walk_of, found }.run(starts);
