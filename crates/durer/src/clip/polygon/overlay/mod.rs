@@ -295,8 +295,13 @@ pub(super) fn solve<P: Vertex>(
     let Some([low, high]) = union(corners) else { return Ok(Output::default()) };
     let lattice = P::Lattice::between(low, high, options.grid)?;
     let bounds = corners.map(|some| Rect::around(some?.map(|corner| lattice.place(corner))));
-    t.step(|| Step::Grid { cell: lattice.cell() });
-    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds };
+    let mut listens = false;
+    t.step(|| {
+        listens = true;
+        Step::Grid { cell: lattice.cell() }
+    });
+    let causes = listens || options.origins;
+    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds, causes };
     if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
 }
 
@@ -386,6 +391,8 @@ struct Job<'a, P: Vertex> {
     winder: Winder,
     /// The boxes around subject and clip.
     bounds: [Option<Rect>; 2],
+    /// Whether somebody wants to know what made each node.
+    causes: bool,
 }
 
 impl<P: Vertex> Job<'_, P> {
@@ -403,7 +410,7 @@ impl<P: Vertex> Job<'_, P> {
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
         let ends = |i: u32| if sources[i as usize].reversed() { Ends::Second } else { Ends::First };
-        let noding = noding::node(&segments, &grid, ends);
+        let noding = noding::node(&segments, &grid, ends, self.causes);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let rings = edges::Rings { ends: &outlines.ends, sources: &sources };
         let graph = match self.winder {
