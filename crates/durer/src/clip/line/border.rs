@@ -134,7 +134,7 @@ impl<const N: usize> Canonical<N> {
     /// [`Error::NonFinite`], with index 0 for the start and 1 for the end.
     #[inline]
     pub(crate) fn new(start: [f64; N], end: [f64; N]) -> Result<Self> {
-        if !(finite(&start) && finite(&end)) {
+        if !both_finite(&start, &end) {
             return Err(non_finite(&start));
         }
         let swapped = is_greater(&start, &end);
@@ -314,6 +314,12 @@ fn exchanged_if<const N: usize>(swap: bool, a: [f64; N], b: [f64; N]) -> [[f64; 
 #[inline]
 pub(super) fn finite<const N: usize>(p: &[f64; N]) -> bool {
     p.iter().fold(0.0, |sum, &v| sum + v * 0.0) == 0.0
+}
+
+/// Whether that holds for both; one comparison.
+#[inline]
+fn both_finite<const N: usize>(p: &[f64; N], q: &[f64; N]) -> bool {
+    (0..N).fold(0.0, |sum, k| sum + (p[k] * 0.0 + q[k] * 0.0)) == 0.0
 }
 
 /// How far a coordinate computed between p and q can be off, with room to spare: it is less than

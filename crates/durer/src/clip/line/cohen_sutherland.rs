@@ -129,26 +129,27 @@ fn run<const N: usize, P: From<[f64; N]>>(
         t.step(|| Step::Rejected);
         return Ok(None);
     }
-    let codes = if line.swapped { [code_end, code_start] } else { [code_start, code_end] };
-    let mut ends = [Cut { point: line.p, code: codes[0] }, Cut { point: line.q, code: codes[1] }];
+    let mut codes = if line.swapped { [code_end, code_start] } else { [code_start, code_end] };
+    let mut ends = [line.p, line.q];
     // Each turn clears at least one bit for good, so 2·N·2 turns would be the end in any case.
-    while !(ends[0].code | ends[1].code).is_inside() {
-        if !(ends[0].code & ends[1].code).is_inside() {
+    while !(codes[0] | codes[1]).is_inside() {
+        if !(codes[0] & codes[1]).is_inside() {
             t.step(|| Step::Rejected);
             return Ok(None);
         }
-        let which = usize::from(ends[0].code.is_inside());
-        let (axis, upper) = lowest_border(ends[which].code);
-        ends[which] = short_cut(&line, window, axis, upper);
+        let which = usize::from(codes[0].is_inside());
+        let (axis, upper) = lowest_border(codes[which]);
+        let cut = short_cut(&line, window, axis, upper);
+        (ends[which], codes[which]) = (cut.point, cut.code);
         t.step(|| Step::Cut {
             end: [End::Start, End::End][which].swapped_if(line.swapped),
             border: super::border::bit(axis, upper),
-            point: ends[which].point.into(),
-            code: ends[which].code,
+            point: cut.point.into(),
+            code: cut.code,
         });
     }
     t.step(|| Step::Accepted);
-    Ok(Some(line.in_order(ends[0].point, ends[1].point)))
+    Ok(Some(line.in_order(ends[0], ends[1])))
 }
 
 /// The cut with a border; segments parallel to the axis take the short way without arithmetic.

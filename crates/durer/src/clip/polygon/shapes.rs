@@ -105,9 +105,10 @@ impl<P> Shapes<P> {
 
     /// All polygons.
     pub fn polygons(&self) -> impl ExactSizeIterator<Item = Polygon<'_, P>> {
-        let starts = std::iter::once(0).chain(self.polygon_ends.iter().copied());
-        let pairs: Vec<_> = starts.zip(self.polygon_ends.iter().copied()).collect();
-        pairs.into_iter().map(move |(start, end)| Polygon { shapes: self, start, end })
+        (0..self.polygon_ends.len()).map(move |i| {
+            let start = i.checked_sub(1).map_or(0, |before| self.polygon_ends[before]);
+            Polygon { shapes: self, start, end: self.polygon_ends[i] }
+        })
     }
 
     /// Whether there is no point at all.

@@ -38,8 +38,6 @@ pub struct Edge {
     pub high: u32,
     /// Winding on the left less winding on the right, seen from `low` to `high`.
     pub step: Winding,
-    /// Where its inner nodes start and end in the list of all.
-    pub(super) inner: [u32; 2],
 }
 
 /// An edge in one of its directions: 2e runs from the low node of edge e to its high node, 2e + 1
@@ -85,6 +83,8 @@ pub struct Arrangement<'a, C> {
     pub right: Vec<Winding>,
     pub(super) patches: Vec<Patch>,
     inner: Vec<u32>,
+    /// Where the inner nodes of each edge start and end; empty where no edge has any.
+    inner_of: Vec<[u32; 2]>,
     /// Of an inner node its index in `inner`, of the others `NONE`; empty where there are none.
     place: Vec<u32>,
     /// The edge of an inner node is that of the last start that is not above its place.
@@ -147,12 +147,13 @@ impl<'a, C: Coord> Arrangement<'a, C> {
             right: Vec::new(),
             patches: patches.collect(),
             inner: edges.inner,
+            inner_of: edges.inner_of,
             place: Vec::new(),
             inner_starts: Vec::new(),
             starts: Vec::new(),
             around: Vec::new(),
         };
-        let joined = graph.arrange();
+        let joined = graph.arrange(&edges.arrivals);
         if !joined.is_empty() {
             graph.drop_unkept(&joined, keeps);
         }
@@ -176,7 +177,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
     /// The nodes within an edge, from low to high.
     #[inline(always)]
     pub fn inner(&self, edge: usize) -> &[u32] {
-        let [start, end] = self.edges[edge].inner;
+        let [start, end] = self.inner_of.get(edge).copied().unwrap_or_default();
         &self.inner[start as usize..end as usize]
     }
 
@@ -251,8 +252,9 @@ impl<'a, C: Coord> Arrangement<'a, C> {
 
     /// The node that follows an inner node of an edge.
     fn beside(&self, place: u32, forward: Half) -> u32 {
-        let edge = &self.edges[forward.edge()];
-        if place + 1 < edge.inner[1] { self.inner[place as usize + 1] } else { edge.high }
+        let [_, end] = self.inner_of[forward.edge()];
+        let high = self.edges[forward.edge()].high;
+        if place + 1 < end { self.inner[place as usize + 1] } else { high }
     }
 
     #[inline(never)]
@@ -264,20 +266,24 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         for (&node, place) in self.inner.iter().zip(0..) {
             self.place[node as usize] = place;
         }
-        let with_inner =
-            self.edges.iter().zip(0..).filter(|(edge, _)| edge.inner[0] < edge.inner[1]);
-        self.inner_starts = with_inner.map(|(edge, e)| (edge.inner[0], e)).collect();
+        let with_inner = self.inner_of.iter().zip(0..).filter(|(inner, _)| inner[0] < inner[1]);
+        self.inner_starts = with_inner.map(|(inner, e)| (inner[0], e)).collect();
         self.inner_starts.sort_unstable();
     }
 
     /// Sorts the edges around every node, and joins those that coincide in the first of them.
-    /// Gives the others, which have no meaning any more.
+    /// Gives the others, which have no meaning any more. `arrivals` are for each patch the edges of
+    /// other ones that end there.
     #[inline(never)]
-    fn arrange(&mut self) -> Vec<u32> {
-        let arrivals = self.arrivals();
-        let ends = parallel::ends(
-            self.patches.iter().zip(&arrivals).map(|(patch, list)| patch.edges.len() + list.len()),
-        );
+    fn arrange(&mut self, arrivals: &[Vec<u32>]) -> Vec<u32> {
+        let leaving = |edge: &Edge, patch: &Patch| usize::from(!patch.has_node(edge.high));
+        let counts =
+            parallel::map(self.patches.iter().zip(arrivals).collect(), |(patch, arrivals)| {
+                let edges = &self.edges[patch.edges.clone()];
+                let leaving: usize = edges.iter().map(|edge| leaving(edge, patch)).sum();
+                edges.len() * 2 - leaving + arrivals.len()
+            });
+        let ends = parallel::ends(counts.into_iter());
         let mut starts = vec![0u32; self.nodes.len() + 1];
         let mut around = vec![Half::default(); self.edges.len() * 2];
         starts[self.nodes.len()] = around.len() as u32;
@@ -286,7 +292,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         let tasks = tasks.zip(parallel::cut(&mut around, &ends)).zip(arrivals).enumerate();
         let joins = parallel::map(tasks.collect(), |(k, ((starts, around), arrivals))| {
             let first = parallel::range(&ends, k).start as u32;
-            self.stars(&self.patches[k], &arrivals, starts, around, first)
+            self.stars(&self.patches[k], arrivals, starts, around, first)
         });
         (self.starts, self.around) = (starts, around);
         let mut joined = Vec::new();
@@ -299,28 +305,6 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         joined
     }
 
-    /// For each patch the edges whose high node lies in it.
-    fn arrivals(&self) -> Vec<Vec<u32>> {
-        let all = parallel::map(self.patches.iter().collect(), |patch: &Patch| {
-            let mut here = Vec::with_capacity(patch.edges.len());
-            let mut elsewhere = Vec::new();
-            for e in patch.edges.clone() {
-                let high = self.edges[e].high;
-                if patch.has_node(high) {
-                    here.push(e as u32);
-                } else {
-                    elsewhere.push((self.patch_of(high), e as u32));
-                }
-            }
-            (here, elsewhere)
-        });
-        let (mut lists, elsewhere): (Vec<_>, Vec<_>) = all.into_iter().unzip();
-        for (patch, e) in elsewhere.into_iter().flatten() {
-            lists[patch].push(e);
-        }
-        lists
-    }
-
     /// Sorts the edges around the nodes of a patch; gives pairs of edges that coincide. The lists
     /// start at index `first` of all.
     fn stars(
@@ -331,23 +315,34 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         around: &mut [Half],
         first: u32,
     ) -> Vec<(u32, u32)> {
-        let leaving = || patch.edges.clone().map(|e| (self.edges[e].low, Half::forward(e)));
-        let arriving = || {
-            let edges = arrivals.iter().map(|&e| e as usize);
-            edges.map(|e| (self.edges[e].high, Half::forward(e).reversed()))
-        };
-        for (node, _) in leaving().chain(arriving()) {
-            starts[node as usize - patch.nodes.start] += 1;
+        let place = |node: u32| node as usize - patch.nodes.start;
+        let edges = || patch.edges.clone().zip(&self.edges[patch.edges.clone()]);
+        for (_, edge) in edges() {
+            starts[place(edge.low)] += 1;
+            if patch.has_node(edge.high) {
+                starts[place(edge.high)] += 1;
+            }
         }
+        arrivals.iter().for_each(|&e| starts[place(self.edges[e as usize].high)] += 1);
         let mut end = 0;
         for start in starts.iter_mut() {
             end += *start;
             *start = end;
         }
-        for (node, half) in leaving().chain(arriving()) {
-            let next = &mut starts[node as usize - patch.nodes.start];
+        let mut put = |node: u32, half: Half| {
+            let next = &mut starts[place(node)];
             *next -= 1;
             around[*next as usize] = half;
+        };
+        // From the end of each list: first what goes to the left, mostly.
+        for &e in arrivals {
+            put(self.edges[e as usize].high, Half::forward(e as usize).reversed());
+        }
+        for (e, edge) in edges().filter(|(_, edge)| patch.has_node(edge.high)) {
+            put(edge.high, Half::forward(e).reversed());
+        }
+        for (e, edge) in edges() {
+            put(edge.low, Half::forward(e));
         }
         let mut joins = Vec::new();
         let mut star: Vec<Ray<C>> = Vec::new();
@@ -388,12 +383,16 @@ impl<'a, C: Coord> Arrangement<'a, C> {
                 renamed[e] = if drops { NONE } else { kept as u32 };
                 if !drops {
                     self.edges[kept] = edge;
+                    if let Some(&inner) = self.inner_of.get(e) {
+                        self.inner_of[kept] = inner;
+                    }
                     kept += 1;
                 }
             }
             patch.edges = start..kept;
         }
         self.edges.truncate(kept);
+        self.inner_of.truncate(kept);
         let mut filled = 0;
         for node in 0..self.nodes.len() {
             let range = self.starts[node] as usize..self.starts[node + 1] as usize;
@@ -422,12 +421,31 @@ struct Ray<C> {
     left: bool,
 }
 
+/// More edges than nodes have on usual data.
+const MANY: usize = 8;
+
 /// Sorts counter-clockwise from straight down. Nodes have few edges, and those are mostly in order.
+#[inline(always)]
 fn sort_around<C: Coord>(node: Point<C>, star: &mut [Ray<C>]) {
     let zero = C::Wide::default();
-    star.sort_unstable_by(|r, s| {
-        r.left.cmp(&s.left).then_with(|| zero.cmp(&cross(node, r.point, s.point)))
-    });
+    let after = |r: &Ray<C>, s: &Ray<C>| match r.left == s.left {
+        true => cross(node, r.point, s.point) < zero,
+        false => r.left,
+    };
+    if star.len() > MANY {
+        return star.sort_unstable_by(|r, s| {
+            r.left.cmp(&s.left).then_with(|| zero.cmp(&cross(node, r.point, s.point)))
+        });
+    }
+    for k in 1..star.len() {
+        let ray = star[k];
+        let mut place = k;
+        while place > 0 && after(&star[place - 1], &ray) {
+            star[place] = star[place - 1];
+            place -= 1;
+        }
+        star[place] = ray;
+    }
 }
 
 /// Finds the pairs of a sorted star that coincide. The other node finds the same pairs side by

@@ -28,15 +28,38 @@ pub struct Edges {
     pub ends: Vec<u32>,
     /// The nodes within edges.
     pub inner: Vec<u32>,
+    /// Where those of each edge start and end; empty where no edge has any.
+    pub inner_of: Vec<[u32; 2]>,
+    /// For each patch the edges of other ones whose high node lies in it.
+    pub arrivals: Vec<Vec<u32>>,
 }
 
 /// The edges that one task finds.
 struct Batch<'a, C> {
     noding: &'a Noding<C>,
-    patches: Vec<Vec<Edge>>,
-    /// The patch of the last edge, and its nodes: the next edge is likely to start there too.
+    edges: Vec<Edge>,
+    /// Which patches edges lie in, each time up to which edge: the next one is likely to lie where
+    /// the last one does.
+    runs: Vec<(u32, u32)>,
+    /// The patch of the last edge, and its nodes.
     patch: (usize, Range<usize>),
     inner: Vec<u32>,
+    /// Which edges have inner nodes, and where those start and end.
+    inner_of: Vec<(u32, [u32; 2])>,
+}
+
+/// Edges of one batch that follow one another and lie in one patch.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    batch: u32,
+    start: u32,
+    end: u32,
+}
+
+impl Piece {
+    fn range(self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
 }
 
 /// What a part of a ring leaves to be joined with other parts.
@@ -59,13 +82,16 @@ impl Edges {
         let (mut batches, loose): (Vec<_>, Vec<_>) =
             parallel::map(parallel::ranges(count, TASK), |range| {
                 let mut batch = Batch::new(noding);
+                batch.edges.reserve(noding.edges_of(&range));
                 let loose = batch.rings(rings, range);
+                batch.end_run();
                 (batch, loose)
             })
             .into_iter()
             .unzip();
         let mut batch = Batch::new(noding);
         batch.join(rings, loose);
+        batch.end_run();
         batches.push(batch);
         Self::merge(noding, batches)
     }
@@ -78,43 +104,94 @@ impl Edges {
         let tasks = parallel::ranges(noding.starts.len() - 1, TASK);
         let batches = parallel::map(tasks, |range| {
             let mut batch = Batch::new(noding);
+            batch.edges.reserve(noding.edges_of(&range));
             for i in range {
                 for pair in noding.chain(i).windows(2) {
                     batch.straight(pair[0], pair[1], step(i));
                 }
             }
+            batch.end_run();
             batch
         });
         Self::merge(noding, batches)
     }
 
     fn merge<C: Coord>(noding: &Noding<C>, batches: Vec<Batch<C>>) -> Self {
-        let length = |patch: usize| batches.iter().map(|batch| batch.patches[patch].len()).sum();
-        let ends = parallel::ends((0..noding.patch_ends.len()).map(length));
-        let inner = parallel::concat(&batches.iter().map(|b| &b.inner[..]).collect::<Vec<_>>());
-        let inner_ends = parallel::ends(batches.iter().map(|b| b.inner.len()));
+        let mut pieces: Vec<Vec<Piece>> = vec![Vec::new(); noding.patch_ends.len()];
+        for (batch, k) in batches.iter().zip(0..) {
+            let mut start = 0;
+            for &(patch, end) in &batch.runs {
+                pieces[patch as usize].push(Piece { batch: k, start, end });
+                start = end;
+            }
+        }
+        let length = |pieces: &Vec<Piece>| pieces.iter().map(|p| p.range().len()).sum();
+        let ends = parallel::ends(pieces.iter().map(length));
         let mut list = vec![Edge::default(); ends.last().copied().unwrap_or(0) as usize];
-        let tasks = parallel::cut(&mut list, &ends).into_iter().enumerate().collect();
-        parallel::map(tasks, |(patch, mut list): (usize, &mut [Edge])| {
-            for (k, batch) in batches.iter().enumerate() {
-                let edges = &batch.patches[patch];
-                let (here, rest) = list.split_at_mut(edges.len());
-                let offset = parallel::range(&inner_ends, k).start as u32;
-                for (to, from) in here.iter_mut().zip(edges) {
-                    let inner = [from.inner[0] + offset, from.inner[1] + offset];
-                    *to = Edge { inner, ..*from };
-                }
-                list = rest;
+        let tasks = parallel::cut(&mut list, &ends).into_iter().zip(&pieces).enumerate();
+        let leaving = parallel::map(tasks.collect(), |(patch, (list, pieces))| {
+            place(list, pieces, |piece, list| {
+                list.copy_from_slice(&batches[piece.batch as usize].edges[piece.range()]);
+            });
+            let first = parallel::range(&ends, patch).start;
+            leaving(&list[..], first, &noding.patch_ends, patch)
+        });
+        let mut arrivals = vec![Vec::new(); pieces.len()];
+        for (patch, edge) in leaving.into_iter().flatten() {
+            arrivals[patch].push(edge);
+        }
+        let inner = parallel::concat(&batches.iter().map(|b| &b.inner[..]).collect::<Vec<_>>());
+        let inner_of = match inner.is_empty() {
+            true => Vec::new(),
+            false => merge_inner(&batches, &pieces, &ends),
+        };
+        Self { list, ends, inner, inner_of, arrivals }
+    }
+}
+
+/// Where the inner nodes of each edge start and end.
+fn merge_inner<C: Coord>(
+    batches: &[Batch<C>],
+    pieces: &[Vec<Piece>],
+    ends: &[u32],
+) -> Vec<[u32; 2]> {
+    let inner_ends = parallel::ends(batches.iter().map(|batch| batch.inner.len()));
+    let mut inner_of = vec![[0; 2]; ends.last().copied().unwrap_or(0) as usize];
+    let tasks = parallel::cut(&mut inner_of, ends).into_iter().zip(pieces);
+    parallel::map(tasks.collect(), |(list, pieces): (&mut [[u32; 2]], &Vec<Piece>)| {
+        place(list, pieces, |piece, list| {
+            let offset = parallel::range(&inner_ends, piece.batch as usize).start as u32;
+            let all = &batches[piece.batch as usize].inner_of;
+            let first = all.partition_point(|&(edge, _)| edge < piece.start);
+            for &(edge, inner) in all[first..].iter().take_while(|(edge, _)| *edge < piece.end) {
+                list[(edge - piece.start) as usize] = inner.map(|place| place + offset);
             }
         });
-        Self { list, ends, inner }
+    });
+    inner_of
+}
+
+/// Fills a list piece by piece.
+fn place<T>(mut list: &mut [T], pieces: &[Piece], fill: impl Fn(&Piece, &mut [T])) {
+    for piece in pieces {
+        let (here, rest) = list.split_at_mut(piece.range().len());
+        fill(piece, here);
+        list = rest;
     }
+}
+
+/// The edges of a patch whose high node lies in another one, with the name of that one.
+fn leaving(edges: &[Edge], first: usize, patch_ends: &[u32], patch: usize) -> Vec<(usize, u32)> {
+    let nodes = parallel::range(patch_ends, patch);
+    let far = (first as u32..).zip(edges).filter(|(_, e)| !nodes.contains(&(e.high as usize)));
+    far.map(|(e, edge)| (patch_ends.partition_point(|&end| end <= edge.high), e)).collect()
 }
 
 impl<'a, C: Coord> Batch<'a, C> {
     fn new(noding: &'a Noding<C>) -> Self {
-        let patches = vec![Vec::new(); noding.patch_ends.len()];
-        Self { noding, patches, patch: (0, 0..0), inner: Vec::new() }
+        let (edges, runs) = (Vec::new(), Vec::new());
+        let (inner, inner_of) = (Vec::new(), Vec::new());
+        Self { noding, edges, runs, patch: (0, 0..0), inner, inner_of }
     }
 
     /// The edges of some segments; gives what belongs to edges that go on in other parts.
@@ -259,17 +336,17 @@ impl<'a, C: Coord> Batch<'a, C> {
         self.inner.extend_from_slice(inner);
         self.inner.extend_from_slice(more);
         let inner = [start, self.inner.len() as u32];
-        self.push(Edge { low: from, high: to, step: across, inner });
+        self.inner_of.push((self.edges.len() as u32, inner));
+        self.push(Edge { low: from, high: to, step: across });
     }
 
     #[inline(always)]
     fn straight(&mut self, from: u32, to: u32, across: Winding) {
         let nodes = &self.noding.nodes;
         let edge = if nodes[from as usize] < nodes[to as usize] {
-            Edge { low: from, high: to, step: across, inner: [0; 2] }
+            Edge { low: from, high: to, step: across }
         } else {
-            let step = Winding::default().minus(across);
-            Edge { low: to, high: from, step, inner: [0; 2] }
+            Edge { low: to, high: from, step: Winding::default().minus(across) }
         };
         self.push(edge);
     }
@@ -277,10 +354,18 @@ impl<'a, C: Coord> Batch<'a, C> {
     #[inline(always)]
     fn push(&mut self, edge: Edge) {
         if !self.patch.1.contains(&(edge.low as usize)) {
+            self.end_run();
             let ends = &self.noding.patch_ends;
             let patch = ends.partition_point(|&end| end <= edge.low);
             self.patch = (patch, parallel::range(ends, patch));
         }
-        self.patches[self.patch.0].push(edge);
+        self.edges.push(edge);
+    }
+
+    fn end_run(&mut self) {
+        let end = self.edges.len() as u32;
+        if self.runs.last().map_or(0, |&(_, end)| end) < end {
+            self.runs.push((self.patch.0 as u32, end));
+        }
     }
 }

@@ -13,7 +13,7 @@
 //! borders is joined afterwards in a fixed order: the result does not depend on their number. In
 //! tests the patches are tiny.
 //!
-//! It takes 150 to 200 bytes per edge beside the input, the result included. There is no mode that
+//! It takes 130 to 190 bytes per edge beside the input, the result included. There is no mode that
 //! does without hot pixels: they cost less than a tenth of the time, and without them the graph is
 //! not planar, so that windings would be wrong far from the place.
 
@@ -295,8 +295,13 @@ pub(super) fn solve<P: Vertex>(
     let Some([low, high]) = union(corners) else { return Ok(Output::default()) };
     let lattice = P::Lattice::between(low, high, options.grid)?;
     let bounds = corners.map(|some| Rect::around(some?.map(|corner| lattice.place(corner))));
-    t.step(|| Step::Grid { cell: lattice.cell() });
-    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds };
+    let mut listens = false;
+    t.step(|| {
+        listens = true;
+        Step::Grid { cell: lattice.cell() }
+    });
+    let causes = listens || options.origins;
+    let job = Job { subject, clip, op, options, lattice: &lattice, winder, bounds, causes };
     if lattice.fits::<i32>() { Ok(job.run::<i32>(t)) } else { Ok(job.run::<i64>(t)) }
 }
 
@@ -386,6 +391,8 @@ struct Job<'a, P: Vertex> {
     winder: Winder,
     /// The boxes around subject and clip.
     bounds: [Option<Rect>; 2],
+    /// Whether somebody wants to know what made each node.
+    causes: bool,
 }
 
 impl<P: Vertex> Job<'_, P> {
@@ -403,7 +410,7 @@ impl<P: Vertex> Job<'_, P> {
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
         let ends = |i: u32| if sources[i as usize].reversed() { Ends::Second } else { Ends::First };
-        let noding = noding::node(&segments, &grid, ends);
+        let noding = noding::node(&segments, &grid, ends, self.causes);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let rings = edges::Rings { ends: &outlines.ends, sources: &sources };
         let graph = match self.winder {
@@ -422,7 +429,7 @@ impl<P: Vertex> Job<'_, P> {
         };
         let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
         let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
-        let rings = rings::link(&graph, &search, inside);
+        let rings = rings::link(graph, &search, inside);
         self.report(&noding, t);
         self.output(&rings, &noding, &segments, &sources, t)
     }
@@ -475,19 +482,29 @@ impl<P: Vertex> Job<'_, P> {
     fn shapes<C: Coord>(&self, rings: &Rings, noding: &Noding<C>) -> Shapes<P> {
         /// How many rings one task handles.
         const TASK: usize = if cfg!(test) { 2 } else { 1 << 12 };
-        let ends = parallel::ends(rings.order.iter().map(|&ring| rings.ring(ring).len()));
-        let mut points = vec![P::default(); ends.last().copied().unwrap_or(0) as usize];
-        let tasks: Vec<&[u32]> = rings.order.chunks(TASK).collect();
-        let task_ends: Vec<u32> =
-            ends.chunks(TASK).filter_map(|some| some.last().copied()).collect();
-        let tasks = parallel::cut(&mut points, &task_ends).into_iter().zip(tasks).collect();
-        parallel::map(tasks, |(points, order): (&mut [P], &[u32])| {
-            let nodes = order.iter().flat_map(|&ring| rings.ring(ring));
-            for (point, &node) in points.iter_mut().zip(nodes) {
-                *point = self.lattice.unsnap(noding.nodes[node as usize]);
-            }
+        let mut end = 0;
+        let ring_ends = rings.order.iter().map(|&ring| {
+            end += rings.ring(ring).len();
+            end
         });
-        let ring_ends = ends.into_iter().map(|end| end as usize).collect();
+        let ring_ends: Vec<usize> = ring_ends.collect();
+        let point = |node: &u32| self.lattice.unsnap(noding.nodes[*node as usize]);
+        let points = if parallel::threads() == 1 {
+            let mut points = Vec::with_capacity(end);
+            rings.order.iter().for_each(|&ring| points.extend(rings.ring(ring).iter().map(point)));
+            points
+        } else {
+            let mut points = vec![P::default(); end];
+            let ends: Vec<u32> =
+                ring_ends.chunks(TASK).filter_map(|some| Some(*some.last()? as u32)).collect();
+            let tasks = parallel::cut(&mut points, &ends).into_iter();
+            let tasks = tasks.zip(rings.order.chunks(TASK)).collect();
+            parallel::map(tasks, |(points, order): (&mut [P], &[u32])| {
+                let nodes = order.iter().flat_map(|&ring| rings.ring(ring));
+                points.iter_mut().zip(nodes).for_each(|(to, node)| *to = point(node));
+            });
+            points
+        };
         let polygon_ends = rings.polygon_ends.iter().map(|&end| end as usize).collect();
         Shapes::from_parts(points, ring_ends, polygon_ends)
     }

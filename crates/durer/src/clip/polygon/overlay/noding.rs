@@ -1,6 +1,8 @@
 //! Finds the hot pixels, those that hold an end or a crossing of segments, and which segments pass
 //! through each: snap rounding after Hobby (1999), leaf by leaf of the grid.
 
+use std::ops::Range;
+
 use super::grid::{Band, Grid, Leaf};
 use super::lattice::{Coord, Point, Segment};
 use super::parallel;
@@ -67,7 +69,7 @@ pub struct Noding<C> {
     pub patch_ends: Vec<u32>,
     /// Of each node whether it is a ring's point that nothing but its two edges touches.
     pub passed: Vec<bool>,
-    /// What made each hot, by patch.
+    /// What made each hot, by patch; empty where nobody wants to know.
     causes: Vec<Vec<CauseWord>>,
     /// The nodes of segment i, in its direction, are `hits[starts[i]..starts[i + 1]]`.
     pub starts: Vec<u32>,
@@ -79,6 +81,12 @@ impl<C> Noding<C> {
     /// The nodes that a segment passes, from its first to its second end.
     pub fn chain(&self, segment: usize) -> &[u32] {
         &self.hits[self.starts[segment] as usize..self.starts[segment + 1] as usize]
+    }
+
+    /// How many edges some segments are cut into, or fewer where some are but points.
+    pub fn edges_of(&self, segments: &Range<usize>) -> usize {
+        let hits = self.starts[segments.end] - self.starts[segments.start];
+        (hits as usize).saturating_sub(segments.len())
     }
 
     /// What made the nodes hot.
@@ -115,6 +123,8 @@ struct Workbench<C> {
     near: Vec<u32>,
     pixels: Vec<(Point<C>, CauseWord)>,
     strips: Strips<C>,
+    /// Whether to keep what made each node.
+    causes: bool,
 }
 
 /// Which ends of a segment have to be made nodes.
@@ -128,13 +138,15 @@ pub enum Ends {
     Both,
 }
 
-/// Nodes all segments; `ends` tells which ends of each no other segment accounts for.
+/// Nodes all segments; `ends` tells which ends of each no other segment accounts for, `causes`
+/// whether to keep what made each node.
 pub fn node<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
     ends: impl Fn(u32) -> Ends + Sync + Send,
+    causes: bool,
 ) -> Noding<C> {
-    let mut parts = work(segments, grid, ends);
+    let mut parts = work(segments, grid, ends, causes);
     let patch_ends = parallel::ends(parts.iter().map(|part| part.nodes.len()));
     let nodes = parallel::concat(&parts.iter().map(|part| &part.nodes[..]).collect::<Vec<_>>());
     let passed = parallel::concat(&parts.iter().map(|part| &part.passed[..]).collect::<Vec<_>>());
@@ -169,6 +181,7 @@ fn work<C: Coord>(
     segments: &[Segment<C>],
     grid: &Grid,
     ends: impl Fn(u32) -> Ends + Sync + Send,
+    causes: bool,
 ) -> Vec<Part<C>> {
     let run = |(band, leaves): (&Band, &[Leaf])| {
         let mut part = Part {
@@ -183,7 +196,15 @@ fn work<C: Coord>(
             near: Vec::new(),
             pixels: Vec::new(),
             strips: Strips::default(),
+            causes,
         };
+        // About as many nodes as come out of this many entries.
+        let load = leaves.iter().map(|leaf| band.items(leaf).len()).sum::<usize>() * 5 / 8;
+        part.nodes.reserve(load);
+        if causes {
+            part.causes.reserve(load);
+        }
+        part.passed.reserve(load);
         for leaf in leaves {
             bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part);
         }
@@ -219,7 +240,9 @@ impl<C: Coord> Workbench<C> {
         self.pixels.dedup_by_key(|p| p.0);
         let first = part.nodes.len() as u32;
         part.nodes.extend(self.pixels.iter().map(|p| p.0));
-        part.causes.extend(self.pixels.iter().map(|p| p.1));
+        if self.causes {
+            part.causes.extend(self.pixels.iter().map(|p| p.1));
+        }
         if items.len() > CROWD {
             self.crowd_hits(items, first, part);
         } else {

@@ -19,11 +19,17 @@ const PER_SQUARE: f64 = 4.0;
 const FEW_JUMPS: usize = 8;
 
 /// A ring of the input.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 struct Outline {
     operand: Operand,
-    /// Indices into its operand's points.
-    points: Range<usize>,
+    /// Indices into its operand's points: the first, and that behind the last.
+    points: [u32; 2],
+}
+
+impl Outline {
+    fn points(&self) -> Range<usize> {
+        self.points[0] as usize..self.points[1] as usize
+    }
 }
 
 /// See the module.
@@ -43,23 +49,24 @@ impl Outlines {
         bounds: Rect,
         matters: impl Fn(Operand, &[P]) -> bool,
     ) -> Self {
-        let mut rings = Vec::new();
-        let mut starts = Vec::new();
+        let count = inputs.iter().map(|(shapes, _)| shapes.ring_count()).sum();
+        let (mut rings, mut starts) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for (shapes, operand) in inputs {
             for ring in 0..shapes.ring_count() {
                 let points = shapes.ring_range(ring);
                 let ring = &shapes.points()[points.clone()];
                 let Some(&first) = ring.first() else { continue };
                 if matters(operand, ring) {
+                    let points = [points.start as u32, points.end as u32];
                     rings.push(Outline { operand, points });
                     starts.push(lattice.place(first));
                 }
             }
         }
         if let Some(order) = order(&starts, bounds) {
-            rings = order.iter().map(|&i| rings[i as usize].clone()).collect();
+            rings = order.iter().map(|&i| rings[i as usize]).collect();
         }
-        let ends = parallel::ends(rings.iter().map(|ring| ring.points.len()));
+        let ends = parallel::ends(rings.iter().map(|ring: &Outline| ring.points().len()));
         Self { rings, ends }
     }
 
@@ -95,7 +102,8 @@ impl Outlines {
         let end = start + out.len();
         let mut index = self.ends.partition_point(|&end| end as usize <= start);
         while at < end {
-            let Outline { operand, ref points } = self.rings[index];
+            let Outline { operand, .. } = self.rings[index];
+            let points = self.rings[index].points();
             let range = parallel::range(&self.ends, index);
             let shapes = inputs[operand as usize];
             let point = |i: usize| lattice.snap::<C>(shapes.points()[i]);

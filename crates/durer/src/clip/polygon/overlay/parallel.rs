@@ -1,6 +1,6 @@
 //! The same work on one thread or several, joined in order, so that the result is the same.
 
-pub use crate::parallel::map;
+pub use crate::parallel::{map, threads};
 use std::cmp::Ordering;
 use std::ops::Range;
 
@@ -18,6 +18,23 @@ pub fn sort<T: Send>(list: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync
 pub fn ranges(count: usize, size: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|start| start..(start + size).min(count)).collect()
 }
+
+/// A list in as many pieces of neighbours as give each thread some, one for one thread.
+pub fn groups<T>(mut list: Vec<T>) -> Vec<Vec<T>> {
+    let threads = if list.is_empty() { 1 } else { threads() };
+    let pieces = if threads == 1 { 1 } else { threads * PIECES };
+    let size = list.len().div_ceil(pieces).max(1);
+    let mut groups = Vec::with_capacity(pieces);
+    while list.len() > size {
+        groups.push(list.split_off(list.len() - size));
+    }
+    groups.push(list);
+    groups.reverse();
+    groups
+}
+
+/// Pieces of work for each thread, so that none waits long for the others.
+const PIECES: usize = 8;
 
 /// A list cut at `ends`, which grow up to its length.
 pub fn cut<'a, T>(mut list: &'a mut [T], ends: &[u32]) -> Vec<&'a mut [T]> {
@@ -50,6 +67,9 @@ pub fn range(ends: &[u32], index: usize) -> Range<usize> {
 
 /// All lists, one after the other.
 pub fn concat<T: Copy + Default + Send + Sync>(lists: &[&[T]]) -> Vec<T> {
+    if threads() == 1 {
+        return lists.concat();
+    }
     let ends = ends(lists.iter().map(|list| list.len()));
     let mut all = vec![T::default(); ends.last().copied().unwrap_or(0) as usize];
     let tasks = cut(&mut all, &ends).into_iter().zip(lists).collect();

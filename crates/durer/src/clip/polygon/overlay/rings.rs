@@ -1,5 +1,7 @@
 //! From the edges that bound the result to simple rings, and from rings to polygons.
 
+use std::cmp::Ordering;
+
 use super::arrangement::{Arrangement, Half, NONE, Patch, Winding};
 use super::lattice::{Coord, Point, cross};
 use super::parallel;
@@ -35,17 +37,20 @@ impl Rings {
 }
 
 /// A closed walk along the border of one connected piece of the result.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 struct Walk {
+    /// Its smallest node.
     first: u32,
-    rings: std::ops::Range<u32>,
-    outer: Option<u32>,
+    /// Its rings start where those of the walk before end.
+    ring_end: u32,
+    /// Its outer ring, or `NONE`.
+    outer: u32,
 }
 
-struct Linker<'a, 'b, C> {
-    graph: &'a Arrangement<'b, C>,
+struct Linker<'b, C> {
+    graph: Arrangement<'b, C>,
     courses: Vec<Course>,
-    /// The edge that follows an edge on the result's border.
+    /// What follows an edge on the result's border, as the word of a half-edge.
     next: Vec<u32>,
     /// The walk that an edge belongs to.
     walk_of: Vec<u32>,
@@ -56,13 +61,16 @@ struct Linker<'a, 'b, C> {
 /// Links the edges where `inside` differs between the two sides.
 #[inline(never)]
 pub fn link<C: Coord>(
-    graph: &Arrangement<C>,
+    mut graph: Arrangement<C>,
     search: &Search<C>,
     inside: impl Fn(Winding) -> bool + Sync,
 ) -> Rings {
+    let courses = courses(&graph, inside);
+    // They have told all they know, and what follows needs the room.
+    graph.right = Vec::new();
     let mut linker = Linker {
         graph,
-        courses: courses(graph, inside),
+        courses,
         next: Vec::new(),
         walk_of: Vec::new(),
         walks: Vec::new(),
@@ -70,7 +78,10 @@ pub fn link<C: Coord>(
     };
     linker.pair();
     linker.trace();
-    linker.nest(search);
+    let owners = linker.owners(search);
+    linker.next = Vec::new();
+    linker.walk_of = Vec::new();
+    linker.sort(&owners);
     linker.rings
 }
 
@@ -93,7 +104,7 @@ fn courses<C: Coord>(
     courses
 }
 
-impl<C: Coord> Linker<'_, '_, C> {
+impl<C: Coord> Linker<'_, C> {
     /// At each node, an edge that arrives goes on with the edge that leaves on the other side of
     /// the piece of inside to its left, so that pieces that only touch stay apart.
     #[inline(never)]
@@ -126,7 +137,7 @@ impl<C: Coord> Linker<'_, '_, C> {
         let mut before = last;
         for &half in around.iter().filter(on) {
             if self.arrives(half) {
-                f(half.edge(), before.edge() as u32);
+                f(half.edge(), before.0);
             }
             before = half;
         }
@@ -143,50 +154,71 @@ impl<C: Coord> Linker<'_, '_, C> {
     #[inline(never)]
     fn trace(&mut self) {
         let mut walk_of = vec![NONE; self.graph.edges.len()];
-        let tasks = parallel::cut(&mut walk_of, &self.graph.edge_ends()).into_iter();
-        let tasks = tasks.zip(&self.graph.patches).collect();
-        let mut traces = parallel::map(tasks, |(walk_of, patch): (&mut [u32], &Patch)| {
-            let trace = Trace {
-                linker: &*self,
-                patch,
-                walk_of,
-                position: Vec::new(),
-                found: Found::default(),
-            };
-            trace.run()
+        let edge_ends = self.graph.edge_ends();
+        let tasks = parallel::cut(&mut walk_of, &edge_ends).into_iter().zip(&self.graph.patches);
+        let groups = parallel::groups(tasks.collect());
+        let group_sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
+        let mut found = parallel::map(groups, |group: Vec<(&mut [u32], &Patch)>| {
+            let mut found = Found::default();
+            let edges = group.iter().flat_map(|(_, patch)| patch.edges.clone());
+            let on = edges.filter(|&e| self.courses[e] != Course::No);
+            found.nodes.reserve(on.map(|e| 1 + self.graph.inner(e).len()).sum());
+            for (walk_of, patch) in group {
+                let starts = patch.edges.clone().map(|e| e as u32);
+                found = Trace { linker: &*self, patch, walk_of, found }.run(starts);
+            }
+            found
         });
-        let counts = parallel::ends(traces.iter().map(|trace| trace.walks.len()));
-        let tasks = parallel::cut(&mut walk_of, &self.graph.edge_ends()).into_iter().enumerate();
+        // Walks are named from zero in each group.
+        let first_walks = parallel::ends(found.iter().map(|found| found.walks.len()));
+        let mut group_ends = parallel::ends(group_sizes.into_iter());
+        group_ends.iter_mut().for_each(|end| {
+            *end = end.checked_sub(1).map_or(0, |patch| edge_ends[patch as usize]);
+        });
+        let tasks = parallel::cut(&mut walk_of, &group_ends).into_iter().enumerate();
         parallel::map(tasks.collect(), |(k, walk_of): (usize, &mut [u32])| {
-            let first = parallel::range(&counts, k).start as u32;
-            walk_of.iter_mut().filter(|walk| **walk < LEFT).for_each(|walk| *walk += first);
+            let first = parallel::range(&first_walks, k).start as u32;
+            let has_left = !found[k].left.is_empty();
+            if first > 0 || has_left {
+                for walk in walk_of {
+                    *walk = if *walk < LEFT { *walk + first } else { NONE };
+                }
+            }
         });
-        if traces.iter().any(|trace| trace.has_left) {
-            walk_of.iter_mut().filter(|walk| **walk == LEFT).for_each(|walk| *walk = NONE);
+        let left: Vec<u32> = found.iter().flat_map(|found| found.left.iter().copied()).collect();
+        if !left.is_empty() {
             let all = Patch { nodes: 0..self.graph.nodes.len(), edges: 0..self.graph.edges.len() };
-            let first = counts.last().copied().unwrap_or(0);
-            let found = Found { first_walk: first, ..Found::default() };
+            let mut last = found.pop().unwrap_or_default();
+            last.first_walk = parallel::range(&first_walks, found.len()).start as u32;
             let walk_of = &mut walk_of[..];
-            let trace = Trace { linker: &*self, patch: &all, walk_of, position: Vec::new(), found };
-            traces.push(trace.run());
+            let trace = Trace { linker: &*self, patch: &all, walk_of, found: last };
+            found.push(trace.run(left.into_iter()));
         }
         self.walk_of = walk_of;
-        self.collect(&traces);
+        self.collect(found);
     }
 
-    fn collect(&mut self, traces: &[Found]) {
-        let lists = |f: fn(&Found) -> &[u32]| traces.iter().map(f).collect::<Vec<_>>();
-        self.rings.nodes = parallel::concat(&lists(|trace| &trace.nodes));
+    fn collect(&mut self, mut found: Vec<Found>) {
+        if let [found] = &mut found[..] {
+            self.rings.nodes = std::mem::take(&mut found.nodes);
+            self.rings.ring_ends = std::mem::take(&mut found.ring_ends);
+            self.walks = std::mem::take(&mut found.walks);
+            return;
+        }
+        let lists = |f: fn(&Found) -> &[u32]| found.iter().map(f).collect::<Vec<_>>();
+        self.rings.nodes = parallel::concat(&lists(|found| &found.nodes));
+        self.rings.ring_ends.reserve(found.iter().map(|found| found.ring_ends.len()).sum());
+        self.walks.reserve(found.iter().map(|found| found.walks.len()).sum());
         let (mut nodes, mut rings) = (0, 0);
-        for trace in traces {
-            self.rings.ring_ends.extend(trace.ring_ends.iter().map(|end| nodes + end));
-            self.walks.extend(trace.walks.iter().map(|walk| Walk {
+        for found in found {
+            self.rings.ring_ends.extend(found.ring_ends.iter().map(|end| nodes + end));
+            self.walks.extend(found.walks.iter().map(|walk| Walk {
                 first: walk.first,
-                rings: rings + walk.rings.start..rings + walk.rings.end,
-                outer: walk.outer.map(|outer| rings + outer),
+                ring_end: rings + walk.ring_end,
+                outer: if walk.outer == NONE { NONE } else { rings + walk.outer },
             }));
-            nodes += trace.nodes.len() as u32;
-            rings += trace.ring_ends.len() as u32;
+            nodes += found.nodes.len() as u32;
+            rings += found.ring_ends.len() as u32;
         }
     }
 
@@ -196,15 +228,15 @@ impl<C: Coord> Linker<'_, '_, C> {
         self.graph.around(node).iter().filter(on).count() > 2
     }
 
-    /// Gives every walk without an outer ring to the piece it is a hole of: that of the edge below
-    /// its first node. Such walks that start further left are done before.
+    /// The outer ring of each ring's polygon. Every walk without an outer ring is a hole of the piece
+    /// of the edge below its first node. Such walks that start further left are done before.
     #[inline(never)]
-    fn nest(&mut self, search: &Search<C>) {
+    fn owners(&self, search: &Search<C>) -> Vec<u32> {
         let nodes = self.graph.nodes;
-        // The outer ring of each walk's polygon, and of each ring.
-        let mut outer_of: Vec<u32> = self.walks.iter().map(|w| w.outer.unwrap_or(NONE)).collect();
+        // The outer ring of each walk's polygon.
+        let mut outer_of: Vec<u32> = self.walks.iter().map(|walk| walk.outer).collect();
         let mut holes: Vec<(Point<C>, u32)> = (self.walks.iter().zip(0..))
-            .filter(|(walk, _)| walk.outer.is_none() && walk.first != NONE)
+            .filter(|(walk, _)| walk.outer == NONE && walk.first != NONE)
             .map(|(walk, id)| (nodes[walk.first as usize], id))
             .collect();
         holes.sort_unstable();
@@ -213,18 +245,18 @@ impl<C: Coord> Linker<'_, '_, C> {
             parallel::map(holes.chunks(SEARCHES).collect(), |some: &[(Point<C>, u32)]| {
                 let first = |id: u32| self.walks[id as usize].first;
                 some.iter()
-                    .map(|&(_, id)| search.below(self.graph, first(id), on))
+                    .map(|&(_, id)| search.below(&self.graph, first(id), on))
                     .collect::<Vec<_>>()
             });
         for ((_, id), below) in holes.into_iter().zip(below.into_iter().flatten()) {
             let walk = below.map_or(NONE, |half| self.walk_of[half.edge()]);
             outer_of[id as usize] = outer_of.get(walk as usize).copied().unwrap_or(NONE);
         }
-        let mut owners = vec![NONE; self.rings.ring_ends.len()];
+        let mut owners = Vec::with_capacity(self.rings.ring_ends.len());
         for (walk, outer) in self.walks.iter().zip(outer_of) {
-            owners[walk.rings.start as usize..walk.rings.end as usize].fill(outer);
+            owners.resize(walk.ring_end as usize, outer);
         }
-        self.sort(&owners);
+        owners
     }
 
     /// Puts polygons in the order of their outer rings' points, and the holes of each likewise.
@@ -238,33 +270,87 @@ impl<C: Coord> Linker<'_, '_, C> {
         let compare = |a: &(Point<C>, u32), b: &(Point<C>, u32)| {
             a.0.cmp(&b.0).then_with(|| points(a.1).cmp(points(b.1)))
         };
-        let all = 0..rings.ring_ends.len() as u32;
-        let of = |keeps: &dyn Fn(u32) -> bool| -> Vec<(Point<C>, u32)> {
-            all.clone().filter(|&r| keeps(r)).map(|r| (first(r), r)).collect()
-        };
-        let mut outers = of(&|r| owners[r as usize] == r);
-        let mut holes = of(&|r| owners[r as usize] != r && owners[r as usize] != NONE);
-        parallel::sort(&mut outers, compare);
-        let mut rank = vec![NONE; owners.len()];
-        for (&(_, outer), i) in outers.iter().zip(0..) {
-            rank[outer as usize] = i;
-        }
-        let rank_of = |hole: u32| rank[owners[hole as usize] as usize];
-        parallel::sort(&mut holes, |a, b| {
-            rank_of(a.1).cmp(&rank_of(b.1)).then_with(|| compare(a, b))
-        });
-        let mut holes = holes.into_iter().map(|(_, hole)| hole).peekable();
-        let (mut order, mut ends) =
-            (Vec::with_capacity(owners.len()), Vec::with_capacity(outers.len()));
-        for (&(_, outer), i) in outers.iter().zip(0..) {
-            order.push(outer);
-            while let Some(hole) = holes.next_if(|&h| rank_of(h) == i) {
-                order.push(hole);
+        let count = rings.ring_ends.len();
+        let mut outers = Vec::with_capacity(count);
+        let mut holes = Vec::new();
+        for (&owner, r) in owners.iter().zip(0..) {
+            if owner == r {
+                outers.push((first(r), r));
+            } else if owner != NONE {
+                holes.push((first(r), r));
             }
-            ends.push(order.len() as u32);
+        }
+        sort_by_columns(&mut outers, compare);
+        let mut order = Vec::with_capacity(count);
+        let mut ends = Vec::with_capacity(outers.len());
+        if holes.is_empty() {
+            order.extend(outers.iter().map(|&(_, outer)| outer));
+            ends.extend(1..=outers.len() as u32);
+        } else {
+            let mut rank = vec![NONE; owners.len()];
+            for (&(_, outer), i) in outers.iter().zip(0..) {
+                rank[outer as usize] = i;
+            }
+            let rank_of = |hole: u32| rank[owners[hole as usize] as usize];
+            parallel::sort(&mut holes, |a, b| {
+                rank_of(a.1).cmp(&rank_of(b.1)).then_with(|| compare(a, b))
+            });
+            let mut holes = holes.into_iter().map(|(_, hole)| hole).peekable();
+            for (&(_, outer), i) in outers.iter().zip(0..) {
+                order.push(outer);
+                while let Some(hole) = holes.next_if(|&h| rank_of(h) == i) {
+                    order.push(hole);
+                }
+                ends.push(order.len() as u32);
+            }
         }
         (self.rings.order, self.rings.polygon_ends) = (order, ends);
     }
+}
+
+/// Rings per column: few enough to be sorted in the cache.
+const PER_COLUMN: usize = if cfg!(test) { 2 } else { 64 };
+
+/// How many rings one task sorts.
+const SORTS: usize = if cfg!(test) { 4 } else { 1 << 14 };
+
+/// Sorts rings by their first points and, where those are alike, by `compare`: first into columns
+/// of the plane, of which each is mostly in order already.
+#[inline(never)]
+fn sort_by_columns<C: Coord>(
+    rings: &mut Vec<(Point<C>, u32)>,
+    compare: impl Fn(&(Point<C>, u32), &(Point<C>, u32)) -> Ordering + Sync,
+) {
+    let xs = || rings.iter().map(|ring| ring.0.x.i64());
+    let (Some(left), Some(right)) = (xs().min(), xs().max()) else { return };
+    let columns = (rings.len() / PER_COLUMN + 1) as u64;
+    // The smallest power of two that leaves no more columns.
+    let shift = u64::BITS - ((right - left) as u64 / columns).leading_zeros();
+    let column = |ring: &(Point<C>, u32)| ((ring.0.x.i64() - left) as u64 >> shift) as usize;
+    let mut ends = vec![0u32; ((right - left) as u64 >> shift) as usize + 1];
+    rings.iter().for_each(|ring| ends[column(ring)] += 1);
+    let mut start = 0;
+    for end in &mut ends {
+        start += std::mem::replace(end, start);
+    }
+    let mut sorted = vec![(Point::default(), 0); rings.len()];
+    for ring in rings.iter() {
+        let next = &mut ends[column(ring)];
+        sorted[*next as usize] = *ring;
+        *next += 1;
+    }
+    let mut task_ends = Vec::new();
+    for (&end, k) in ends.iter().zip(1..) {
+        let start = task_ends.last().copied().unwrap_or(0);
+        if (end - start) as usize >= SORTS || k == ends.len() {
+            task_ends.push(end);
+        }
+    }
+    parallel::map(parallel::cut(&mut sorted, &task_ends), |rings: &mut [(Point<C>, u32)]| {
+        let alike = |a: &(Point<C>, u32), b: &(Point<C>, u32)| column(a) == column(b);
+        rings.chunk_by_mut(alike).for_each(|rings| rings.sort_by(&compare));
+    });
+    *rings = sorted;
 }
 
 /// How many searches one task does.
@@ -273,7 +359,7 @@ const SEARCHES: usize = if cfg!(test) { 2 } else { 64 };
 /// Marks an edge whose walk does not stay within the patch.
 const LEFT: u32 = NONE - 1;
 
-/// What was found in a patch: rings, their ends, and walks.
+/// What was found in some patches: rings, their ends, and walks.
 #[derive(Debug, Default)]
 struct Found {
     nodes: Vec<u32>,
@@ -281,86 +367,90 @@ struct Found {
     walks: Vec<Walk>,
     /// The name of the first walk.
     first_walk: u32,
-    /// Whether some walks were left.
-    has_left: bool,
+    /// Where walks started that do not stay within their patch.
+    left: Vec<u32>,
+    /// Of a patch's nodes that are on the path, one more than their place on it.
+    position: Vec<u32>,
 }
 
 /// The walks through one patch.
-struct Trace<'a, 'b, 'c, C> {
-    linker: &'a Linker<'b, 'c, C>,
+struct Trace<'a, 'b, C> {
+    linker: &'a Linker<'b, C>,
     patch: &'a Patch,
     /// Of the patch's edges.
     walk_of: &'a mut [u32],
-    /// Of the patch's nodes that are on the path, one more than their place on it.
-    position: Vec<u32>,
     found: Found,
 }
 
-impl<C: Coord> Trace<'_, '_, '_, C> {
-    fn run(mut self) -> Found {
-        self.position = vec![0; self.patch.nodes.len()];
+impl<C: Coord> Trace<'_, '_, C> {
+    /// Follows the walks through edges that no walk was through before.
+    fn run(mut self, starts: impl Iterator<Item = u32>) -> Found {
+        if self.found.position.len() < self.patch.nodes.len() {
+            self.found.position.resize(self.patch.nodes.len(), 0);
+        }
         let mut path: Vec<u32> = Vec::new();
-        for start in self.patch.edges.clone() {
-            let walk = self.walk_of[start - self.patch.edges.start];
-            if self.linker.courses[start] != Course::No && walk == NONE {
-                self.walk(start as u32, &mut path);
+        for start in starts {
+            let walk = self.walk_of[start as usize - self.patch.edges.start];
+            let course = self.linker.courses[start as usize];
+            if course != Course::No && walk == NONE {
+                let start = Half(start << 1 | u32::from(course == Course::Down));
+                self.walk(start, &mut path);
             }
         }
         self.found
     }
 
-    fn walk(&mut self, start: u32, path: &mut Vec<u32>) {
-        let Linker { graph, courses, next, .. } = self.linker;
-        let first_ring = self.found.ring_ends.len() as u32;
+    fn walk(&mut self, start: Half, path: &mut Vec<u32>) {
+        let Linker { graph, next, .. } = self.linker;
+        let first_ring = self.found.ring_ends.len();
         let first_node = self.found.nodes.len();
         let id = self.found.first_walk + self.found.walks.len() as u32;
-        let mut walk = Walk { first: NONE, rings: first_ring..first_ring, outer: None };
-        let mut edge = start;
+        let mut walk = Walk { first: NONE, ring_end: 0, outer: NONE };
+        let mut half = start;
         path.clear();
         loop {
-            let up = courses[edge as usize] == Course::Up;
-            let inside = self.patch.has_edge(edge as usize);
-            let ends = &graph.edges[edge as usize];
-            let node = if up { ends.low } else { ends.high };
-            let place = (edge as usize).wrapping_sub(self.patch.edges.start);
-            let known = self.walk_of.get(place).is_some_and(|&walk| walk == LEFT);
-            if !inside || known || !self.patch.has_node(node) {
+            let node = graph.start(half);
+            let edge = half.edge();
+            let place = edge.wrapping_sub(self.patch.edges.start);
+            let known = self.walk_of.get(place).copied().unwrap_or(LEFT);
+            if known == LEFT || !self.patch.has_node(node) {
                 return self.leave(start, path, (first_ring, first_node));
             }
-            let at = self.position[node as usize - self.patch.nodes.start];
+            let position = &mut self.found.position[node as usize - self.patch.nodes.start];
+            let at = *position;
             if at != 0 {
                 self.close(&path[at as usize - 1..], &mut walk);
                 path.truncate(at as usize - 1);
             }
-            if self.walk_of[place] != NONE {
+            if known != NONE {
                 break;
             }
             path.push(node);
-            self.position[node as usize - self.patch.nodes.start] = path.len() as u32;
-            let inner = graph.inner(edge as usize).iter();
-            if up {
-                path.extend(inner)
-            } else {
+            self.found.position[node as usize - self.patch.nodes.start] = path.len() as u32;
+            let inner = graph.inner(edge).iter();
+            if half.is_back() {
                 path.extend(inner.rev())
+            } else {
+                path.extend(inner)
             }
             self.walk_of[place] = id;
-            edge = next[edge as usize];
+            half = Half(next[edge]);
         }
-        walk.rings.end = self.found.ring_ends.len() as u32;
+        walk.ring_end = self.found.ring_ends.len() as u32;
         self.found.walks.push(walk);
     }
 
     /// Takes back what was found on a walk that leaves the patch.
-    fn leave(&mut self, start: u32, path: &[u32], (rings, nodes): (u32, usize)) {
-        self.found.has_left = true;
-        self.found.ring_ends.truncate(rings as usize);
+    fn leave(&mut self, start: Half, path: &[u32], (rings, nodes): (usize, usize)) {
+        self.found.left.push(start.edge() as u32);
+        self.found.ring_ends.truncate(rings);
         self.found.nodes.truncate(nodes);
         for &node in path.iter().filter(|&&node| self.patch.has_node(node)) {
-            self.position[node as usize - self.patch.nodes.start] = 0;
+            self.found.position[node as usize - self.patch.nodes.start] = 0;
         }
-        let mut edge = start;
+        let mut half = start;
         loop {
-            let place = (edge as usize).wrapping_sub(self.patch.edges.start);
+            let place = half.edge().wrapping_sub(self.patch.edges.start);
             match self.walk_of.get_mut(place) {
                 Some(walk) if *walk != LEFT && *walk != NONE => *walk = LEFT,
                 _ => {
@@ -371,7 +461,7 @@ impl<C: Coord> Trace<'_, '_, '_, C> {
                     return;
                 }
             }
-            edge = self.linker.next[edge as usize];
+            half = Half(self.linker.next[half.edge()]);
         }
     }
 
@@ -382,7 +472,7 @@ impl<C: Coord> Trace<'_, '_, '_, C> {
         let mut smallest = 0;
         for (i, &n) in path.iter().enumerate() {
             if self.patch.has_node(n) {
-                self.position[n as usize - self.patch.nodes.start] = 0;
+                self.found.position[n as usize - self.patch.nodes.start] = 0;
             }
             if point(n) < point(path[smallest]) {
                 smallest = i;
@@ -397,7 +487,7 @@ impl<C: Coord> Trace<'_, '_, '_, C> {
         let after = *path.get(smallest + 1).or(path.first()).unwrap_or(&first);
         // The smallest node is a corner, and the turn there tells the orientation.
         if cross(point(before), point(first), point(after)) > C::Wide::default() {
-            walk.outer = Some(self.found.ring_ends.len() as u32);
+            walk.outer = self.found.ring_ends.len() as u32;
         }
         let mut at = first;
         for &after in head[1..].iter().chain(tail).chain([&first]) {

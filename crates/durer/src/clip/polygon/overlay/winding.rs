@@ -52,7 +52,7 @@ impl<C: Coord> Arrangement<'_, C> {
             }
         }
         (0..parts.len() as u32).for_each(|p| {
-            let (parent, offset) = find(&parts, p);
+            let (parent, offset) = find(&mut parts, p);
             let part = &mut parts[p as usize];
             (part.parent, part.offset) = (parent, offset);
         });
@@ -108,9 +108,13 @@ impl<C: Coord> Arrangement<'_, C> {
         let tasks = parallel::cut(&mut right, &edge_ends).into_iter().enumerate().collect();
         parallel::map(tasks, |(k, right): (usize, &mut [Winding])| {
             let parts = &parts[parallel::range(part_ends, k)];
+            let raise = |part: &Part<C>| part.offset.plus(around[part.parent as usize]);
+            if parts.iter().all(|part| raise(part) == Winding::default()) {
+                return;
+            }
             for (right, edge) in right.iter_mut().zip(&self.edges[self.patches[k].edges.clone()]) {
                 let part = &parts[part_of[edge.low as usize] as usize];
-                *right = right.plus(part.offset).plus(around[part.parent as usize]);
+                *right = right.plus(raise(part));
             }
         });
         self.right = right;
@@ -174,12 +178,18 @@ impl<C: Coord> Arrangement<'_, C> {
 /// How many searches one task does.
 const SEARCHES: usize = if cfg!(test) { 2 } else { 64 };
 
-/// The part that a part belongs to, and what makes its windings relative to that one's.
-fn find<C: Copy>(parts: &[Part<C>], mut part: u32) -> (u32, Winding) {
+/// The part that a part belongs to, and what makes its windings relative to that one's. Halves the
+/// way there.
+fn find<C: Copy>(parts: &mut [Part<C>], mut part: u32) -> (u32, Winding) {
     let mut offset = Winding::default();
     while parts[part as usize].parent != part {
-        offset = offset.plus(parts[part as usize].offset);
-        part = parts[part as usize].parent;
+        let parent = parts[parts[part as usize].parent as usize];
+        let here = &mut parts[part as usize];
+        if parent.parent != here.parent {
+            (here.parent, here.offset) = (parent.parent, here.offset.plus(parent.offset));
+        }
+        offset = offset.plus(here.offset);
+        part = here.parent;
     }
     (part, offset)
 }
@@ -195,126 +205,138 @@ fn unite<C: Copy>(parts: &mut [Part<C>], first: u32, second: u32, raise: Winding
         std::cmp::Ordering::Greater => (a, b, Winding::default().minus(offset)),
     };
     (parts[child as usize].parent, parts[child as usize].offset) = (parent, offset);
-    // Short ways for those that are looked for often.
-    for (part, root) in [(first, a), (second, b)] {
-        if part != root && part != child {
-            let (parent, offset) = find(parts, part);
-            (parts[part as usize].parent, parts[part as usize].offset) = (parent, offset);
-        }
-    }
 }
 
-/// The walk through one patch.
+/// The walk through one patch, node by node as they are stored: mostly from left to right, so that
+/// nearly every node has neighbours that come before it and tell the winding there.
 struct Walk<'a, 'b, C> {
     graph: &'a Arrangement<'b, C>,
     patch: &'a Patch,
     /// Of the patch's nodes.
     part_of: &'a mut [u32],
-    /// Of the patch's edges.
+    /// Of the patch's edges, relative to the part of the end that comes first.
     right: &'a mut [Winding],
     walked: Walked<C>,
 }
 
 impl<C: Coord> Walk<'_, '_, C> {
     fn run(mut self) -> Walked<C> {
-        let graph = self.graph;
-        // In waves, not in depth: what a wave touches, the next one finds in the cache.
-        let (mut wave, mut next) = (Vec::new(), Vec::new());
-        for root in self.patch.nodes.clone() {
-            let known = self.part_of[root - self.patch.nodes.start] != NONE;
-            let root = root as u32;
-            if known || graph.around(root).is_empty() {
-                continue;
-            }
-            let name = self.walked.parts.len() as u32;
-            let (outside, offset) = (Winding::default(), Winding::default());
-            let first = graph.nodes[root as usize];
-            self.walked.parts.push(Part { first, node: root, outside, parent: name, offset });
-            self.part_of[root as usize - self.patch.nodes.start] = name;
-            self.go_on(graph.around(root), Winding::default(), &mut wave);
-            while !wave.is_empty() {
-                for half in wave.drain(..) {
-                    self.turn(half, &mut next);
-                }
-                std::mem::swap(&mut wave, &mut next);
+        for node in self.patch.nodes.clone() {
+            let around = self.graph.around(node as u32);
+            if !around.is_empty() {
+                self.turn(node as u32, around);
             }
         }
         self.walked
     }
 
-    /// Goes around the node that a half-edge leaves, whose edge's windings are known.
+    /// Goes around a node and sets the windings of the edges there that are not known yet.
     #[inline(always)]
-    fn turn(&mut self, known: Half, next: &mut Vec<Half>) {
-        let (graph, e) = (self.graph, known.edge());
-        let node = graph.start(known);
-        let around = graph.around(node);
-        let at = around.iter().position(|&half| half == known).unwrap_or(0);
-        let right = self.right[e - self.patch.edges.start];
-        let left = right.plus(graph.edges[e].step);
-        let after = if known.is_back() { right } else { left };
-        if !known.is_back() {
-            self.first_within(e, right, left);
+    fn turn(&mut self, node: u32, around: &[Half]) {
+        let (name, below) = self.known(node, around).unwrap_or_else(|| self.new_part(node));
+        self.part_of[node as usize - self.patch.nodes.start] = name;
+        self.first_at(name, node, below);
+        let mut winding = below;
+        for &half in around.iter().rev() {
+            let step = self.step(half, winding);
+            let (e, inside) = (half.edge(), self.patch.has_edge(half.edge()));
+            if self.is_before(step.end, node) {
+                let other = self.part_of[step.end as usize - self.patch.nodes.start];
+                let right = &mut self.right[e - self.patch.edges.start];
+                if other != name {
+                    unite(&mut self.walked.parts, name, other, step.right.minus(*right));
+                }
+                if !half.is_back() {
+                    *right = step.right;
+                }
+            } else if !inside {
+                self.walked.links.push((e as u32, name, step.right));
+            } else if !half.is_back() || step.end != node {
+                self.right[e - self.patch.edges.start] = step.right;
+                self.first_within(name, e, step.right);
+            }
+            winding = step.next;
         }
-        let below = self.go_on(&around[at + 1..], after, next);
-        let point = graph.nodes[node as usize];
-        if let Some(part) = self.walked.parts.last_mut()
-            && point < part.first
-        {
-            (part.first, part.node, part.outside) = (point, node, below);
-        }
-        self.go_on(&around[..at], below, next);
     }
 
-    /// Goes on counter-clockwise around a node, sets the windings of the edges there, and takes
-    /// their other ends for the next wave. Gives the winding behind the last one.
+    /// The part of a neighbour that was there before, and the winding straight below the node
+    /// relative to that part.
     #[inline(always)]
-    fn go_on(&mut self, around: &[Half], before: Winding, next: &mut Vec<Half>) -> Winding {
-        let graph = self.graph;
-        let name = self.walked.parts.len() as u32 - 1;
-        let mut winding = before;
-        for &half in around {
-            let e = half.edge();
-            let edge = &graph.edges[e];
-            let end = if half.is_back() {
-                winding = winding.minus(edge.step);
-                if !self.patch.has_edge(e) {
-                    self.walked.links.push((e as u32, name, winding));
-                    continue;
-                }
-                self.right[e - self.patch.edges.start] = winding;
-                edge.low
-            } else {
-                let right = winding;
-                self.right[e - self.patch.edges.start] = right;
-                winding = winding.plus(edge.step);
-                self.first_within(e, right, winding);
-                edge.high
-            };
-            let place = (end as usize).wrapping_sub(self.patch.nodes.start);
-            if let Some(part) = self.part_of.get_mut(place)
-                && *part == NONE
-            {
-                *part = name;
-                next.push(half.reversed());
+    fn known(&self, node: u32, around: &[Half]) -> Option<(u32, Winding)> {
+        let mut winding = Winding::default();
+        for &half in around.iter().rev() {
+            let step = self.step(half, winding);
+            if self.is_before(step.end, node) {
+                let name = self.part_of[step.end as usize - self.patch.nodes.start];
+                let right = self.right[half.edge() - self.patch.edges.start];
+                return Some((name, right.minus(step.right)));
             }
+            winding = step.next;
         }
-        winding
+        None
+    }
+
+    /// Starts a part at a node; windings are relative to that below the node.
+    fn new_part(&mut self, node: u32) -> (u32, Winding) {
+        let parent = self.walked.parts.len() as u32;
+        let (outside, offset) = (Winding::default(), Winding::default());
+        let first = self.graph.nodes[node as usize];
+        self.walked.parts.push(Part { first, node, outside, parent, offset });
+        (parent, outside)
+    }
+
+    /// Whether the walk was at this node of the patch before it came to the other one.
+    #[inline(always)]
+    fn is_before(&self, node: u32, other: u32) -> bool {
+        node < other && node as usize >= self.patch.nodes.start
+    }
+
+    /// Passes a half-edge clockwise, from the winding on its counter-clockwise side.
+    #[inline(always)]
+    fn step(&self, half: Half, winding: Winding) -> Step {
+        let edge = &self.graph.edges[half.edge()];
+        if half.is_back() {
+            Step { right: winding, next: winding.plus(edge.step), end: edge.low }
+        } else {
+            let right = winding.minus(edge.step);
+            Step { right, next: right, end: edge.high }
+        }
+    }
+
+    /// Takes a node for the part's smallest point if it is.
+    #[inline(always)]
+    fn first_at(&mut self, name: u32, node: u32, outside: Winding) {
+        let (point, part) =
+            (self.graph.nodes[node as usize], &mut self.walked.parts[name as usize]);
+        if point < part.first {
+            (part.first, part.node, part.outside) = (point, node, outside);
+        }
     }
 
     /// Looks for the part's smallest point among an edge's inner nodes.
-    fn first_within(&mut self, e: usize, right: Winding, left: Winding) {
+    #[inline(always)]
+    fn first_within(&mut self, name: u32, e: usize, right: Winding) {
         let (nodes, inner) = (self.graph.nodes, self.graph.inner(e));
         let Some(k) = (0..inner.len()).min_by_key(|&k| nodes[inner[k] as usize]) else { return };
         let first = nodes[inner[k] as usize];
-        let Some(part) = self.walked.parts.last_mut() else { return };
-        if first < part.first {
+        if first < self.walked.parts[name as usize].first {
             let edge = &self.graph.edges[e];
             let before = k.checked_sub(1).map_or(edge.low, |k| inner[k]);
             let after = inner.get(k + 1).copied().unwrap_or(edge.high);
             // Both neighbours lie to the right; outside is on the other side of the wedge.
             let turn = cross(nodes[before as usize], first, nodes[after as usize]);
-            let outside = if turn > C::Wide::default() { right } else { left };
-            (part.first, part.node, part.outside) = (first, inner[k], outside);
+            let outside = if turn > C::Wide::default() { right } else { right.plus(edge.step) };
+            self.first_at(name, inner[k], outside);
         }
     }
+}
+
+/// What is found where a half-edge is passed.
+struct Step {
+    /// The winding on the right of its edge.
+    right: Winding,
+    /// The winding on the clockwise side.
+    next: Winding,
+    /// The node it goes to.
+    end: u32,
 }

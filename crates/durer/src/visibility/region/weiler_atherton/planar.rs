@@ -41,7 +41,7 @@ impl Planar {
             None => segments,
         };
         let grid = Grid::new(&segments, block, Spread::of(&segments, block));
-        let noding = noding::node(&segments, &grid, |_| Ends::Both);
+        let noding = noding::node(&segments, &grid, |_| Ends::Both, false);
         let graph = Arrangement::of_lines(&noding);
         let search = Search { grid: &grid, segments: &segments, noding: &noding };
         let mut planar = Self::of(&graph);
