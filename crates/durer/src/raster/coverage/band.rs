@@ -63,7 +63,7 @@ impl PathEdges {
 }
 
 /// Whether a closed contour turns one way only, once around.
-fn is_convex(points: &[DVec2]) -> bool {
+pub(super) fn is_convex(points: &[DVec2]) -> bool {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return true };
     let mut from = *last;
     let mut before = *last - points.iter().rev().find(|p| *p != last).unwrap_or(last);

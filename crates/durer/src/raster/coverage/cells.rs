@@ -145,25 +145,25 @@ impl Cells {
             return;
         }
         // Steep: at most two pixels per row, so three cells, without a branch or a division.
-        let inverse = (281_474_976_710_656.0 / across.max(1 << 16) as f64) as u64;
         let flip = (sign - 1) >> 1;
         let mut left = x + slope.min(0);
         let limit = i64::from(self.columns) << 32;
-        let across = (across >> BITS) as u32;
+        let across = (across >> BITS) as i32;
+        let half_inverse = half_inverse(across);
         let mut base = from as u32 * self.words as u32;
         for _ in from..to {
             let l = left.clamp(0, limit) as u64;
-            let a = (l >> BITS) as u32 & 0xffff;
+            let a = (l >> BITS) as i32 & (ONE - 1);
             let column = (l >> 32) as u32;
             let b = a + across;
-            let deltas = steep_deltas(a, b, |over| ((u64::from(over) * inverse) >> BITS) as u32);
+            let deltas = steep_deltas(a, b, half_inverse);
             let at = base.wrapping_mul(64).wrapping_add(column) as usize;
             if let Some(cells) = self.cells.get_mut(at..at + 3) {
                 for (cell, delta) in cells.iter_mut().zip(deltas) {
                     *cell = cell.wrapping_add((delta ^ flip) - flip);
                 }
             }
-            self.mark_two::<SHARED>(base as usize, column as usize, b > ONE as u32, 0);
+            self.mark_two::<SHARED>(base as usize, column as usize, b > ONE, 0);
             base += self.words as u32;
             left += slope;
         }
@@ -224,30 +224,19 @@ impl Cells {
         let base = row as usize * self.words;
         let limit = self.columns << BITS;
         let &Part { x0, x1, height, upper, lower } = part;
-        let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
         let (own_left, own_right) = if x0 <= x1 { (upper, lower) } else { (lower, upper) };
-        let column = (left >> BITS) as usize;
-        let (a, b) = ((left & (ONE - 1)) as u32, (right - (left & !(ONE - 1))) as u32);
-        if b > 2 * ONE as u32 {
-            let end = (right >> BITS) as usize + usize::from(right & (ONE - 1) != 0);
-            self.mark::<SHARED>(base, (column, end), (own_left, own_right));
-            self.wide_part(base, left, right, height, sign);
+        let ramp = Ramp::new(x0, x1, height, limit);
+        let (column, last) = (ramp.first as usize, ramp.last as usize);
+        if ramp.is_wide() {
+            self.mark::<SHARED>(base, (column, ramp.end as usize), (own_left, own_right));
+            self.wide_part(base, &ramp, sign);
             return;
         }
-        let two = b > ONE as u32;
+        let two = ramp.end > ramp.last;
         let own = u64::from(own_left) | (u64::from(own_right) << u32::from(two));
         self.mark_two::<SHARED>(base, column, two, own);
-        // One pixel: no division.
-        let (d0, d2) = if two {
-            let [d0, _, d2] = steep_deltas(a, b, |over| (over << 15) / (b - a).max(1) * 2);
-            let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
-            (scale(d0), scale(d2))
-        } else {
-            let [d0, _, _] = steep_deltas(a, b, |_| 0);
-            (((i64::from(d0) * i64::from(height)) >> BITS) as i32, 0)
-        };
-        let deltas = [d0, height - d0 - d2, d2];
-        if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
+        let deltas = [ramp.head, ramp.tail - ramp.head, height - ramp.tail];
+        if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + last + 2) {
             for (cell, delta) in cells.iter_mut().zip(deltas) {
                 *cell = cell.wrapping_add(delta * sign);
             }
@@ -256,47 +245,124 @@ impl Cells {
 
     /// An edge within one row that crosses three pixels or more; its marks are set.
     #[inline(never)]
-    fn wide_part(&mut self, base: usize, left: i32, right: i32, height: i32, sign: i32) {
-        let (first, last) = ((left >> BITS) as usize, (right >> BITS) as usize);
+    fn wide_part(&mut self, base: usize, ramp: &Ramp, sign: i32) {
+        let (first, last) = (ramp.first as usize, ramp.last as usize);
         let Some(cells) = self.cells.get_mut(base * 64 + first..base * 64 + last + 2) else {
             return;
         };
-        // Covered height per pixel of width, with 32 bits below one.
-        let per_pixel = (f64::from(height) / f64::from(right - left) * 4_294_967_296.0) as u64;
-        let before = (ONE - (left & (ONE - 1))) as u64;
-        let after = (right & (ONE - 1)) as u64;
-        // Covered area of each pixel in turn; a cell gets its difference from the one before.
+        // A cell gets the difference of its pixel's area from the one before.
         let mut previous = 0_i32;
         let mut put = |cell: &mut i32, area: i32| {
             *cell = cell.wrapping_add((area - previous) * sign);
             previous = area;
         };
-        let triangle = |side: u64| ((per_pixel * ((side * side) >> BITS)) >> (2 * BITS + 1)) as i32;
-        let inner = cells.len() - 3;
-        let mut area = ((per_pixel * before) >> BITS) + per_pixel / 2;
+        let mut area = ramp.start;
         if let [head, middle @ .., before_last, after_last] = cells {
-            put(head, triangle(before));
-            for cell in middle.iter_mut().take(inner) {
+            put(head, ramp.head);
+            for cell in middle {
+                area = area.wrapping_add(ramp.per_pixel);
                 put(cell, (area >> BITS) as i32);
-                area += per_pixel;
             }
-            put(before_last, height - triangle(after));
-            put(after_last, height);
+            put(before_last, ramp.tail);
+            put(after_last, ramp.height);
         }
     }
+}
+
+/// What an edge within one row covers of its pixels, to the right of it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Ramp {
+    /// The first pixel it touches, and what it covers of that.
+    pub first: i32,
+    pub head: i32,
+    /// The last one, at least the one after the first.
+    pub last: i32,
+    pub tail: i32,
+    /// The pixel after the last one touched.
+    end: i32,
+    /// What it covers of all pixels after the last: its height.
+    pub height: i32,
+    /// What it covers of the ones between, with 16 more bits: so much, and so much more for each from the first on.
+    pub start: u32,
+    pub per_pixel: u32,
+}
+
+impl Ramp {
+    /// An edge from `x0` to `x1`, 16.16, which are moved between 0 and the limit.
+    #[inline(always)]
+    pub fn new(x0: i32, x1: i32, height: i32, limit: i32) -> Self {
+        let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
+        let first = left >> BITS;
+        let (a, b) = (left & (ONE - 1), right - (left & !(ONE - 1)));
+        if b > 2 * ONE {
+            return Self::wide(left, right, height);
+        }
+        let (head, tail, two) = if b > ONE {
+            let [d0, _, d2] = steep_deltas(a, b, half_inverse(b - a));
+            let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
+            (scale(d0), height - scale(d2), 1)
+        } else {
+            let [d0, _, _] = steep_deltas(a, b, 0.0);
+            (((i64::from(d0) * i64::from(height)) >> BITS) as i32, height, 0)
+        };
+        let end = first + 1 + two;
+        Self { first, head, last: first + 1, tail, end, height, start: 0, per_pixel: 0 }
+    }
+
+    /// An edge that crosses a whole row and at most two pixels, by its left end and its width.
+    #[inline(always)]
+    pub fn steep(left: i32, across: i32, limit: i32) -> Self {
+        let left = left.clamp(0, limit);
+        let (first, a) = (left >> BITS, left & (ONE - 1));
+        let [head, _, d2] = steep_deltas(a, a + across, half_inverse(across));
+        let (last, end) = (first + 1, first + 2);
+        Self { first, head, last, tail: ONE - d2, end, height: ONE, start: 0, per_pixel: 0 }
+    }
+
+    /// An edge that crosses three pixels or more.
+    #[inline(always)]
+    fn wide(left: i32, right: i32, height: i32) -> Self {
+        // Covered height per pixel of width, with 32 bits below one; less than a half.
+        let per_pixel = (f64::from(height) / f64::from(right - left) * 4_294_967_296.0) as u64;
+        let before = (ONE - (left & (ONE - 1))) as u64;
+        let after = (right & (ONE - 1)) as u64;
+        let triangle = |side: u64| ((per_pixel * ((side * side) >> BITS)) >> (2 * BITS + 1)) as i32;
+        let start = ((per_pixel * before) >> BITS) + per_pixel / 2;
+        let (first, last) = (left >> BITS, right >> BITS);
+        Self {
+            first,
+            head: triangle(before),
+            last,
+            tail: height - triangle(after),
+            end: last + i32::from(after != 0),
+            height,
+            start: (start as u32).wrapping_sub(per_pixel as u32),
+            per_pixel: per_pixel as u32,
+        }
+    }
+
+    #[inline(always)]
+    fn is_wide(&self) -> bool {
+        self.last > self.first + 1
+    }
+}
+
+/// Half of one over the width of an edge, 16.16, as [`steep_deltas`] needs it.
+#[inline(always)]
+pub(super) fn half_inverse(across: i32) -> f32 {
+    0.5 / across.max(1) as f32
 }
 
 /// Changes of covered area at the pixel of `a`, the next and the one after, for an edge that crosses
 /// a whole row from `a` to `b`, 16.16 relative to the pixel's left border, `a` < 1 and `b` ≤ 2.
 ///
-/// `ratio` is what lies right of the first pixel over the edge's whole width, in 1/65,536. The three
-/// add up to one exactly.
+/// The three add up to one exactly.
 #[inline(always)]
-fn steep_deltas(a: u32, b: u32, ratio: impl Fn(u32) -> u32) -> [i32; 3] {
-    let middle = ((a + b) >> 1) as i32;
-    let over = b.saturating_sub(ONE as u32);
+fn steep_deltas(a: i32, b: i32, half_inverse: f32) -> [i32; 3] {
+    let middle = (a + b) >> 1;
     // The triangle right of the border between the pixels: half of its width times its height.
-    let d2 = ((u64::from(over) * u64::from(ratio(over))) >> (BITS + 1)) as i32;
+    let over = (b - ONE).max(0) as f32;
+    let d2 = (over * over * half_inverse) as i32;
     // Rounding can make the first one −1.
     let d0 = (ONE + d2 - middle).max(0);
     [d0, ONE - d0 - d2, d2]

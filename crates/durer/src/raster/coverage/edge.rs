@@ -52,7 +52,7 @@ impl Steps {
 
 impl Edge {
     #[inline(always)]
-    fn new(from: (i32, i32), to: (i32, i32)) -> Self {
+    pub(super) fn new(from: (i32, i32), to: (i32, i32)) -> Self {
         let reversed = (to.1, to.0) < (from.1, from.0);
         let ((x0, y0), (x1, y1)) = if reversed { (to, from) } else { (from, to) };
         Self { x0, y0, x1, y1, flags: u32::from(reversed) * REVERSED }
@@ -268,7 +268,7 @@ fn chain_group(edges: &mut [Edge], joints: Range<usize>) {
 }
 
 /// The nearest grid point to a point within the target, ties to even.
-fn snap(p: DVec2) -> (i32, i32) {
+pub(super) fn snap(p: DVec2) -> (i32, i32) {
     // Adding 1.5 · 2⁵² leaves the rounded integer in the low bits of the mantissa.
     const MAGIC: f64 = 6_755_399_441_055_744.0;
     let fixed = |v: f64| (v * f64::from(ONE) + MAGIC).to_bits() as u32 as i32;

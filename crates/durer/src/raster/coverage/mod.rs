@@ -20,6 +20,7 @@ pub(crate) mod edge;
 mod partition;
 mod resolve;
 pub(crate) mod sweep;
+pub(crate) mod thin;
 
 pub use partition::{Face, INFO as PARTITION, fill_partition};
 
