@@ -86,12 +86,21 @@ impl Side {
             Ramp::new(x0, self.steps.crossing, ONE - (y0 & (ONE - 1)), limit)
         } else if row >= end {
             Ramp::new(x(row), x1, y1 & (ONE - 1), limit)
-        } else if self.is_steep() {
-            let across = (self.steps.slope.unsigned_abs() >> BITS) as i32;
-            Ramp::steep((self.left(row) >> BITS) as i32, across, limit)
         } else {
-            Ramp::new(x(row), ((at(row) + self.steps.slope) >> BITS) as i32, ONE, limit)
+            self.whole_ramp(row, limit)
         })
+    }
+
+    /// That of a row that it crosses from top to bottom.
+    #[inline(always)]
+    fn whole_ramp(&self, row: i32, limit: i32) -> Ramp {
+        let slope = self.steps.slope;
+        if self.is_steep() {
+            let across = (slope.unsigned_abs() >> BITS) as i32;
+            return Ramp::steep((self.left(row) >> BITS) as i32, across, limit);
+        }
+        let x = self.steps.at(row - self.whole.0);
+        Ramp::new((x >> BITS) as i32, ((x + slope) >> BITS) as i32, ONE, limit)
     }
 
     /// The left end of what it crosses of a row as a whole, 32.32.
@@ -126,7 +135,11 @@ pub(crate) fn fill<S: Simd, K: Sink<S>>(
         }
         let to = between.rows.1.min(end);
         if row < to {
-            steep_rows(simd, &between, (row, to), top, width, sink);
+            if between.narrow {
+                steep_rows(simd, &between, (row, to), top, width, sink);
+            } else {
+                wide_rows(simd, &between, (row, to), top, width, sink);
+            }
             row = to;
         }
     }
@@ -138,38 +151,75 @@ pub(crate) fn fill<S: Simd, K: Sink<S>>(
 
 /// Two opposite edges and the rows that both cross from top to bottom, and nothing else does.
 struct Between {
-    left: Steps,
-    right: Steps,
-    /// The first row that each crosses as a whole.
-    first: (i32, i32),
+    left: Side,
+    right: Side,
     rows: (i32, i32),
+    /// Whether both are steep and never more than two pixels apart.
+    narrow: bool,
 }
 
-/// The rows in which two opposite edges are steep and never more than two pixels apart.
+/// The rows between two opposite edges.
 #[inline(always)]
 fn between(sides: &[Side; 4]) -> Option<Between> {
     let [a, b, c, d] = sides;
-    let pair = |p: &Side, q: &Side, others: [&Side; 2]| {
-        let rows = (p.whole.0.max(q.whole.0), p.whole.1.min(q.whole.1));
-        let apart = |o: &Side| o.rows.1 <= rows.0 || o.rows.0 >= rows.1 || o.edge.y0 == o.edge.y1;
-        let fits =
-            rows.0 < rows.1 && p.is_steep() && q.is_steep() && others.iter().all(|o| apart(o));
-        if !fits {
-            return None;
-        }
-        let gap = |row: i32| q.left(row) - p.left(row);
-        let (upper, lower) = (gap(rows.0), gap(rows.1 - 1));
-        let swapped = upper < 0;
-        let (upper, lower) = if swapped { (-upper, -lower) } else { (upper, lower) };
-        // Some slack for what rounding does between.
-        let narrow = |gap: i64| gap >= 1 << BITS && gap < (2 << 32) - (1 << BITS);
-        if !narrow(upper) || !narrow(lower) {
-            return None;
-        }
-        let (l, r) = if swapped { (q, p) } else { (p, q) };
-        Some(Between { left: l.steps, right: r.steps, first: (l.whole.0, r.whole.0), rows })
-    };
     pair(a, c, [b, d]).or_else(|| pair(b, d, [a, c]))
+}
+
+#[inline(always)]
+fn pair(p: &Side, q: &Side, others: [&Side; 2]) -> Option<Between> {
+    let rows = (p.whole.0.max(q.whole.0), p.whole.1.min(q.whole.1));
+    let apart = |o: &Side| o.rows.1 <= rows.0 || o.rows.0 >= rows.1 || o.edge.y0 == o.edge.y1;
+    if rows.0 >= rows.1 || !apart(others[0]) || !apart(others[1]) {
+        return None;
+    }
+    let gap = |row: i32| q.left(row) - p.left(row);
+    let (upper, lower) = (gap(rows.0), gap(rows.1 - 1));
+    let swapped = upper < 0;
+    let (upper, lower) = if swapped { (-upper, -lower) } else { (upper, lower) };
+    let (left, right) = if swapped { (*q, *p) } else { (*p, *q) };
+    // Some slack for what rounding does between.
+    let fits = |gap: i64| gap >= 1 << BITS && gap < (2 << 32) - (1 << BITS);
+    let narrow = p.is_steep() && q.is_steep() && fits(upper) && fits(lower);
+    Some(Between { left, right, rows, narrow })
+}
+
+/// Rows between two edges, eight pixels at a time.
+#[simd]
+fn wide_rows<S: Simd, K: Sink<S>>(
+    simd: S,
+    between: &Between,
+    rows: (i32, i32),
+    top: i32,
+    width: usize,
+    sink: &mut K,
+) {
+    let limit = (width as i32) << BITS;
+    for row in rows.0..rows.1 {
+        let (left, right) =
+            (between.left.whole_ramp(row, limit), between.right.whole_ramp(row, limit));
+        let high = left.last.max(right.last).min(width as i32 - 1);
+        let mut x = left.first.min(right.first);
+        while x <= high {
+            let sum = area(simd, &left, x) - area(simd, &right, x);
+            sink.eight(simd, row - top, x as usize, lanes(simd, sum, FillRule::NonZero));
+            x += 8;
+        }
+    }
+}
+
+/// What an edge covers of eight pixels.
+#[inline(always)]
+fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
+    let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let (zero, last) = (i32x8::splat(simd, 0), i32x8::splat(simd, ramp.last - ramp.first));
+    let i = lane + i32x8::splat(simd, x - ramp.first);
+    let u: u32x8<S> = i.bitcast();
+    let area = u32x8::splat(simd, ramp.start) + u * u32x8::splat(simd, ramp.per_pixel);
+    let area: i32x8<S> = (area >> BITS).bitcast();
+    let area = i.simd_eq(zero).select(i32x8::splat(simd, ramp.head), area);
+    let area = i.simd_eq(last).select(i32x8::splat(simd, ramp.tail), area);
+    let area = i.simd_gt(last).select(i32x8::splat(simd, ramp.height), area);
+    i.simd_lt(zero).select(zero, area)
 }
 
 /// Rows between two steep edges, eight at a time.
@@ -184,8 +234,8 @@ fn steep_rows<S: Simd, K: Sink<S>>(
 ) {
     let (one, zero) = (i32x8::splat(simd, ONE), i32x8::splat(simd, 0));
     let limit = (width as i32) << BITS;
-    let mut left = Eight::new(simd, &between.left, rows.0 - between.first.0, limit);
-    let mut right = Eight::new(simd, &between.right, rows.0 - between.first.1, limit);
+    let mut left = Eight::new(simd, &between.left, rows.0, limit);
+    let mut right = Eight::new(simd, &between.right, rows.0, limit);
     let (mut packed, mut columns) = ([0_u32; 8], [0_i32; 8]);
     let mut row = rows.0;
     while row < rows.1 {
@@ -222,14 +272,14 @@ struct Eight<S: Simd> {
 }
 
 impl<S: Simd> Eight<S> {
-    /// From so many rows on below the first that it crosses as a whole.
+    /// From a row on.
     #[inline(always)]
-    fn new(simd: S, steps: &Steps, rows: i32, limit: i32) -> Self {
+    fn new(simd: S, side: &Side, row: i32, limit: i32) -> Self {
         let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        let slope = steps.slope;
+        let slope = side.steps.slope;
         let across = (slope.unsigned_abs() >> BITS) as i32;
         Self {
-            left: steps.at(rows) + slope.min(0),
+            left: side.left(row),
             step: 8 * slope,
             whole: lane * i32x8::splat(simd, (slope >> BITS) as i32),
             below: lane * i32x8::splat(simd, slope as i32 & (ONE - 1)),
@@ -275,23 +325,12 @@ fn one_row<S: Simd, K: Sink<S>>(
             count += 1;
         }
     }
-    let zero = i32x8::splat(simd, 0);
-    let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
     let mut x = low;
     while x <= high && (x as usize) < width {
-        let mut sum = zero;
+        let mut sum = i32x8::splat(simd, 0);
         for (ramp, flip) in ramps.iter().take(count) {
-            let last = i32x8::splat(simd, ramp.last - ramp.first);
-            let i = lane + i32x8::splat(simd, x - ramp.first);
-            let u: u32x8<S> = i.bitcast();
-            let area = u32x8::splat(simd, ramp.start) + u * u32x8::splat(simd, ramp.per_pixel);
-            let mut area: i32x8<S> = (area >> BITS).bitcast();
-            area = i.simd_eq(zero).select(i32x8::splat(simd, ramp.head), area);
-            area = i.simd_eq(last).select(i32x8::splat(simd, ramp.tail), area);
-            area = i.simd_gt(last).select(i32x8::splat(simd, ramp.height), area);
-            area = i.simd_lt(zero).select(zero, area);
             let flip = i32x8::splat(simd, *flip);
-            sum = sum + (area ^ flip) - flip;
+            sum = sum + (area(simd, ramp, x) ^ flip) - flip;
         }
         sink.eight(simd, row - top, x as usize, lanes(simd, sum, FillRule::NonZero));
         x += 8;

@@ -50,6 +50,9 @@ pub(super) fn render<P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
+/// Lines are fetched so many at a time: they lie far apart in memory, and so are waited for together.
+const AT_ONCE: usize = 16;
+
 /// What is to be done in a band.
 struct Todo<'a, P> {
     items: &'a [Item],
@@ -71,6 +74,8 @@ struct Painter<P> {
     floors: Vec<usize>,
     /// Whether what was popped can be used again.
     spare: Vec<Vec<P>>,
+    /// The lines painted next.
+    near: Vec<Line>,
 }
 
 impl<P: Space> Painter<P> {
@@ -84,6 +89,7 @@ impl<P: Space> Painter<P> {
             clips: Vec::new(),
             floors: Vec::new(),
             spare: Vec::new(),
+            near: Vec::new(),
         }
     }
 
@@ -113,16 +119,16 @@ impl<P: Space> Painter<P> {
     }
 
     fn commands(&mut self, level: Level, todo: &Todo<'_, P>, top: i32, base: &mut [P]) {
-        for item in todo.items {
-            let command = match item.number() {
-                Ok(command) => &todo.commands[command],
-                Err(line) => {
-                    let at = (top, &mut *base);
-                    dispatch!(level, simd => self.line(simd, &todo.lines[line], at));
+        for items in todo.items.chunk_by(|a, b| a.line().is_some() && b.line().is_some()) {
+            let command = match items {
+                [item] if item.line().is_none() => &todo.commands[item.command()],
+                _ => {
+                    self.lines(level, items, todo.lines, top, base);
                     continue;
                 }
             };
             match command {
+                // They are items of their own.
                 Prepared::Lines { .. } => {}
                 Prepared::Fill { outline, rule, source } => {
                     let at = (top, &mut *base);
@@ -164,17 +170,25 @@ impl<P: Space> Painter<P> {
         }
     }
 
-    fn line<S: Simd>(&mut self, simd: S, line: &Line, (top, base): (i32, &mut [P])) {
-        let Self { layers, clips, floors, width, .. } = self;
+    fn lines(&mut self, level: Level, items: &[Item], lines: &[Line], top: i32, base: &mut [P]) {
+        let Self { layers, clips, floors, width, near, .. } = self;
         let width = *width;
         let pixels = layers.last_mut().map_or(base, |l| l.as_mut_slice());
-        let color = P::from_srgb(line.color.map(|c| f32::from(c) / 255.0), line.opacity);
-        if let Some(clip) = clip_in_force(clips, floors) {
-            let source = &Source::Solid(color);
-            let mut sink = Painted { pixels, width, source, clip: Some(clip), top };
-            thin::fill(simd, &line.strip, top, width, &mut sink);
-        } else {
-            thin::fill(simd, &line.strip, top, width, &mut Plain { pixels, width, color });
+        let clip = clip_in_force(clips, floors).map(Vec::as_slice);
+        for items in items.chunks(AT_ONCE) {
+            near.clear();
+            near.extend(items.iter().filter_map(|item| lines.get(item.line()?)));
+            for line in &*near {
+                let color = P::from_srgb(line.color.map(|c| f32::from(c) / 255.0), line.opacity);
+                if clip.is_some() {
+                    let source = &Source::Solid(color);
+                    let mut sink = Painted { pixels, width, source, clip, top };
+                    dispatch!(level, simd => thin::fill(simd, &line.strip, top, width, &mut sink));
+                } else {
+                    let mut sink = Plain { pixels, width, color };
+                    dispatch!(level, simd => thin::fill(simd, &line.strip, top, width, &mut sink));
+                }
+            }
         }
     }
 

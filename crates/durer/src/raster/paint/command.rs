@@ -24,10 +24,15 @@ const LINE: u32 = 1 << 31;
 pub(super) struct Item(u32);
 
 impl Item {
-    /// The number of a command, or of a line.
+    /// The number of a line, if it is one.
     #[inline(always)]
-    pub fn number(self) -> Result<usize, usize> {
-        if self.0 & LINE == 0 { Ok(self.0 as usize) } else { Err((self.0 & !LINE) as usize) }
+    pub fn line(self) -> Option<usize> {
+        (self.0 & LINE != 0).then_some((self.0 & !LINE) as usize)
+    }
+
+    /// The number of the command, if it is none.
+    pub fn command(self) -> usize {
+        self.0 as usize
     }
 }
 
