@@ -226,7 +226,7 @@ impl Cells {
         let &Part { x0, x1, height, upper, lower } = part;
         let (own_left, own_right) = if x0 <= x1 { (upper, lower) } else { (lower, upper) };
         let ramp = Ramp::new(x0, x1, height, limit);
-        let (column, last) = (ramp.first as usize, ramp.last as usize);
+        let column = ramp.first as usize;
         if ramp.is_wide() {
             self.mark::<SHARED>(base, (column, ramp.end as usize), (own_left, own_right));
             self.wide_part(base, &ramp, sign);
@@ -236,7 +236,7 @@ impl Cells {
         let own = u64::from(own_left) | (u64::from(own_right) << u32::from(two));
         self.mark_two::<SHARED>(base, column, two, own);
         let deltas = [ramp.head, ramp.tail - ramp.head, height - ramp.tail];
-        if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + last + 2) {
+        if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
             for (cell, delta) in cells.iter_mut().zip(deltas) {
                 *cell = cell.wrapping_add(delta * sign);
             }

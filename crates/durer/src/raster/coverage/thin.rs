@@ -178,7 +178,7 @@ fn pair(p: &Side, q: &Side, others: [&Side; 2]) -> Option<Between> {
     let (upper, lower) = if swapped { (-upper, -lower) } else { (upper, lower) };
     let (left, right) = if swapped { (*q, *p) } else { (*p, *q) };
     // Some slack for what rounding does between.
-    let fits = |gap: i64| gap >= 1 << BITS && gap < (2 << 32) - (1 << BITS);
+    let fits = |gap: i64| (1 << BITS..(2 << 32) - (1 << BITS)).contains(&gap);
     let narrow = p.is_steep() && q.is_steep() && fits(upper) && fits(lower);
     Some(Between { left, right, rows, narrow })
 }
