@@ -7,6 +7,7 @@
 //! can windings differ by more than one, and the sum alone not decide.
 
 use super::edge::{BITS, Edge, ONE};
+use super::ramp::{Ramp, half_inverse, narrow_deltas, steep_deltas};
 use crate::raster::bands::BAND_ROWS;
 
 /// Cells to the right of the last pixel that edges on the border may write to.
@@ -225,17 +226,19 @@ impl Cells {
         let limit = self.columns << BITS;
         let &Part { x0, x1, height, upper, lower } = part;
         let (own_left, own_right) = if x0 <= x1 { (upper, lower) } else { (lower, upper) };
-        let ramp = Ramp::new(x0, x1, height, limit);
-        let column = ramp.first as usize;
-        if ramp.is_wide() {
+        let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
+        let column = (left >> BITS) as usize;
+        let (a, b) = (left & (ONE - 1), right - (left & !(ONE - 1)));
+        if b > 2 * ONE {
+            let ramp = Ramp::wide(left, right, height);
             self.mark::<SHARED>(base, (column, ramp.end as usize), (own_left, own_right));
             self.wide_part(base, &ramp, sign);
             return;
         }
-        let two = ramp.end > ramp.last;
+        let two = b > ONE;
         let own = u64::from(own_left) | (u64::from(own_right) << u32::from(two));
         self.mark_two::<SHARED>(base, column, two, own);
-        let deltas = [ramp.head, ramp.tail - ramp.head, height - ramp.tail];
+        let deltas = narrow_deltas(a, b, height);
         if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
             for (cell, delta) in cells.iter_mut().zip(deltas) {
                 *cell = cell.wrapping_add(delta * sign);
@@ -267,103 +270,4 @@ impl Cells {
             put(after_last, ramp.height);
         }
     }
-}
-
-/// What an edge within one row covers of its pixels, to the right of it.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ramp {
-    /// The first pixel it touches, and what it covers of that.
-    pub first: i32,
-    pub head: i32,
-    /// The last one, at least the one after the first.
-    pub last: i32,
-    pub tail: i32,
-    /// The pixel after the last one touched.
-    end: i32,
-    /// What it covers of all pixels after the last: its height.
-    pub height: i32,
-    /// What it covers of the ones between, with 16 more bits: so much, and so much more for each from the first on.
-    pub start: u32,
-    pub per_pixel: u32,
-}
-
-impl Ramp {
-    /// An edge from `x0` to `x1`, 16.16, which are moved between 0 and the limit.
-    #[inline(always)]
-    pub fn new(x0: i32, x1: i32, height: i32, limit: i32) -> Self {
-        let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
-        let first = left >> BITS;
-        let (a, b) = (left & (ONE - 1), right - (left & !(ONE - 1)));
-        if b > 2 * ONE {
-            return Self::wide(left, right, height);
-        }
-        let (head, tail, two) = if b > ONE {
-            let [d0, _, d2] = steep_deltas(a, b, half_inverse(b - a));
-            let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
-            (scale(d0), height - scale(d2), 1)
-        } else {
-            let [d0, _, _] = steep_deltas(a, b, 0.0);
-            (((i64::from(d0) * i64::from(height)) >> BITS) as i32, height, 0)
-        };
-        let end = first + 1 + two;
-        Self { first, head, last: first + 1, tail, end, height, start: 0, per_pixel: 0 }
-    }
-
-    /// An edge that crosses a whole row and at most two pixels, by its left end and its width.
-    #[inline(always)]
-    pub fn steep(left: i32, across: i32, limit: i32) -> Self {
-        let left = left.clamp(0, limit);
-        let (first, a) = (left >> BITS, left & (ONE - 1));
-        let [head, _, d2] = steep_deltas(a, a + across, half_inverse(across));
-        let (last, end) = (first + 1, first + 2);
-        Self { first, head, last, tail: ONE - d2, end, height: ONE, start: 0, per_pixel: 0 }
-    }
-
-    /// An edge that crosses three pixels or more.
-    #[inline(always)]
-    fn wide(left: i32, right: i32, height: i32) -> Self {
-        // Covered height per pixel of width, with 32 bits below one; less than a half.
-        let per_pixel = (f64::from(height) / f64::from(right - left) * 4_294_967_296.0) as u64;
-        let before = (ONE - (left & (ONE - 1))) as u64;
-        let after = (right & (ONE - 1)) as u64;
-        let triangle = |side: u64| ((per_pixel * ((side * side) >> BITS)) >> (2 * BITS + 1)) as i32;
-        let start = ((per_pixel * before) >> BITS) + per_pixel / 2;
-        let (first, last) = (left >> BITS, right >> BITS);
-        Self {
-            first,
-            head: triangle(before),
-            last,
-            tail: height - triangle(after),
-            end: last + i32::from(after != 0),
-            height,
-            start: (start as u32).wrapping_sub(per_pixel as u32),
-            per_pixel: per_pixel as u32,
-        }
-    }
-
-    #[inline(always)]
-    fn is_wide(&self) -> bool {
-        self.last > self.first + 1
-    }
-}
-
-/// Half of one over the width of an edge, 16.16, as [`steep_deltas`] needs it.
-#[inline(always)]
-pub(super) fn half_inverse(across: i32) -> f32 {
-    0.5 / across.max(1) as f32
-}
-
-/// Changes of covered area at the pixel of `a`, the next and the one after, for an edge that crosses
-/// a whole row from `a` to `b`, 16.16 relative to the pixel's left border, `a` < 1 and `b` ≤ 2.
-///
-/// The three add up to one exactly.
-#[inline(always)]
-fn steep_deltas(a: i32, b: i32, half_inverse: f32) -> [i32; 3] {
-    let middle = (a + b) >> 1;
-    // The triangle right of the border between the pixels: half of its width times its height.
-    let over = (b - ONE).max(0) as f32;
-    let d2 = (over * over * half_inverse) as i32;
-    // Rounding can make the first one −1.
-    let d0 = (ONE + d2 - middle).max(0);
-    [d0, ONE - d0 - d2, d2]
 }

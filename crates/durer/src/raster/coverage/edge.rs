@@ -23,7 +23,7 @@ const CHAINED_UPPER: u32 = 2;
 const CHAINED_LOWER: u32 = 4;
 
 /// An edge from top to bottom; coordinates are 16.16 pixels, x within the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Edge {
     pub x0: i32,
     pub y0: i32,
@@ -34,7 +34,7 @@ pub(crate) struct Edge {
 }
 
 /// How an edge goes from row to row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Steps {
     /// x where the edge first crosses a border of rows, at or below `y0`.
     pub crossing: i32,
@@ -150,13 +150,15 @@ pub(crate) struct EdgeBuilder<'a> {
     /// Size of the target in pixels.
     width: f64,
     height: f64,
+    /// Whether a line reached beyond the target.
+    pub cut: bool,
 }
 
 impl<'a> EdgeBuilder<'a> {
     /// A builder for a target of the given size in pixels, at most [`MAX_SIDE`] each way.
     pub fn new(edges: &'a mut Vec<Edge>, width: u32, height: u32) -> Self {
         let (width, height) = (f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)));
-        Self { edges, width, height }
+        Self { edges, width, height, cut: false }
     }
 
     /// Adds the contours, each closed; points that are not finite are left out. Nobody asks which joints of a
@@ -186,6 +188,7 @@ impl<'a> EdgeBuilder<'a> {
         if inside(a) && inside(b) {
             self.edge(snap(a), snap(b));
         } else {
+            self.cut = true;
             self.clipped(a, b);
         }
     }

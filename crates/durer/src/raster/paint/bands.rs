@@ -12,8 +12,8 @@ use super::source::Source;
 use super::{Canvas, Color, MaskKind};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::Overlap;
+use crate::raster::coverage::convex;
 use crate::raster::coverage::sweep::{Sink, unpacked};
-use crate::raster::coverage::thin;
 use crate::target::Pixels;
 
 /// Paints all commands over the target.
@@ -179,14 +179,15 @@ impl<P: Space> Painter<P> {
             near.clear();
             near.extend(items.iter().filter_map(|item| lines.get(item.line()?)));
             for line in &*near {
+                let (edges, rows) = (line.strip.edges(), line.strip.rows());
                 let color = P::from_srgb(line.color.map(|c| f32::from(c) / 255.0), line.opacity);
                 if clip.is_some() {
                     let source = &Source::Solid(color);
                     let mut sink = Painted { pixels, width, source, clip, top };
-                    dispatch!(level, simd => thin::fill(simd, &line.strip, top, width, &mut sink));
+                    dispatch!(level, simd => convex::fill(simd, &edges, rows, top, width, &mut sink));
                 } else {
                     let mut sink = Plain { pixels, width, color };
-                    dispatch!(level, simd => thin::fill(simd, &line.strip, top, width, &mut sink));
+                    dispatch!(level, simd => convex::fill(simd, &edges, rows, top, width, &mut sink));
                 }
             }
         }

@@ -5,7 +5,7 @@ use super::outline::Outline;
 use super::source::Source;
 use super::{Color, FillRule, MaskKind, Paint};
 use crate::math::DAffine2;
-use crate::raster::coverage::thin::Strip;
+use crate::raster::coverage::convex::Strip;
 
 /// A thin straight line of one colour.
 #[derive(Debug, Clone, Copy)]

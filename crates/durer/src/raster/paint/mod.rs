@@ -14,7 +14,7 @@ pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
 
 use fearless_simd::Level;
 
-use super::coverage::thin::Strip;
+use super::coverage::convex::Strip;
 use super::coverage::{FillRule, Overlap, check_size};
 use super::line::anti_aliased;
 use super::line::wide::{self, Stroke};

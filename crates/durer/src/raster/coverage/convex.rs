@@ -1,22 +1,26 @@
-//! Thin straight strips, as most lines are: coverage without cells.
+//! Convex outlines of few edges, as most lines and small shapes are: coverage without cells.
 //!
-//! A convex quadrilateral has at most four edges in a row, and of a thin one every row has few pixels. So its rows are
-//! summed as they are found, from the same integers that [`super::cells`] would add up: eight rows at a time where
-//! just the two long edges cross them and cross them steeply, eight pixels at a time elsewhere.
+//! Few edges meet in a row, mostly two. So rows are summed as they are found, from the same integers that
+//! [`super::cells`] would add up: eight pixels at a time, and eight rows at a time between two steep edges that are less
+//! than two pixels apart, as those of thin lines are.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, u32x8};
+use fearless_simd::{i32x8, u32x8};
 use fearless_simd_macros::simd;
 
 use super::FillRule;
 use super::band::is_convex;
-use super::cells::{Ramp, half_inverse};
 use super::edge::{BITS, Edge, ONE, Steps, snap};
+use super::ramp::{Eight, Ramp, half_inverse};
 use super::sweep::{Sink, lanes};
 use crate::math::DVec2;
 use crate::raster::bands::BAND_ROWS;
 
-/// Wider ones, in pixels, are filled as other paths are.
+/// Outlines of more edges are filled as other paths are.
+pub(crate) const MOST_EDGES: usize = 8;
+/// So many pixels inside are worth a span of their own.
+const FULL: i32 = 8;
+/// Wider strips, in pixels, are filled as other paths are.
 const THIN: f64 = 4.0;
 
 /// A thin convex quadrilateral inside the target.
@@ -45,18 +49,20 @@ impl Strip {
         (low >> BITS, (high + ONE - 1) >> BITS)
     }
 
+    /// Its edges, around.
     #[inline(always)]
-    fn sides(&self) -> [Side; 4] {
+    pub fn edges(&self) -> [Edge; 4] {
         let [a, b, c, d] = self.corners;
-        [Side::new(a, b), Side::new(b, c), Side::new(c, d), Side::new(d, a)]
+        [Edge::new(a, b), Edge::new(b, c), Edge::new(c, d), Edge::new(d, a)]
     }
 }
 
 /// One edge and how it goes from row to row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Side {
     edge: Edge,
     steps: Steps,
+    half_inverse: f32,
     /// The rows it touches, and the first and one past the last that it crosses from top to bottom.
     rows: (i32, i32),
     whole: (i32, i32),
@@ -64,17 +70,18 @@ struct Side {
 
 impl Side {
     #[inline(always)]
-    fn new(from: (i32, i32), to: (i32, i32)) -> Self {
-        let edge = Edge::new(from, to);
+    fn new(edge: &Edge) -> Self {
         let whole = ((edge.y0 + ONE - 1) >> BITS, edge.y1 >> BITS);
-        Self { edge, steps: edge.steps(), rows: edge.rows(), whole }
+        let steps = edge.steps();
+        let half_inverse = half_inverse((steps.slope.unsigned_abs() >> BITS) as i32);
+        Self { edge: *edge, steps, half_inverse, rows: edge.rows(), whole }
     }
 
     /// What it covers of a row's pixels; nothing where it does not touch it.
     #[inline(always)]
     fn ramp(&self, row: i32, limit: i32) -> Option<Ramp> {
         let Edge { x0, x1, y0, y1, .. } = self.edge;
-        if row < self.rows.0 || row >= self.rows.1 || y0 == y1 {
+        if row < self.rows.0 || row >= self.rows.1 {
             return None;
         }
         let (first, end) = self.whole;
@@ -97,7 +104,7 @@ impl Side {
         let slope = self.steps.slope;
         if self.is_steep() {
             let across = (slope.unsigned_abs() >> BITS) as i32;
-            return Ramp::steep((self.left(row) >> BITS) as i32, across, limit);
+            return Ramp::steep((self.left(row) >> BITS) as i32, across, self.half_inverse, limit);
         }
         let x = self.steps.at(row - self.whole.0);
         Ramp::new((x >> BITS) as i32, ((x + slope) >> BITS) as i32, ONE, limit)
@@ -116,78 +123,88 @@ impl Side {
     }
 }
 
-/// Fills the strip in the band at row `top` of a target with rows of `width` pixels.
+/// Fills a convex outline within the target in the band at row `top`; its rows are `rows`, those of the target have
+/// `width` pixels.
 #[simd]
 pub(crate) fn fill<S: Simd, K: Sink<S>>(
     simd: S,
-    strip: &Strip,
+    edges: &[Edge],
+    rows: (i32, i32),
     top: i32,
     width: usize,
     sink: &mut K,
 ) {
-    let (sides, rows) = (strip.sides(), strip.rows());
-    let (first, end) = (rows.0.max(top), rows.1.min(top + BAND_ROWS));
-    let mut row = first;
-    if let Some(between) = between(&sides) {
-        while row < between.rows.0.min(end) {
-            one_row(simd, &sides, (row, top), width, sink);
+    let (mut row, end) = (rows.0.max(top), rows.1.min(top + BAND_ROWS));
+    let (mut sides, mut count) = ([Side::default(); MOST_EDGES], 0);
+    for edge in edges.iter().take(MOST_EDGES) {
+        let (first, last) = edge.rows();
+        if first < end && last > row && edge.y0 < edge.y1 {
+            sides[count] = Side::new(edge);
+            count += 1;
+        }
+    }
+    let sides = sides.get(..count).unwrap_or_default();
+    while row < end {
+        if let Some(pair) = pair(sides, row, end) {
+            if pair.narrow(row) {
+                steep_rows(simd, &pair, (row, pair.end), top, width, sink);
+            } else {
+                wide_rows(simd, &pair, (row, pair.end), top, width, sink);
+            }
+            row = pair.end;
+        } else {
+            one_row(simd, sides, (row, top), width, sink);
             row += 1;
         }
-        let to = between.rows.1.min(end);
-        if row < to {
-            if between.narrow {
-                steep_rows(simd, &between, (row, to), top, width, sink);
-            } else {
-                wide_rows(simd, &between, (row, to), top, width, sink);
-            }
-            row = to;
-        }
-    }
-    while row < end {
-        one_row(simd, &sides, (row, top), width, sink);
-        row += 1;
     }
 }
 
-/// Two opposite edges and the rows that both cross from top to bottom, and nothing else does.
-struct Between {
+/// Two edges that alone cross rows, from top to bottom.
+struct Pair {
     left: Side,
     right: Side,
-    rows: (i32, i32),
-    /// Whether both are steep and never more than two pixels apart.
-    narrow: bool,
+    /// One past the last of the rows.
+    end: i32,
 }
 
-/// The rows between two opposite edges.
-#[inline(always)]
-fn between(sides: &[Side; 4]) -> Option<Between> {
-    let [a, b, c, d] = sides;
-    pair(a, c, [b, d]).or_else(|| pair(b, d, [a, c]))
-}
-
-#[inline(always)]
-fn pair(p: &Side, q: &Side, others: [&Side; 2]) -> Option<Between> {
-    let rows = (p.whole.0.max(q.whole.0), p.whole.1.min(q.whole.1));
-    let apart = |o: &Side| o.rows.1 <= rows.0 || o.rows.0 >= rows.1 || o.edge.y0 == o.edge.y1;
-    if rows.0 >= rows.1 || !apart(others[0]) || !apart(others[1]) {
-        return None;
+impl Pair {
+    /// Whether both are steep and never more than two pixels apart from a row on.
+    #[inline(always)]
+    fn narrow(&self, row: i32) -> bool {
+        let gap = |row: i32| self.right.left(row) - self.left.left(row);
+        // Some slack for what rounding does pair.
+        let fits = |gap: i64| (1 << BITS..(2 << 32) - (1 << BITS)).contains(&gap);
+        self.left.is_steep() && self.right.is_steep() && fits(gap(row)) && fits(gap(self.end - 1))
     }
-    let gap = |row: i32| q.left(row) - p.left(row);
-    let (upper, lower) = (gap(rows.0), gap(rows.1 - 1));
-    let swapped = upper < 0;
-    let (upper, lower) = if swapped { (-upper, -lower) } else { (upper, lower) };
-    let (left, right) = if swapped { (*q, *p) } else { (*p, *q) };
-    // Some slack for what rounding does between.
-    let fits = |gap: i64| (1 << BITS..(2 << 32) - (1 << BITS)).contains(&gap);
-    let narrow = p.is_steep() && q.is_steep() && fits(upper) && fits(lower);
-    Some(Between { left, right, rows, narrow })
+}
+
+/// The two edges that alone cross the rows from one on, if there are just two.
+#[inline(always)]
+fn pair(sides: &[Side], row: i32, end: i32) -> Option<Pair> {
+    let (mut count, mut end) = (0, end);
+    let mut found = [Side::default(); 2];
+    for side in sides {
+        if side.rows.0 > row {
+            end = end.min(side.rows.0);
+        } else if side.rows.1 > row {
+            if row < side.whole.0 || row >= side.whole.1 || count == 2 {
+                return None;
+            }
+            found[count] = *side;
+            count += 1;
+            end = end.min(side.whole.1);
+        }
+    }
+    let [p, q] = found;
+    let (left, right) = if p.left(row) <= q.left(row) { (p, q) } else { (q, p) };
+    (count == 2).then_some(Pair { left, right, end })
 }
 
 /// Rows between two edges, eight pixels at a time.
 #[simd]
 fn wide_rows<S: Simd, K: Sink<S>>(
     simd: S,
-    between: &Between,
+    pair: &Pair,
     rows: (i32, i32),
     top: i32,
     width: usize,
@@ -195,11 +212,16 @@ fn wide_rows<S: Simd, K: Sink<S>>(
 ) {
     let limit = (width as i32) << BITS;
     for row in rows.0..rows.1 {
-        let (left, right) =
-            (between.left.whole_ramp(row, limit), between.right.whole_ramp(row, limit));
+        let (left, right) = (pair.left.whole_ramp(row, limit), pair.right.whole_ramp(row, limit));
         let high = left.last.max(right.last).min(width as i32 - 1);
         let mut x = left.first.min(right.first);
         while x <= high {
+            if x > left.last && x + FULL <= right.first {
+                // All of these are inside.
+                sink.span(simd, row - top, x as usize..right.first as usize, 255);
+                x = right.first;
+                continue;
+            }
             let sum = area(simd, &left, x) - area(simd, &right, x);
             sink.eight(simd, row - top, x as usize, lanes(simd, sum, FillRule::NonZero));
             x += 8;
@@ -226,7 +248,7 @@ fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
 #[simd]
 fn steep_rows<S: Simd, K: Sink<S>>(
     simd: S,
-    between: &Between,
+    pair: &Pair,
     rows: (i32, i32),
     top: i32,
     width: usize,
@@ -234,13 +256,13 @@ fn steep_rows<S: Simd, K: Sink<S>>(
 ) {
     let (one, zero) = (i32x8::splat(simd, ONE), i32x8::splat(simd, 0));
     let limit = (width as i32) << BITS;
-    let mut left = Eight::new(simd, &between.left, rows.0, limit);
-    let mut right = Eight::new(simd, &between.right, rows.0, limit);
+    let mut left = Eight::new(simd, pair.left.left(rows.0), pair.left.steps.slope, limit);
+    let mut right = Eight::new(simd, pair.right.left(rows.0), pair.right.steps.slope, limit);
     let (mut packed, mut columns) = ([0_u32; 8], [0_i32; 8]);
     let mut row = rows.0;
     while row < rows.1 {
-        let (l, l0, l1) = left.next(simd);
-        let (r, r0, r1) = right.next(simd);
+        let [l, l0, l1, _] = left.next(simd);
+        let [r, r0, r1, _] = right.next(simd);
         // What the right edge takes of the four pixels from the left one's first on.
         let apart = r - l;
         let (same, next) = (apart.simd_eq(zero), apart.simd_eq(i32x8::splat(simd, 1)));
@@ -258,70 +280,22 @@ fn steep_rows<S: Simd, K: Sink<S>>(
     }
 }
 
-/// A steep edge in the next eight rows.
-struct Eight<S: Simd> {
-    /// The left end in the first of them, 32.32, and its change in eight rows.
-    left: i64,
-    step: i64,
-    /// What that is more in each of the rows, 16.16, and the bits below.
-    whole: i32x8<S>,
-    below: i32x8<S>,
-    across: i32x8<S>,
-    half_inverse: f32,
-    limit: i32x8<S>,
-}
-
-impl<S: Simd> Eight<S> {
-    /// From a row on.
-    #[inline(always)]
-    fn new(simd: S, side: &Side, row: i32, limit: i32) -> Self {
-        let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        let slope = side.steps.slope;
-        let across = (slope.unsigned_abs() >> BITS) as i32;
-        Self {
-            left: side.left(row),
-            step: 8 * slope,
-            whole: lane * i32x8::splat(simd, (slope >> BITS) as i32),
-            below: lane * i32x8::splat(simd, slope as i32 & (ONE - 1)),
-            across: i32x8::splat(simd, across),
-            half_inverse: half_inverse(across),
-            limit: i32x8::splat(simd, limit),
-        }
-    }
-
-    /// The first pixel touched in each of the rows, and what is covered of it and the next; then eight rows on.
-    #[inline(always)]
-    fn next(&mut self, simd: S) -> (i32x8<S>, i32x8<S>, i32x8<S>) {
-        let (one, zero) = (i32x8::splat(simd, ONE), i32x8::splat(simd, 0));
-        let below = self.below + i32x8::splat(simd, self.left as i32 & (ONE - 1));
-        let x = self.whole + i32x8::splat(simd, (self.left >> BITS) as i32) + (below >> BITS);
-        self.left += self.step;
-        let x = x.max(zero).min(self.limit);
-        let a = x & i32x8::splat(simd, ONE - 1);
-        let b = a + self.across;
-        let over = simd.cvt_f32_i32x8((b - one).max(zero));
-        let d2 = simd.cvt_i32_f32x8(over * over * f32x8::splat(simd, self.half_inverse));
-        let d0 = (one + d2 - ((a + b) >> 1)).max(zero);
-        (x >> BITS, d0, one - d2)
-    }
-}
-
 /// One row, eight pixels at a time.
 #[simd]
 fn one_row<S: Simd, K: Sink<S>>(
     simd: S,
-    sides: &[Side; 4],
+    sides: &[Side],
     (row, top): (i32, i32),
     width: usize,
     sink: &mut K,
 ) {
     let limit = (width as i32) << BITS;
-    let mut ramps = [(Ramp::default(), 0); 4];
+    let mut ramps = [(Ramp::default(), 0); MOST_EDGES];
     let (mut low, mut high, mut count) = (i32::MAX, 0, 0);
     for side in sides {
         if let Some(ramp) = side.ramp(row, limit) {
             (low, high) = (low.min(ramp.first), high.max(ramp.last));
-            ramps[count & 3] = (ramp, (side.edge.sign() - 1) >> 1);
+            ramps[count & (MOST_EDGES - 1)] = (ramp, (side.edge.sign() - 1) >> 1);
             count += 1;
         }
     }
