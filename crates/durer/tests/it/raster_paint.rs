@@ -1,5 +1,6 @@
 //! Painting: order, clips, groups, gradients, strokes and text; the same bytes on any number of threads.
 
+use crate::raster_coverage::Random;
 use durer::curve::text::Font;
 use durer::curve::{Contours, Path};
 use durer::math::{DAffine2, DVec2};
@@ -237,6 +238,61 @@ fn strokes_have_their_width_caps_and_dashes() {
     for join in [Join::Miter, Join::Round, Join::Bevel] {
         assert!(outline(&strange, &Stroke { join, ..dashed.clone() }, 0.1).is_ok());
     }
+}
+
+#[test]
+fn thin_lines_are_painted_as_their_outlines_are() {
+    let (mut random, mut lit) = (Random(9), 0);
+    for round in 0..240_usize {
+        let (kind, side) = (round % 6, 150);
+        let blending = if round % 5 == 0 { Blending::Linear } else { Blending::Srgb };
+        let options = Options { blending, ..Options::default() };
+        let mut canvases = [(); 2].map(|()| Canvas::new(side, side - 7, options).unwrap());
+        if kind == 1 {
+            let turn = DAffine2::from_angle_translation(random.next(), DVec2::new(40.0, -20.0));
+            let turn = turn * DAffine2::from_scale(DVec2::new(1.2, 0.7));
+            canvases.iter_mut().for_each(|c| c.set_transform(turn));
+        }
+        if kind == 2 {
+            let hole = Path::circle(DVec2::splat(80.0), 50.0);
+            canvases.iter_mut().for_each(|c| c.push_clip(&hole, FillRule::NonZero));
+            canvases.iter_mut().for_each(Canvas::push_group);
+        }
+        for i in 0..12 {
+            let mut a = random.point(-2.0, 152.0);
+            let mut b =
+                if i % 3 == 0 { a + random.point(-4.0, 4.0) } else { random.point(0.0, 143.0) };
+            match kind {
+                // Ends on borders and centres of pixels, and lines along the axes and diagonals.
+                3 => (a, b) = ((a * 2.0).round() / 2.0, (b * 2.0).round() / 2.0),
+                4 => (a, b) = (a.round(), DVec2::new(b.x, a.y.round())),
+                5 => b = DVec2::new(a.x + (b.y - a.y), b.y),
+                _ => {}
+            }
+            if i % 2 == 0 && kind > 2 {
+                (a, b) = (DVec2::new(a.y, a.x), DVec2::new(b.y, b.x));
+            }
+            let width = [1.0, 0.02, 0.4, 1.0 + random.next(), 2.0, 3.9, 5.0][(i + round) % 7];
+            let cap = if i % 4 == 3 { Cap::Square } else { Cap::Butt };
+            let stroke = Stroke { width, cap, ..Stroke::default() };
+            let paint =
+                color(i as u8 * 20, 200, 255 - round as u8, if i % 2 == 0 { 255 } else { 99 });
+            let mut path = Path::new();
+            path.move_to(a.x, a.y).line_to(b.x, b.y);
+            let opacity = 0.9 + random.next() * 0.2;
+            canvases[0].stroke(&path, &stroke, &paint, opacity).unwrap();
+            let outline = outline(&path, &stroke, 0.025).unwrap();
+            canvases[1].fill(&outline, FillRule::NonZero, &paint, opacity);
+        }
+        let [own, other] = canvases.map(|c| {
+            let mut target = Pixels::new(side, side - 7, [250, 240, 10, 200]);
+            c.render(&mut target).unwrap();
+            target
+        });
+        assert!(own == other, "round {round}");
+        lit += own.data().iter().filter(|p| **p != [250, 240, 10, 200]).count();
+    }
+    assert!(lit > 100_000, "{lit}");
 }
 
 #[test]

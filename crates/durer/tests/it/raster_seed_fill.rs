@@ -60,6 +60,9 @@ fn fills_take_exactly_the_connected_region() {
                 let mut filled = image.clone();
                 let mut recorder: Recorder<Step> = Recorder::default();
                 let n = flood_fill(&mut filled, seed, 9, 0, *method, &options, &mut recorder);
+                let mut quiet = image.clone();
+                let m = flood_fill(&mut quiet, seed, 9, 0, *method, &options, &mut NoTrace);
+                assert_eq!((m, &quiet), (n, &filled), "{method} {connectivity:?}");
                 let expected: Vec<u8> = image
                     .data()
                     .iter()
@@ -68,6 +71,11 @@ fn fills_take_exactly_the_connected_region() {
                     .collect();
                 assert_eq!(filled.data(), expected, "{method} {connectivity:?}");
                 assert_eq!(n as usize, labels.iter().filter(|l| **l == own).count());
+                // With the colour that is there already nothing changes, but it counts.
+                let (mut same, t) = (image.clone(), &mut NoTrace);
+                let own = image.get(seed.0, seed.1).unwrap();
+                assert_eq!(flood_fill(&mut same, seed, own, 0, *method, &options, t), n);
+                assert_eq!(same, image);
                 let mut replayed = image.clone();
                 for s in recorder.steps() {
                     (s.x0..s.x1).for_each(|x| replayed.set(x, s.y, 9));

@@ -5,6 +5,7 @@ use fearless_simd_macros::simd;
 
 use super::FillRule;
 use super::cells::{Cells, Marks};
+use super::convex;
 use super::edge::{BITS, Edge, EdgeBuilder, ONE};
 use super::resolve::Resolver;
 use super::sweep::{Rows, Sink, alpha, sweep};
@@ -14,6 +15,9 @@ use crate::raster::bands::{BAND_ROWS, BandIndex};
 
 /// Paths that are not wider have cells of their own, few enough for the first-level cache.
 const NARROW: u32 = 112;
+/// Convex paths with so many edges are filled without cells; with more, finding the two that cross a row costs more than
+/// cells do.
+const SIMPLE: usize = 3;
 /// The edges of one path and which of them each band needs.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PathEdges {
@@ -24,6 +28,8 @@ pub(crate) struct PathEdges {
     columns: (i32, i32),
     /// Windings cannot differ by more than one anywhere.
     convex: bool,
+    /// They are few besides, and nothing has been cut off: rows can be summed without cells.
+    pub simple: bool,
     index: BandIndex,
 }
 
@@ -33,7 +39,10 @@ impl PathEdges {
         let mut path = Self { rows: (i32::MAX, 0), columns: (i32::MAX, 0), ..Self::default() };
         path.edges.reserve(contours.points().len());
         path.convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
-        EdgeBuilder::new(&mut path.edges, width, height).contours(contours, path.convex);
+        let mut builder = EdgeBuilder::new(&mut path.edges, width, height);
+        builder.contours(contours, path.convex);
+        path.simple = path.convex && !builder.cut;
+        path.simple &= path.edges.len() <= SIMPLE;
         for edge in &path.edges {
             let (first, last) = edge.rows();
             path.rows = (path.rows.0.min(first), path.rows.1.max(last));
@@ -63,7 +72,7 @@ impl PathEdges {
 }
 
 /// Whether a closed contour turns one way only, once around.
-fn is_convex(points: &[DVec2]) -> bool {
+pub(super) fn is_convex(points: &[DVec2]) -> bool {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return true };
     let mut from = *last;
     let mut before = *last - points.iter().rev().find(|p| *p != last).unwrap_or(last);
@@ -162,6 +171,9 @@ impl BandFiller {
         exact: bool,
         sink: &mut K,
     ) {
+        if path.simple {
+            return convex::fill(simd, &path.edges, path.rows, top, this.width, sink);
+        }
         let resolved = this.collect(path, top, exact && !path.convex);
         let width = this.width;
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);

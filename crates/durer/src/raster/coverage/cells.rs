@@ -7,6 +7,7 @@
 //! can windings differ by more than one, and the sum alone not decide.
 
 use super::edge::{BITS, Edge, ONE};
+use super::ramp::{Ramp, half_inverse, narrow_deltas, steep_deltas};
 use crate::raster::bands::BAND_ROWS;
 
 /// Cells to the right of the last pixel that edges on the border may write to.
@@ -145,25 +146,25 @@ impl Cells {
             return;
         }
         // Steep: at most two pixels per row, so three cells, without a branch or a division.
-        let inverse = (281_474_976_710_656.0 / across.max(1 << 16) as f64) as u64;
         let flip = (sign - 1) >> 1;
         let mut left = x + slope.min(0);
         let limit = i64::from(self.columns) << 32;
-        let across = (across >> BITS) as u32;
+        let across = (across >> BITS) as i32;
+        let half_inverse = half_inverse(across);
         let mut base = from as u32 * self.words as u32;
         for _ in from..to {
             let l = left.clamp(0, limit) as u64;
-            let a = (l >> BITS) as u32 & 0xffff;
+            let a = (l >> BITS) as i32 & (ONE - 1);
             let column = (l >> 32) as u32;
             let b = a + across;
-            let deltas = steep_deltas(a, b, |over| ((u64::from(over) * inverse) >> BITS) as u32);
+            let deltas = steep_deltas(a, b, half_inverse);
             let at = base.wrapping_mul(64).wrapping_add(column) as usize;
             if let Some(cells) = self.cells.get_mut(at..at + 3) {
                 for (cell, delta) in cells.iter_mut().zip(deltas) {
                     *cell = cell.wrapping_add((delta ^ flip) - flip);
                 }
             }
-            self.mark_two::<SHARED>(base as usize, column as usize, b > ONE as u32, 0);
+            self.mark_two::<SHARED>(base as usize, column as usize, b > ONE, 0);
             base += self.words as u32;
             left += slope;
         }
@@ -224,29 +225,20 @@ impl Cells {
         let base = row as usize * self.words;
         let limit = self.columns << BITS;
         let &Part { x0, x1, height, upper, lower } = part;
-        let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
         let (own_left, own_right) = if x0 <= x1 { (upper, lower) } else { (lower, upper) };
+        let (left, right) = (x0.min(x1).clamp(0, limit), x0.max(x1).clamp(0, limit));
         let column = (left >> BITS) as usize;
-        let (a, b) = ((left & (ONE - 1)) as u32, (right - (left & !(ONE - 1))) as u32);
-        if b > 2 * ONE as u32 {
-            let end = (right >> BITS) as usize + usize::from(right & (ONE - 1) != 0);
-            self.mark::<SHARED>(base, (column, end), (own_left, own_right));
-            self.wide_part(base, left, right, height, sign);
+        let (a, b) = (left & (ONE - 1), right - (left & !(ONE - 1)));
+        if b > 2 * ONE {
+            let ramp = Ramp::wide(left, right, height);
+            self.mark::<SHARED>(base, (column, ramp.end as usize), (own_left, own_right));
+            self.wide_part(base, &ramp, sign);
             return;
         }
-        let two = b > ONE as u32;
+        let two = b > ONE;
         let own = u64::from(own_left) | (u64::from(own_right) << u32::from(two));
         self.mark_two::<SHARED>(base, column, two, own);
-        // One pixel: no division.
-        let (d0, d2) = if two {
-            let [d0, _, d2] = steep_deltas(a, b, |over| (over << 15) / (b - a).max(1) * 2);
-            let scale = |delta: i32| ((i64::from(delta) * i64::from(height)) >> BITS) as i32;
-            (scale(d0), scale(d2))
-        } else {
-            let [d0, _, _] = steep_deltas(a, b, |_| 0);
-            (((i64::from(d0) * i64::from(height)) >> BITS) as i32, 0)
-        };
-        let deltas = [d0, height - d0 - d2, d2];
+        let deltas = narrow_deltas(a, b, height);
         if let Some(cells) = self.cells.get_mut(base * 64 + column..base * 64 + column + 3) {
             for (cell, delta) in cells.iter_mut().zip(deltas) {
                 *cell = cell.wrapping_add(delta * sign);
@@ -256,48 +248,26 @@ impl Cells {
 
     /// An edge within one row that crosses three pixels or more; its marks are set.
     #[inline(never)]
-    fn wide_part(&mut self, base: usize, left: i32, right: i32, height: i32, sign: i32) {
-        let (first, last) = ((left >> BITS) as usize, (right >> BITS) as usize);
+    fn wide_part(&mut self, base: usize, ramp: &Ramp, sign: i32) {
+        let (first, last) = (ramp.first as usize, ramp.last as usize);
         let Some(cells) = self.cells.get_mut(base * 64 + first..base * 64 + last + 2) else {
             return;
         };
-        // Covered height per pixel of width, with 32 bits below one.
-        let per_pixel = (f64::from(height) / f64::from(right - left) * 4_294_967_296.0) as u64;
-        let before = (ONE - (left & (ONE - 1))) as u64;
-        let after = (right & (ONE - 1)) as u64;
-        // Covered area of each pixel in turn; a cell gets its difference from the one before.
+        // A cell gets the difference of its pixel's area from the one before.
         let mut previous = 0_i32;
         let mut put = |cell: &mut i32, area: i32| {
             *cell = cell.wrapping_add((area - previous) * sign);
             previous = area;
         };
-        let triangle = |side: u64| ((per_pixel * ((side * side) >> BITS)) >> (2 * BITS + 1)) as i32;
-        let inner = cells.len() - 3;
-        let mut area = ((per_pixel * before) >> BITS) + per_pixel / 2;
+        let mut area = ramp.start;
         if let [head, middle @ .., before_last, after_last] = cells {
-            put(head, triangle(before));
-            for cell in middle.iter_mut().take(inner) {
+            put(head, ramp.head);
+            for cell in middle {
+                area = area.wrapping_add(ramp.per_pixel);
                 put(cell, (area >> BITS) as i32);
-                area += per_pixel;
             }
-            put(before_last, height - triangle(after));
-            put(after_last, height);
+            put(before_last, ramp.tail);
+            put(after_last, ramp.height);
         }
     }
-}
-
-/// Changes of covered area at the pixel of `a`, the next and the one after, for an edge that crosses
-/// a whole row from `a` to `b`, 16.16 relative to the pixel's left border, `a` < 1 and `b` ≤ 2.
-///
-/// `ratio` is what lies right of the first pixel over the edge's whole width, in 1/65,536. The three
-/// add up to one exactly.
-#[inline(always)]
-fn steep_deltas(a: u32, b: u32, ratio: impl Fn(u32) -> u32) -> [i32; 3] {
-    let middle = ((a + b) >> 1) as i32;
-    let over = b.saturating_sub(ONE as u32);
-    // The triangle right of the border between the pixels: half of its width times its height.
-    let d2 = ((u64::from(over) * u64::from(ratio(over))) >> (BITS + 1)) as i32;
-    // Rounding can make the first one −1.
-    let d0 = (ONE + d2 - middle).max(0);
-    [d0, ONE - d0 - d2, d2]
 }

@@ -23,7 +23,7 @@ const CHAINED_UPPER: u32 = 2;
 const CHAINED_LOWER: u32 = 4;
 
 /// An edge from top to bottom; coordinates are 16.16 pixels, x within the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Edge {
     pub x0: i32,
     pub y0: i32,
@@ -34,7 +34,7 @@ pub(crate) struct Edge {
 }
 
 /// How an edge goes from row to row.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Steps {
     /// x where the edge first crosses a border of rows, at or below `y0`.
     pub crossing: i32,
@@ -52,7 +52,7 @@ impl Steps {
 
 impl Edge {
     #[inline(always)]
-    fn new(from: (i32, i32), to: (i32, i32)) -> Self {
+    pub(super) fn new(from: (i32, i32), to: (i32, i32)) -> Self {
         let reversed = (to.1, to.0) < (from.1, from.0);
         let ((x0, y0), (x1, y1)) = if reversed { (to, from) } else { (from, to) };
         Self { x0, y0, x1, y1, flags: u32::from(reversed) * REVERSED }
@@ -150,13 +150,15 @@ pub(crate) struct EdgeBuilder<'a> {
     /// Size of the target in pixels.
     width: f64,
     height: f64,
+    /// Whether a line reached beyond the target.
+    pub cut: bool,
 }
 
 impl<'a> EdgeBuilder<'a> {
     /// A builder for a target of the given size in pixels, at most [`MAX_SIDE`] each way.
     pub fn new(edges: &'a mut Vec<Edge>, width: u32, height: u32) -> Self {
         let (width, height) = (f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)));
-        Self { edges, width, height }
+        Self { edges, width, height, cut: false }
     }
 
     /// Adds the contours, each closed; points that are not finite are left out. Nobody asks which joints of a
@@ -186,6 +188,7 @@ impl<'a> EdgeBuilder<'a> {
         if inside(a) && inside(b) {
             self.edge(snap(a), snap(b));
         } else {
+            self.cut = true;
             self.clipped(a, b);
         }
     }
@@ -268,7 +271,7 @@ fn chain_group(edges: &mut [Edge], joints: Range<usize>) {
 }
 
 /// The nearest grid point to a point within the target, ties to even.
-fn snap(p: DVec2) -> (i32, i32) {
+pub(super) fn snap(p: DVec2) -> (i32, i32) {
     // Adding 1.5 · 2⁵² leaves the rounded integer in the low bits of the mantissa.
     const MAGIC: f64 = 6_755_399_441_055_744.0;
     let fixed = |v: f64| (v * f64::from(ONE) + MAGIC).to_bits() as u32 as i32;

@@ -16,8 +16,10 @@
 
 pub(crate) mod band;
 pub(crate) mod cells;
+pub(crate) mod convex;
 pub(crate) mod edge;
 mod partition;
+mod ramp;
 mod resolve;
 pub(crate) mod sweep;
 
@@ -133,16 +135,26 @@ fn fill_at(
 ) -> Result<Pixels<u8>> {
     check_size(width, height)?;
     let mut mask = Pixels::new(width, height, 0);
-    let path = PathEdges::new(contours, width, height);
-    let mut filler = BandFiller::new(width);
+    fill_path(level, &PathEdges::new(contours, width, height), &mut mask, options, t);
+    Ok(mask)
+}
+
+/// Fills a path made for a mask of that size.
+fn fill_path(
+    level: Level,
+    path: &PathEdges,
+    mask: &mut Pixels<u8>,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) {
+    let mut filler = BandFiller::new(mask.width());
     let exact = options.overlap == Overlap::Exact;
-    for top in (0..height as i32).step_by(BAND_ROWS as usize).filter(|top| !path.misses(*top)) {
-        let mut sink = Mask { mask: &mut mask, top, t };
+    for top in (0..mask.height() as i32).step_by(BAND_ROWS as usize).filter(|t| !path.misses(*t)) {
+        let mut sink = Mask { mask, top, t };
         dispatch!(level, simd => {
-            BandFiller::fill(simd, &mut filler, &path, top, options.rule, exact, &mut sink);
+            BandFiller::fill(simd, &mut filler, path, top, options.rule, exact, &mut sink);
         });
     }
-    Ok(mask)
 }
 
 /// Writes coverage to a mask.

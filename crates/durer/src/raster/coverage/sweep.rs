@@ -16,8 +16,20 @@ pub(crate) trait Sink<S: Simd> {
     /// Eight pixels from `x` on, each with its coverage 0 … 255. At the end of the row some of them, or all, may
     /// lie beyond it.
     fn eight(&mut self, simd: S, row: i32, x: usize, coverage: u32x8<S>);
+    /// Four pixels from `x` on, their coverage in the bytes of a number, the first in the lowest.
+    #[inline(always)]
+    fn four(&mut self, simd: S, row: i32, x: usize, coverage: u32) {
+        self.eight(simd, row, x, unpacked(simd, coverage));
+    }
     /// Pixels that all have the same coverage 1 … 255.
     fn span(&mut self, simd: S, row: i32, x: Range<usize>, coverage: u8);
+}
+
+/// The coverage in the bytes of a number, and none of the next four pixels.
+#[inline(always)]
+pub(crate) fn unpacked<S: Simd>(simd: S, coverage: u32) -> u32x8<S> {
+    let [a, b, c, d] = coverage.to_le_bytes().map(u32::from);
+    u32x8::from_slice(simd, &[a, b, c, d, 0, 0, 0, 0])
 }
 
 /// Which part of a band is summed, and how.
@@ -114,7 +126,7 @@ pub(crate) fn sweep<S: Simd, K: Sink<S>>(
 
 /// [`alpha`] of eight pixels at once.
 #[inline(always)]
-fn lanes<S: Simd>(simd: S, v: i32x8<S>, rule: FillRule) -> u32x8<S> {
+pub(super) fn lanes<S: Simd>(simd: S, v: i32x8<S>, rule: FillRule) -> u32x8<S> {
     let one = i32x8::splat(simd, ONE);
     let area = match rule {
         FillRule::NonZero => v.max(-v).min(one),

@@ -20,3 +20,41 @@ fn every_simd_level_gives_the_same_bytes() {
         assert!(reference.data().iter().any(|c| *c > 0 && *c < 255));
     }
 }
+
+#[test]
+fn triangles_are_summed_with_and_without_cells_alike() {
+    let mut seed = 8_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    let (width, height) = (180, 140);
+    let (mut simple, mut lit) = (0, 0);
+    for round in 0..600 {
+        let corners = 3;
+        let size = [0.7, 5.0, 14.0, 60.0, 110.0][round % 5];
+        let center = DVec2::new(random() * 180.0, random() * 140.0);
+        let thin = if round % 4 == 0 { 0.02 } else { 0.3 + random() };
+        let (turn, lean) = (random() * 6.3, DVec2::from_angle(random() * 6.3));
+        let point = |i: usize| {
+            let angle = turn + i as f64 / corners as f64 * std::f64::consts::TAU;
+            let p = DVec2::new(libm::cos(angle), libm::sin(angle) * thin) * size;
+            let p = (center + p.rotate(lean)).clamp(DVec2::ZERO, DVec2::new(180.0, 140.0));
+            // Some on borders and in the middle of pixels.
+            if round % 3 == 0 { (p * 2.0).round() / 2.0 } else { p }
+        };
+        let mut path = PathEdges::new(&Contours::polygon((0..corners).map(point)), width, height);
+        simple += usize::from(path.simple);
+        let mut at = |level, simple: bool| {
+            path.simple &= simple;
+            let mut mask = Pixels::new(width, height, 0);
+            fill_path(level, &path, &mut mask, &Options::default(), &mut NoTrace);
+            mask
+        };
+        let (own, other) = (at(Level::new(), true), at(Level::baseline(), true));
+        let cells = at(Level::new(), false);
+        assert!(own == cells && other == cells, "round {round}");
+        lit += own.data().iter().filter(|c| **c != 0).count();
+    }
+    assert!(simple > 400 && lit > 100_000, "{simple} {lit}");
+}

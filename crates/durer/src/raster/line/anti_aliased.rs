@@ -133,11 +133,16 @@ fn cone_over_line(step: usize) -> u8 {
 /// The outline of a straight line of the given width with butt ends, to be filled by
 /// [`crate::raster::coverage::fill`]: the exact form of a smooth line. Empty for a line without length.
 pub fn outline(from: DVec2, to: DVec2, width: f64) -> Contours {
+    corners(from, to, width).map_or_else(Contours::new, Contours::polygon)
+}
+
+/// The corners of that outline, around; `None` where it is empty.
+pub(crate) fn corners(from: DVec2, to: DVec2, width: f64) -> Option<[DVec2; 4]> {
     let along = to - from;
     let length = along.length();
     if !(length.is_finite() && length > 0.0 && width.is_finite() && width > 0.0) {
-        return Contours::new();
+        return None;
     }
     let side = along.perp() / length * (width / 2.0);
-    Contours::polygon([from + side, to + side, to - side, from - side])
+    Some([from + side, to + side, to - side, from - side])
 }

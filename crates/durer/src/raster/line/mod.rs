@@ -7,6 +7,7 @@ pub mod anti_aliased;
 pub mod bresenham;
 pub mod dda;
 pub mod equation;
+mod pieces;
 pub mod tiled;
 pub mod wide;
 

@@ -96,19 +96,10 @@ const FARTHEST: f64 = 1e15;
 /// # Errors
 /// [`Error::Parameter`] for a negative width, a miter limit below 1, or negative or non-finite dashes.
 pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
-    let not_negative = |v: f64| v.is_finite() && v >= 0.0;
-    if !not_negative(stroke.width) {
-        return Err(Error::parameter("stroke width", stroke.width, "finite and at least 0"));
-    }
-    if stroke.miter_limit.is_nan() || stroke.miter_limit < 1.0 {
-        return Err(Error::parameter("miter limit", stroke.miter_limit, "at least 1"));
-    }
-    if !stroke.dashes.iter().all(|d| not_negative(*d)) || !stroke.dash_offset.is_finite() {
-        return Err(Error::parameter("dashes", "given", "finite lengths of at least 0"));
-    }
+    check(stroke)?;
     let stroke = &Stroke { width: stroke.width.min(FARTHEST), ..stroke.clone() };
-    if let Some(rectangle) = straight(path, stroke) {
-        return Ok(rectangle);
+    if let Some(line) = straight(path, stroke) {
+        return Ok(rectangle(line, stroke.width));
     }
     let source = to_kurbo(path);
     if stroke.width == 0.0 || source.elements().is_empty() {
@@ -124,22 +115,48 @@ pub fn outline(path: &Path, stroke: &Stroke, tolerance: f64) -> Result<Path> {
     Ok(from_kurbo(&kurbo::stroke(source, &style, &StrokeOpts::default(), tolerance)))
 }
 
-/// The rectangle around a single straight line with butt ends, which needs no offsets of curves.
-fn straight(path: &Path, stroke: &Stroke) -> Option<Path> {
+/// Whether a style makes sense.
+///
+/// # Errors
+/// Those of [`outline`].
+pub(crate) fn check(stroke: &Stroke) -> Result<()> {
+    let not_negative = |v: f64| v.is_finite() && v >= 0.0;
+    if !not_negative(stroke.width) {
+        return Err(Error::parameter("stroke width", stroke.width, "finite and at least 0"));
+    }
+    if stroke.miter_limit.is_nan() || stroke.miter_limit < 1.0 {
+        return Err(Error::parameter("miter limit", stroke.miter_limit, "at least 1"));
+    }
+    if !stroke.dashes.iter().all(|d| not_negative(*d)) || !stroke.dash_offset.is_finite() {
+        return Err(Error::parameter("dashes", "given", "finite lengths of at least 0"));
+    }
+    Ok(())
+}
+
+/// The ends of a single straight line without dashes, which needs no offsets of curves; square caps lengthen it.
+pub(crate) fn straight(path: &Path, stroke: &Stroke) -> Option<(DVec2, DVec2)> {
     let &[PathElement::MoveTo(a), PathElement::LineTo(b)] = path.elements() else { return None };
     let near = |p: DVec2| p.abs().max_element() <= FARTHEST;
-    if stroke.cap != Cap::Butt || !stroke.dashes.is_empty() || !near(a) || !near(b) {
+    if stroke.cap == Cap::Round || !stroke.dashes.is_empty() || !near(a) || !near(b) {
         return None;
     }
-    let outline = super::anti_aliased::outline(a, b, stroke.width);
+    if stroke.cap == Cap::Butt {
+        return Some((a, b));
+    }
+    // Dots have no direction of their own.
+    let cap = (b - a).try_normalize()? * (stroke.width / 2.0);
+    Some((a - cap, b + cap))
+}
+
+/// The outline of a straight line.
+fn rectangle((from, to): (DVec2, DVec2), width: f64) -> Path {
     let mut rectangle = Path::new();
-    for (i, p) in outline.points().iter().enumerate() {
+    let Some(corners) = super::anti_aliased::corners(from, to, width) else { return rectangle };
+    for (i, p) in corners.iter().enumerate() {
         rectangle.push(if i == 0 { PathElement::MoveTo(*p) } else { PathElement::LineTo(*p) });
     }
-    if !outline.points().is_empty() {
-        rectangle.push(PathElement::Close);
-    }
-    Some(rectangle)
+    rectangle.push(PathElement::Close);
+    rectangle
 }
 
 fn style(stroke: &Stroke) -> kurbo::Stroke {

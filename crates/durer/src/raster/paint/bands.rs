@@ -6,13 +6,14 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, u32x8};
 
 use super::color::Space;
-use super::command::{Prepared, sort_into_bands};
+use super::command::{Item, Line, Prepared, sort_into_bands};
 use super::outline::{Filler, Outline};
 use super::source::Source;
 use super::{Canvas, Color, MaskKind};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::Overlap;
-use crate::raster::coverage::sweep::Sink;
+use crate::raster::coverage::convex;
+use crate::raster::coverage::sweep::{Sink, unpacked};
 use crate::target::Pixels;
 
 /// Paints all commands over the target.
@@ -26,12 +27,12 @@ pub(super) fn render<P: Space>(
     if target.data().is_empty() {
         return;
     }
-    let by_band = sort_into_bands(commands, target.height(), BAND_ROWS);
+    let by_band = sort_into_bands(commands, &canvas.lines, target.height(), BAND_ROWS);
     let rows_per_band = width * BAND_ROWS as usize;
     let paint = |painter: &mut Option<Painter<P>>, (band, rows): (usize, &mut [Color])| {
         let painter = painter.get_or_insert_with(|| Painter::new(canvas));
-        let commands = by_band[band].iter().map(|i| &commands[*i as usize]);
-        painter.band(level, commands, band as i32 * BAND_ROWS, rows);
+        let todo = Todo { items: &by_band[band], commands, lines: &canvas.lines };
+        painter.band(level, &todo, band as i32 * BAND_ROWS, rows);
     };
     #[cfg(feature = "parallel")]
     {
@@ -49,6 +50,16 @@ pub(super) fn render<P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
+/// Lines are fetched so many at a time: they lie far apart in memory, and so are waited for together.
+const AT_ONCE: usize = 16;
+
+/// What is to be done in a band.
+struct Todo<'a, P> {
+    items: &'a [Item],
+    commands: &'a [Prepared<'a, P>],
+    lines: &'a [Line],
+}
+
 /// Buffers of one thread.
 struct Painter<P> {
     filler: Filler,
@@ -63,6 +74,8 @@ struct Painter<P> {
     floors: Vec<usize>,
     /// Whether what was popped can be used again.
     spare: Vec<Vec<P>>,
+    /// The lines painted next.
+    near: Vec<Line>,
 }
 
 impl<P: Space> Painter<P> {
@@ -76,19 +89,12 @@ impl<P: Space> Painter<P> {
             clips: Vec::new(),
             floors: Vec::new(),
             spare: Vec::new(),
+            near: Vec::new(),
         }
     }
 
     /// Paints the commands onto the rows of one band, whose first row is `top`.
-    fn band<'a>(
-        &mut self,
-        level: Level,
-        commands: impl Iterator<Item = &'a Prepared<'a, P>>,
-        top: i32,
-        rows: &mut [Color],
-    ) where
-        P: 'a,
-    {
+    fn band(&mut self, level: Level, todo: &Todo<'_, P>, top: i32, rows: &mut [Color]) {
         let mut copy = self.spare.pop().unwrap_or_default();
         if let Some(color) = self.background {
             rows.fill(color);
@@ -99,30 +105,31 @@ impl<P: Space> Painter<P> {
             if !opaque {
                 base.iter_mut().for_each(|p| *p = p.premultiplied());
             }
-            self.commands(level, commands, top, base);
+            self.commands(level, todo, top, base);
             if !opaque {
                 base.iter_mut().for_each(|p| *p = p.straight());
             }
         } else {
             copy.clear();
             copy.extend(rows.iter().map(|c| P::load(*c)));
-            self.commands(level, commands, top, &mut copy);
+            self.commands(level, todo, top, &mut copy);
             rows.iter_mut().zip(&copy).for_each(|(color, pixel)| *color = pixel.store());
         }
         self.spare.push(copy);
     }
 
-    fn commands<'a>(
-        &mut self,
-        level: Level,
-        commands: impl Iterator<Item = &'a Prepared<'a, P>>,
-        top: i32,
-        base: &mut [P],
-    ) where
-        P: 'a,
-    {
-        for command in commands {
+    fn commands(&mut self, level: Level, todo: &Todo<'_, P>, top: i32, base: &mut [P]) {
+        for items in todo.items.chunk_by(|a, b| a.line().is_some() && b.line().is_some()) {
+            let command = match items {
+                [item] if item.line().is_none() => &todo.commands[item.command()],
+                _ => {
+                    self.lines(level, items, todo.lines, top, base);
+                    continue;
+                }
+            };
             match command {
+                // They are items of their own.
+                Prepared::Lines { .. } => {}
                 Prepared::Fill { outline, rule, source } => {
                     let at = (top, &mut *base);
                     dispatch!(level, simd => self.fill(simd, outline, *rule, source, at));
@@ -159,6 +166,29 @@ impl<P: Space> Painter<P> {
             _ => {
                 let mut sink = Painted { pixels, width, source, clip, top };
                 Filler::fill(simd, filler, outline, top, rule, &mut sink);
+            }
+        }
+    }
+
+    fn lines(&mut self, level: Level, items: &[Item], lines: &[Line], top: i32, base: &mut [P]) {
+        let Self { layers, clips, floors, width, near, .. } = self;
+        let width = *width;
+        let pixels = layers.last_mut().map_or(base, |l| l.as_mut_slice());
+        let clip = clip_in_force(clips, floors).map(Vec::as_slice);
+        for items in items.chunks(AT_ONCE) {
+            near.clear();
+            near.extend(items.iter().filter_map(|item| lines.get(item.line()?)));
+            for line in &*near {
+                let (edges, rows) = (line.strip.edges(), line.strip.rows());
+                let color = P::from_srgb(line.color.map(|c| f32::from(c) / 255.0), line.opacity);
+                if clip.is_some() {
+                    let source = &Source::Solid(color);
+                    let mut sink = Painted { pixels, width, source, clip, top };
+                    dispatch!(level, simd => convex::fill(simd, &edges, rows, top, width, &mut sink));
+                } else {
+                    let mut sink = Plain { pixels, width, color };
+                    dispatch!(level, simd => convex::fill(simd, &edges, rows, top, width, &mut sink));
+                }
             }
         }
     }
@@ -237,6 +267,19 @@ impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
             let mut below = part_of_eight(self.pixels, first, end);
             P::color_over(simd, self.color, coverage, &mut below);
             put_back(self.pixels, first, end, &below);
+        }
+    }
+
+    #[inline(always)]
+    fn four(&mut self, simd: S, row: i32, x: usize, coverage: u32) {
+        let start = row as usize * self.width;
+        let (first, end) = (start + x, start + self.width);
+        if first + 4 > end {
+            self.eight(simd, row, x, unpacked(simd, coverage));
+        } else if let Some(below) =
+            self.pixels.get_mut(first..first + 4).and_then(<[P]>::first_chunk_mut)
+        {
+            P::color_over_four(simd, self.color, coverage, below);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{u8x32, u16x16, u32x8};
+use fearless_simd::{u8x16, u8x32, u16x8, u16x16, u32x4, u32x8};
 
 use crate::math::powf;
 
@@ -45,6 +45,13 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn over(self, coverage: u8, below: Self) -> Self;
     /// One colour over eight pixels, each with its coverage 0 … 255.
     fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]);
+    /// One colour over four pixels, their coverage in the bytes of a number, the first in the lowest.
+    #[inline(always)]
+    fn color_over_four<S: Simd>(_: S, color: Self, coverage: u32, below: &mut [Self; 4]) {
+        for (pixel, coverage) in below.iter_mut().zip(coverage.to_le_bytes()) {
+            *pixel = color.over(coverage, *pixel);
+        }
+    }
     /// Colours over eight pixels, each with its coverage 0 … 255.
     fn colors_over<S: Simd>(simd: S, colors: &[Self; 8], coverage: u32x8<S>, below: &mut [Self; 8]);
 }
@@ -160,6 +167,27 @@ impl Space for Srgb {
     }
 
     #[inline(always)]
+    fn color_over_four<S: Simd>(simd: S, color: Self, coverage: u32, below: &mut [Self; 4]) {
+        let pixels = below.as_flattened_mut();
+        let source: u8x16<S> = u32x4::splat(simd, u32::from_le_bytes(color)).bitcast();
+        // Each coverage in all four bytes of its pixel.
+        let twice: u8x16<S> = u32x4::splat(simd, coverage).bitcast();
+        let twice = twice.zip_low(twice);
+        let spread = twice.zip_low(twice);
+        let (s0, s1) = source.widening_mul(spread);
+        let full = u8x16::splat(simd, 255);
+        let through = if color.is_opaque() {
+            full - spread
+        } else {
+            let (a0, a1) = u8x16::splat(simd, color[3]).widening_mul(spread);
+            full - div255_half(simd, a0).saturating_narrow(div255_half(simd, a1))
+        };
+        let (b0, b1) = u8x16::from_slice(simd, pixels).widening_mul(through);
+        let (d0, d1) = (div255_half(simd, s0 + b0), div255_half(simd, s1 + b1));
+        d0.saturating_narrow(d1).store_slice(pixels);
+    }
+
+    #[inline(always)]
     fn colors_over<S: Simd>(
         simd: S,
         colors: &[Self; 8],
@@ -200,6 +228,13 @@ fn over_eight<S: Simd>(
 #[inline(always)]
 fn div255_lanes<S: Simd>(simd: S, x: u16x16<S>) -> u16x16<S> {
     let x = x + u16x16::splat(simd, 128);
+    (x + (x >> 8)) >> 8
+}
+
+/// [`div255_lanes`] of half as many.
+#[inline(always)]
+fn div255_half<S: Simd>(simd: S, x: u16x8<S>) -> u16x8<S> {
+    let x = x + u16x8::splat(simd, 128);
     (x + (x >> 8)) >> 8
 }
 

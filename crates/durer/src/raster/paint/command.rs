@@ -3,8 +3,38 @@
 use super::color::Space;
 use super::outline::Outline;
 use super::source::Source;
-use super::{FillRule, MaskKind, Paint};
+use super::{Color, FillRule, MaskKind, Paint};
 use crate::math::DAffine2;
+use crate::raster::coverage::convex::Strip;
+
+/// A thin straight line of one colour.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub strip: Strip,
+    pub color: Color,
+    /// 0 … 1.
+    pub opacity: f32,
+}
+
+/// The bit that tells the number of a line from that of a command.
+const LINE: u32 = 1 << 31;
+
+/// Something to do in a band.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Item(u32);
+
+impl Item {
+    /// The number of a line, if it is one.
+    #[inline(always)]
+    pub fn line(self) -> Option<usize> {
+        (self.0 & LINE != 0).then_some((self.0 & !LINE) as usize)
+    }
+
+    /// The number of the command, if it is none.
+    pub fn command(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// What can be open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,13 +61,31 @@ impl Open {
 /// One thing to do.
 #[derive(Debug)]
 pub(super) enum Command {
-    Fill { outline: Outline, rule: FillRule, paint: Paint, opacity: f64, transform: DAffine2 },
-    PushClip { outline: Outline, rule: FillRule },
+    Fill {
+        outline: Outline,
+        rule: FillRule,
+        paint: Paint,
+        opacity: f64,
+        transform: DAffine2,
+    },
+    /// Lines of the canvas, from the first to before the last.
+    Lines {
+        first: u32,
+        last: u32,
+    },
+    PushClip {
+        outline: Outline,
+        rule: FillRule,
+    },
     PopClip,
     PushGroup,
-    PopGroup { opacity: f64 },
+    PopGroup {
+        opacity: f64,
+    },
     BeginMask,
-    EndMask { kind: MaskKind },
+    EndMask {
+        kind: MaskKind,
+    },
 }
 
 impl Command {
@@ -48,6 +96,7 @@ impl Command {
                 rule: *rule,
                 source: Source::new(paint, *transform, *opacity),
             },
+            Self::Lines { first, last } => Prepared::Lines { first: *first, last: *last },
             Self::PushClip { outline, rule } => Prepared::PushClip { outline, rule: *rule },
             Self::PopClip => Prepared::PopClip,
             Self::PushGroup => Prepared::PushGroup,
@@ -63,6 +112,7 @@ impl Command {
 /// A command with its paint made ready for one colour space.
 pub(super) enum Prepared<'a, P> {
     Fill { outline: &'a Outline, rule: FillRule, source: Source<P> },
+    Lines { first: u32, last: u32 },
     PushClip { outline: &'a Outline, rule: FillRule },
     PopClip,
     PushGroup,
@@ -71,24 +121,31 @@ pub(super) enum Prepared<'a, P> {
     EndMask { kind: MaskKind },
 }
 
-/// For each band of `band_rows` rows the indices of the commands that concern it: fills of their rows,
+/// For each band of `band_rows` rows the commands and lines that concern it: fills and lines of their rows,
 /// everything else in all bands where there is something between its begin and its end.
 pub(super) fn sort_into_bands<P>(
     commands: &[Prepared<'_, P>],
+    lines: &[Line],
     height: u32,
     band_rows: i32,
-) -> Vec<Vec<u32>> {
+) -> Vec<Vec<Item>> {
     let count = height.div_ceil(band_rows.unsigned_abs().max(1)) as usize;
     let mut bands = vec![Band::default(); count];
+    let put = |bands: &mut [Band], rows: (i32, i32), item| {
+        let last = ((rows.1 - 1) / band_rows) as usize + 1;
+        let range = (rows.0 / band_rows) as usize..last.min(count);
+        let concerned = bands.get_mut(range).into_iter().flatten();
+        concerned.for_each(|band| band.items.push(item));
+    };
     for (i, command) in commands.iter().enumerate() {
-        let i = i as u32;
+        let i = Item(i as u32);
         match command {
-            Prepared::Fill { outline, .. } => {
-                let rows = outline.rows();
-                let last = ((rows.1 - 1) / band_rows) as usize + 1;
-                let range = (rows.0 / band_rows) as usize..last.min(count);
-                let concerned = bands.get_mut(range).into_iter().flatten();
-                concerned.for_each(|band| band.commands.push(i));
+            Prepared::Fill { outline, .. } => put(&mut bands, outline.rows(), i),
+            Prepared::Lines { first, last } => {
+                let lines = lines.get(*first as usize..*last as usize).unwrap_or_default();
+                for (i, line) in (*first..).zip(lines) {
+                    put(&mut bands, line.strip.rows(), Item(i | LINE));
+                }
             }
             Prepared::PushClip { .. } | Prepared::PushGroup | Prepared::BeginMask => {
                 bands.iter_mut().for_each(|band| band.begin(i));
@@ -99,36 +156,36 @@ pub(super) fn sort_into_bands<P>(
             }
         }
     }
-    bands.into_iter().map(|band| band.commands).collect()
+    bands.into_iter().map(|band| band.items).collect()
 }
 
 /// The commands of one band.
 #[derive(Debug, Clone, Default)]
 struct Band {
-    commands: Vec<u32>,
+    items: Vec<Item>,
     /// For all that is open: where it begins, and where what it encloses does.
     open: Vec<(usize, usize)>,
 }
 
 impl Band {
-    fn begin(&mut self, command: u32) {
-        let start = self.commands.len();
-        self.commands.push(command);
+    fn begin(&mut self, command: Item) {
+        let start = self.items.len();
+        self.items.push(command);
         self.open.push((start, start + 1));
     }
 
-    fn end_mask(&mut self, command: u32) {
-        self.commands.push(command);
+    fn end_mask(&mut self, command: Item) {
+        self.items.push(command);
         if let Some(open) = self.open.last_mut() {
-            open.1 = self.commands.len();
+            open.1 = self.items.len();
         }
     }
 
     /// What encloses nothing is dropped.
-    fn end(&mut self, command: u32) {
+    fn end(&mut self, command: Item) {
         match self.open.pop() {
-            Some((start, inside)) if inside == self.commands.len() => self.commands.truncate(start),
-            _ => self.commands.push(command),
+            Some((start, inside)) if inside == self.items.len() => self.items.truncate(start),
+            _ => self.items.push(command),
         }
     }
 }

@@ -14,14 +14,16 @@ pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
 
 use fearless_simd::Level;
 
+use super::coverage::convex::Strip;
 use super::coverage::{FillRule, Overlap, check_size};
+use super::line::anti_aliased;
 use super::line::wide::{self, Stroke};
 use crate::curve::{Contours, Path, flatten};
 use crate::math::DAffine2;
 use crate::target::Pixels;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
-use command::{Command, Open, Prepared};
+use command::{Command, Line, Open, Prepared};
 use outline::Outline;
 
 /// What of a picture becomes the coverage of a mask.
@@ -97,6 +99,8 @@ pub struct Canvas {
     /// What every pixel is set to first; `None` keeps the target's.
     background: Option<Color>,
     commands: Vec<Command>,
+    /// Thin straight lines, which commands count through.
+    lines: Vec<Line>,
     /// Clips, groups and masks that are open, in order of opening.
     open: Vec<Open>,
     anti_alias: bool,
@@ -110,9 +114,19 @@ impl Canvas {
     pub fn new(width: u32, height: u32, options: Options) -> Result<Self> {
         check_size(width, height)?;
         let transform = DAffine2::IDENTITY;
-        let (background, commands, open) = (None, vec![], vec![]);
+        let (background, commands, lines, open) = (None, vec![], vec![], vec![]);
         let anti_alias = options.anti_alias;
-        Ok(Self { width, height, options, transform, background, commands, open, anti_alias })
+        Ok(Self {
+            width,
+            height,
+            options,
+            transform,
+            background,
+            commands,
+            lines,
+            open,
+            anti_alias,
+        })
     }
 
     /// Width of the target in pixels.
@@ -135,6 +149,7 @@ impl Canvas {
     pub fn clear(&mut self, color: Color) {
         self.background = Some(color);
         self.commands.clear();
+        self.lines.clear();
         self.open.clear();
     }
 
@@ -164,10 +179,34 @@ impl Canvas {
         paint: &Paint,
         opacity: f64,
     ) -> Result<()> {
+        wide::check(stroke)?;
+        if let Some(line) = self.line(path, stroke, paint, opacity) {
+            self.push_line(line);
+            return Ok(());
+        }
         let scale = self.transform.matrix2.determinant().abs().sqrt();
         let tolerance = self.options.tolerance / scale.max(1e-9);
         self.fill(&wide::outline(path, stroke, tolerance)?, FillRule::NonZero, paint, opacity);
         Ok(())
+    }
+
+    /// A thin straight line of one colour inside the target needs no path.
+    fn line(&self, path: &Path, stroke: &Stroke, paint: &Paint, opacity: f64) -> Option<Line> {
+        let Paint::Color(color) = *paint else { return None };
+        let (from, to) = wide::straight(path, stroke).filter(|_| self.anti_alias)?;
+        let corners = anti_aliased::corners(from, to, stroke.width)?;
+        let corners = corners.map(|p| self.transform.transform_point2(p));
+        let strip = Strip::new(corners, self.width, self.height)?;
+        Some(Line { strip, color, opacity: source::opacity(opacity) as f32 })
+    }
+
+    fn push_line(&mut self, line: Line) {
+        let at = self.lines.len() as u32;
+        match self.commands.last_mut() {
+            Some(Command::Lines { last, .. }) => *last = at + 1,
+            _ => self.commands.push(Command::Lines { first: at, last: at + 1 }),
+        }
+        self.lines.push(line);
     }
 
     /// Fills contours that are already straight and in pixels; the paint still follows the transform.

@@ -116,11 +116,16 @@ pub(crate) struct Image {
     opacity: f64,
 }
 
+/// An opacity 0 … 1; what is no number is 1.
+pub(super) fn opacity(opacity: f64) -> f64 {
+    if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 }
+}
+
 impl<P: Space> Source<P> {
     /// `pixel_from_path` maps the path's space to pixels. A paint that cannot be evaluated — a map without
     /// inverse, a gradient without stops — paints nothing or its last stop, as SVG says.
     pub fn new(paint: &Paint, pixel_from_path: DAffine2, opacity: f64) -> Self {
-        let opacity = if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 };
+        let opacity = self::opacity(opacity);
         match paint {
             Paint::Color(color) => Self::Solid(premultiply(*color, opacity)),
             Paint::Gradient(g) => Self::gradient(g, pixel_from_path * g.transform, opacity),

@@ -12,6 +12,9 @@ fn every_simd_level_paints_the_same_bytes() {
             let center = DVec2::new(f64::from(i) * 7.3, f64::from(i) * 3.1);
             let paint = Paint::Color([i * 12, 255 - i * 3, 80, 255 - i * 9]);
             canvas.fill(&Path::circle(center, 20.0), FillRule::NonZero, &paint, 0.9);
+            let mut line = Path::new();
+            line.move_to(center.x, 3.0).line_to(130.0 - 2.0 * center.x, 60.0 - center.y);
+            canvas.stroke(&line, &Stroke::default(), &paint, 1.0).unwrap();
         }
         let at = |level| {
             let mut target = Pixels::new(133, 70, [250, 240, 10, 200]);

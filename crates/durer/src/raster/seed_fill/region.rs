@@ -1,9 +1,8 @@
 //! Which pixels of an image may be filled, one bit each.
 
-use crate::target::Pixels;
+use std::ops::Range;
 
-/// With more runs of open pixels in a word on average, words are better steps than runs.
-const RUNS_PER_WORD: u64 = 1;
+use crate::target::Pixels;
 
 /// One bit per pixel: whether it may still be filled.
 pub(super) struct Region {
@@ -12,19 +11,41 @@ pub(super) struct Region {
     /// Words of a row.
     pub words: usize,
     pub open: Vec<u64>,
-    before: Vec<u64>,
+    /// The rows that have been looked at.
+    known: Range<usize>,
 }
 
 impl Region {
-    pub fn new<P: Copy>(image: &Pixels<P>, inside: impl Fn(P) -> bool) -> Self {
+    /// An image of which only one row is known, and nothing open there yet.
+    pub fn unread<P: Copy>(image: &Pixels<P>, row: usize) -> Self {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let words = width.div_ceil(64);
-        let mut open = Vec::with_capacity(words * height);
-        for y in 0..image.height() {
-            let chunks = image.row(y).chunks(64);
-            open.extend(chunks.map(|chunk| bits(chunk, &inside)));
+        Self { width, height, words, open: vec![0; words * height], known: row..row + 1 }
+    }
+
+    /// An image as a whole.
+    pub fn new<P: Copy>(image: &Pixels<P>, inside: &impl Fn(P) -> bool) -> Self {
+        let mut region = Self::unread(image, 0);
+        let rows = region.open.chunks_exact_mut(region.words.max(1));
+        for (y, row) in (0..).zip(rows) {
+            read_row(image.row(y), inside, row);
         }
-        Self { width, height, words, before: open.clone(), open }
+        region.known = 0..region.height;
+        region
+    }
+
+    /// Counts a row beside the known ones to them; returns its words.
+    pub fn learn(&mut self, row: usize) -> &mut [u64] {
+        self.known = self.known.start.min(row)..self.known.end.max(row + 1);
+        &mut self.open[row * self.words..(row + 1) * self.words]
+    }
+
+    /// Looks at a row that is known or beside a known one.
+    #[inline(always)]
+    pub fn know<P: Copy>(&mut self, row: usize, image: &Pixels<P>, inside: &impl Fn(P) -> bool) {
+        if !self.known.contains(&row) {
+            read_row(image.row(row as u32), inside, self.learn(row));
+        }
     }
 
     pub fn is_open(&self, x: i64, y: i64) -> bool {
@@ -32,11 +53,18 @@ impl Region {
         inside && self.open[y as usize * self.words + x as usize / 64] >> (x as usize % 64) & 1 != 0
     }
 
-    /// Per row the words of what has been filled.
-    pub fn filled(&self) -> impl Iterator<Item = Vec<u64>> {
-        let words = self.words.max(1);
-        let pairs = self.before.chunks(words).zip(self.open.chunks(words));
-        pairs.map(|(before, after)| before.iter().zip(after).map(|(b, a)| b & !a).collect())
+    /// Fills what may be filled in a row of the image but is no longer open.
+    pub fn paint<P: Copy>(
+        &self,
+        y: usize,
+        pixels: &mut [P],
+        value: P,
+        inside: &impl Fn(P) -> bool,
+    ) {
+        for (chunk, open) in pixels.chunks_mut(64).zip(self.row(y)) {
+            let taken = bits(chunk, inside) & !open;
+            paint_word(chunk, taken, value);
+        }
     }
 
     fn row(&self, y: usize) -> &[u64] {
@@ -63,28 +91,49 @@ impl Region {
         }
         (start, end)
     }
+}
 
-    /// Whether there are more runs of open pixels than words, so that words are the better steps.
-    pub fn is_broken(&self) -> bool {
-        let starts = |word: &u64| u64::from((word & !(word << 1)).count_ones());
-        self.open.iter().map(starts).sum::<u64>() > self.open.len() as u64 * RUNS_PER_WORD
+/// Sets a bit for each pixel of a row that may be filled; says whether all may.
+pub(super) fn read_row<P: Copy>(
+    pixels: &[P],
+    inside: &impl Fn(P) -> bool,
+    words: &mut [u64],
+) -> bool {
+    let (whole, rest) = pixels.as_chunks::<64>();
+    let mut all = u64::MAX;
+    for (word, pixels) in words.iter_mut().zip(whole) {
+        *word = bits(pixels, inside);
+        all &= *word;
     }
+    if !rest.is_empty()
+        && let Some(last) = words.last_mut()
+    {
+        *last = bits(rest, inside);
+        all &= *last | (u64::MAX << rest.len());
+    }
+    all == u64::MAX
 }
 
 /// One bit for each of at most 64 pixels.
 #[inline(always)]
-fn bits<P: Copy>(pixels: &[P], inside: impl Fn(P) -> bool) -> u64 {
+fn bits<P: Copy>(pixels: &[P], inside: &impl Fn(P) -> bool) -> u64 {
     // Bytes first, for those are compared many at a time.
     let mut flags = [0_u8; 64];
-    for (flag, pixel) in flags.iter_mut().zip(pixels) {
-        *flag = u8::from(inside(*pixel));
+    if let Some(whole) = pixels.first_chunk::<64>() {
+        flags = whole.map(|pixel| u8::from(inside(pixel)));
+    } else {
+        for (flag, pixel) in flags.iter_mut().zip(pixels) {
+            *flag = u8::from(inside(*pixel));
+        }
     }
-    let eights = flags.as_chunks::<8>().0.iter().enumerate();
+    let eights = || flags.as_chunks::<8>().0.iter().map(|e| u64::from_le_bytes(*e));
+    const ALL: u64 = 0x0101_0101_0101_0101;
+    if eights().fold(ALL, |all, e| all & e) == ALL {
+        return u64::MAX;
+    }
     // The product brings the lowest bits of eight bytes side by side into the highest byte.
-    eights.fold(0, |word, (i, eight)| {
-        let eight = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-        word | (eight << (8 * i))
-    })
+    let bytes = eights().map(|e| e.wrapping_mul(0x0102_0408_1020_4080) >> 56);
+    bytes.enumerate().fold(0, |word, (i, byte)| word | (byte << (8 * i)))
 }
 
 /// The first bit from `x` on that is set after `map`.
@@ -108,21 +157,36 @@ fn previous_closed(row: &[u64], x: usize) -> Option<usize> {
     rest.next().map(|(i, w)| i * 64 + 63 - (!w).leading_zeros() as usize)
 }
 
-/// Writes the value to the pixels whose bits are set.
+/// Writes the value to the pixels of a row whose bits are set.
 pub(super) fn paint<P: Copy>(row: &mut [P], words: &[u64], value: P) {
     for (pixels, word) in row.chunks_mut(64).zip(words) {
-        if *word == u64::MAX {
-            pixels.fill(value);
-            continue;
+        paint_word(pixels, *word, value);
+    }
+}
+
+/// Writes the value to those of at most 64 pixels whose bits are set.
+#[inline(always)]
+fn paint_word<P: Copy>(pixels: &mut [P], word: u64, value: P) {
+    if word == u64::MAX {
+        return pixels.fill(value);
+    }
+    if word == 0 {
+        return;
+    }
+    // Each bit in its own byte, for bytes are looked at many at a time.
+    let mut taken = [0_u8; 64];
+    for (i, eight) in taken.as_chunks_mut::<8>().0.iter_mut().enumerate() {
+        let byte = (word >> (8 * i)) & 255;
+        let spread = byte.wrapping_mul(0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
+        *eight = spread.to_le_bytes();
+    }
+    if let Some(whole) = pixels.first_chunk_mut::<64>() {
+        for (pixel, taken) in whole.iter_mut().zip(taken) {
+            *pixel = if taken == 0 { *pixel } else { value };
         }
-        for (pixels, byte) in pixels.chunks_mut(8).zip(word.to_le_bytes()) {
-            if byte != 0 {
-                // Each bit in its own byte, so that all of them are looked at at once.
-                let spread = (u64::from(byte) * 0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
-                for (pixel, set) in pixels.iter_mut().zip(spread.to_le_bytes()) {
-                    *pixel = if set == 0 { *pixel } else { value };
-                }
-            }
+    } else {
+        for (pixel, _) in pixels.iter_mut().zip(taken).filter(|(_, taken)| *taken != 0) {
+            *pixel = value;
         }
     }
 }

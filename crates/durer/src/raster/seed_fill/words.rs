@@ -4,104 +4,127 @@
 //! all its runs together: seeds run to the right by an addition, whose carries stop at closed pixels, to the left by
 //! doubling steps, and what they reach seeds the words around.
 
-use super::Step;
 use super::region::Region;
-use crate::trace::Tracer;
-
-/// Fills what is connected with the seed, an open pixel; returns how many pixels that are.
-pub(super) fn fill(
-    region: &mut Region,
-    seed: (u32, u32),
-    eight: bool,
-    t: &mut impl Tracer<Step>,
-) -> u64 {
-    let words = region.words;
-    let mut waiting = Waiting { seeds: vec![0; region.open.len()], stack: Vec::new() };
-    let start = seed.1 as usize * words + seed.0 as usize / 64;
-    waiting.add(start, 1 << (seed.0 % 64));
-    let mut found = 0;
-    while let Some(word) = waiting.stack.pop() {
-        let seeds = std::mem::take(&mut waiting.seeds[word]);
-        let open = &mut region.open;
-        let reached = runs(seeds & open[word], open[word]);
-        open[word] &= !reached;
-        found += u64::from(reached.count_ones());
-        let (y, column) = (word / words, word % words);
-        trace(reached, y, column, t);
-        let (first, last) = (reached & 1, reached >> 63);
-        if first != 0 && column > 0 {
-            waiting.add(word - 1, open[word - 1] & (1 << 63));
-        }
-        if last != 0 && column + 1 < words {
-            waiting.add(word + 1, open[word + 1] & 1);
-        }
-        let beside = if eight { reached | (reached << 1) | (reached >> 1) } else { reached };
-        for row in [word.wrapping_sub(words), word + words] {
-            let Some(above) = open.get(row) else { continue };
-            waiting.add(row, above & beside);
-            if eight && first != 0 && column > 0 {
-                waiting.add(row - 1, open[row - 1] & (1 << 63));
-            }
-            if eight && last != 0 && column + 1 < words {
-                waiting.add(row + 1, open[row + 1] & 1);
-            }
-        }
-    }
-    found
-}
+use crate::target::Pixels;
 
 /// Words with seeds that have not been followed.
-struct Waiting {
+pub(super) struct Waiting {
+    eight: bool,
     seeds: Vec<u64>,
-    stack: Vec<usize>,
+    /// Row and word of the row.
+    stack: Vec<(u32, u32)>,
 }
 
 impl Waiting {
+    /// None for a region.
+    pub fn new(region: &Region, eight: bool) -> Self {
+        Self { eight, seeds: vec![0; region.open.len()], stack: Vec::new() }
+    }
+
     #[inline(always)]
-    fn add(&mut self, word: usize, seeds: u64) {
+    fn add(&mut self, (row, word): (usize, usize), at: usize, seeds: u64) {
         if seeds != 0 {
-            if self.seeds[word] == 0 {
-                self.stack.push(word);
+            if self.seeds[at] == 0 {
+                self.stack.push((row as u32, word as u32));
             }
-            self.seeds[word] |= seeds;
+            self.seeds[at] |= seeds;
         }
+    }
+
+    /// Adds what is open in a row beside what is reached in a neighbour of it; `reached` is widened.
+    pub fn add_beside(&mut self, row: usize, reached: &[u64], region: &Region) {
+        let start = row * region.words;
+        for (i, beside) in reached.iter().enumerate() {
+            self.add((row, i), start + i, region.open[start + i] & beside);
+        }
+    }
+
+    /// Follows all seeds; returns how many pixels they reach, and sets the flags of the rows in which some are.
+    pub fn follow<P: Copy>(
+        &mut self,
+        region: &mut Region,
+        image: &Pixels<P>,
+        inside: &impl Fn(P) -> bool,
+        late: &mut [bool],
+    ) -> u64 {
+        let words = region.words;
+        let mut found = 0;
+        while let Some((row, column)) = self.stack.pop() {
+            let (row, column) = (row as usize, column as usize);
+            let at = row * words + column;
+            let seeds = std::mem::take(&mut self.seeds[at]);
+            let open = region.open[at];
+            let reached = leftwards(rightwards(seeds & open, open), open);
+            region.open[at] = open & !reached;
+            found += u64::from(reached.count_ones());
+            late[row] = true;
+            let (left, right) =
+                (column > 0 && reached & 1 != 0, column + 1 < words && reached >> 63 != 0);
+            if left {
+                self.add((row, column - 1), at - 1, region.open[at - 1] & (1 << 63));
+            }
+            if right {
+                self.add((row, column + 1), at + 1, region.open[at + 1] & 1);
+            }
+            let beside =
+                if self.eight { reached | (reached << 1) | (reached >> 1) } else { reached };
+            for next in [row.wrapping_sub(1), row + 1] {
+                if next >= region.height {
+                    continue;
+                }
+                region.know(next, image, inside);
+                let at = next * words + column;
+                self.add((next, column), at, region.open[at] & beside);
+                if self.eight && left {
+                    self.add((next, column - 1), at - 1, region.open[at - 1] & (1 << 63));
+                }
+                if self.eight && right {
+                    self.add((next, column + 1), at + 1, region.open[at + 1] & 1);
+                }
+            }
+        }
+        found
     }
 }
 
-/// The runs of open pixels of a word in which there is a seed; seeds are open.
+/// What is reached to the right of seeds, which are open, as far as pixels are.
 #[inline(always)]
-fn runs(seeds: u64, open: u64) -> u64 {
+pub(super) fn rightwards(seeds: u64, open: u64) -> u64 {
     // The carry of the lowest seed of a run clears it to its end; further seeds only set their own bits again.
-    let right = ((open.wrapping_add(seeds) ^ open) & open) | seeds;
-    let (mut left, mut through) = (right, open);
-    for step in [1, 2, 4, 8, 16, 32] {
+    ((open.wrapping_add(seeds) ^ open) & open) | seeds
+}
+
+/// What is reached to the left of seeds, which are open, as far as pixels are.
+#[inline(always)]
+pub(super) fn leftwards(seeds: u64, open: u64) -> u64 {
+    let (mut left, mut through) = (seeds, open);
+    for step in [1, 2, 4] {
         left |= through & (left >> step);
         through &= through >> step;
+    }
+    // Most runs are not as long.
+    if through & (left >> 8) != 0 {
+        for step in [8, 16, 32] {
+            left |= through & (left >> step);
+            through &= through >> step;
+        }
     }
     left
 }
 
-/// Tells a listener of the runs reached.
-fn trace(mut reached: u64, y: usize, column: usize, t: &mut impl Tracer<Step>) {
-    while reached != 0 {
-        let start = reached.trailing_zeros();
-        let end = start + (!(reached >> start)).trailing_zeros().min(64 - start);
-        let mut listens = false;
-        t.step(|| {
-            listens = true;
-            let x = (column * 64) as u32;
-            Step { y: y as u32, x0: x + start, x1: x + end }
-        });
-        if !listens {
-            return;
-        }
-        reached &= u64::MAX.checked_shl(end).unwrap_or(0);
+/// Adds the pixels left and right of those whose bits are set.
+pub(super) fn widen(words: &mut [u64]) {
+    let mut before = 0;
+    for i in 0..words.len() {
+        let (own, next) = (words[i], words.get(i + 1).copied().unwrap_or(0));
+        words[i] = own | (own << 1) | (before >> 63) | (own >> 1) | (next << 63);
+        before = own;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::runs;
+    use super::{leftwards, rightwards};
 
     #[test]
     fn runs_with_seeds_are_found() {
@@ -119,7 +142,7 @@ mod tests {
             for _ in 0..64 {
                 expected |= ((expected << 1) | (expected >> 1)) & open;
             }
-            assert_eq!(runs(seeds, open), expected, "{seeds:x} {open:x}");
+            assert_eq!(leftwards(rightwards(seeds, open), open), expected, "{seeds:x} {open:x}");
         }
     }
 }
