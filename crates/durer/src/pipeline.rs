@@ -165,19 +165,45 @@ pub struct Report {
 /// # Errors
 /// What [`RenderOptions::check`] and [`Scene::check`] find.
 pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Report)> {
+    let mut framebuffer = Framebuffer::new(0, 0);
+    let report = render_into(scene, options, &mut framebuffer)?;
+    Ok((framebuffer, report))
+}
+
+/// As [`render`], into a framebuffer that may have held another picture: whatever it held, it has the same planes
+/// and bytes afterwards. Of pictures one after another of one size the memory is kept, which spares a tenth of
+/// the time of small ones.
+///
+/// ```
+/// use durer::pipeline::{RenderOptions, render, render_into};
+/// use durer::math::DVec3;
+/// use durer::scene::{Camera, Projection, Scene};
+/// use durer::target::Framebuffer;
+///
+/// let (eye, target, up) = (DVec3::Z, DVec3::ZERO, DVec3::Y);
+/// let projection = Projection::Perspective { fov_y: 0.5 };
+/// let camera = Camera { eye, target, up, projection, near: 0.1, far: 9.0 };
+/// let mut options = RenderOptions::new(camera);
+/// let mut picture = Framebuffer::new(0, 0);
+/// for step in 0..4 {
+///     options.camera.eye.x = f64::from(step);
+///     render_into(&Scene::default(), &options, &mut picture)?;
+///     assert_eq!(picture, render(&Scene::default(), &options)?.0);
+/// }
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`render`]; what the framebuffer holds then is of no use.
+pub fn render_into(
+    scene: &Scene,
+    options: &RenderOptions,
+    framebuffer: &mut Framebuffer,
+) -> Result<Report> {
     options.check()?;
     scene.check()?;
     let view = View::new(options.camera, options.width, options.height)?;
-    let mut framebuffer = Framebuffer::new(options.width, options.height);
-    if options.depth {
-        framebuffer = framebuffer.with_depth();
-    }
-    if options.item {
-        framebuffer = framebuffer.with_items();
-    }
-    if options.normal {
-        framebuffer = framebuffer.with_normals();
-    }
+    make_ready(framebuffer, options);
     let mut lights = match &options.lighting {
         Lighting::Auto => PreparedLights::of(scene, &options.camera),
         Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
@@ -199,11 +225,11 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
                 background: options.background,
                 level: options.level,
             };
-            z_buffer::render(scene, &view, &lights, &z_options, &mut framebuffer)?
+            z_buffer::render(scene, &view, &lights, &z_options, framebuffer)?
         }
-        _ => from_screen_triangles(scene, &view, &lights, options, &mut framebuffer)?,
+        _ => from_screen_triangles(scene, &view, &lights, options, framebuffer)?,
     };
-    let report = Report {
+    Ok(Report {
         triangles_in: scene.triangle_count(),
         non_finite: report.counts.non_finite,
         clipped: report.counts.clipped,
@@ -211,8 +237,29 @@ pub fn render(scene: &Scene, options: &RenderOptions) -> Result<(Framebuffer, Re
         drawn: report.counts.drawn,
         geometry_seconds: report.geometry_seconds + shadow_seconds,
         raster_seconds: report.raster_seconds,
+    })
+}
+
+/// Gives a framebuffer the planes that are asked for. Its colours stay where their number is right, for every method
+/// sets all of them; everything else is as new.
+fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) {
+    let Framebuffer { color, .. } = std::mem::replace(framebuffer, Framebuffer::new(0, 0));
+    let stays = (color.width(), color.height()) == (options.width, options.height);
+    let mut ready = if stays {
+        Framebuffer { color, ..Framebuffer::new(0, 0) }
+    } else {
+        Framebuffer::new(options.width, options.height)
     };
-    Ok((framebuffer, report))
+    if options.depth {
+        ready = ready.with_depth();
+    }
+    if options.item {
+        ready = ready.with_items();
+    }
+    if options.normal {
+        ready = ready.with_normals();
+    }
+    *framebuffer = ready;
 }
 
 /// One method's picture beside the z-buffer's.

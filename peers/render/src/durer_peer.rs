@@ -62,9 +62,10 @@ impl Durer {
         let mut costs = Vec::new();
         for frame in 0..=scene::LAST {
             let options = self.options(frame);
-            let work = || self.pool.install(|| render(&self.scene, &options));
+            let Self { scene, pool, last, .. } = self;
+            let work = || pool.install(|| render_into(scene, &options, last));
             let (result, cost) = measure(work);
-            self.last = result?.0;
+            result?;
             if frame >= scene::WARM {
                 costs.push(cost);
             }

@@ -1,13 +1,35 @@
 //! Same input, same bytes: at every SIMD level and number of threads.
 
 use crate::scenes;
-use durer::pipeline::{RenderOptions, Report, Samples, Shading, render};
+use durer::pipeline::{
+    RenderOptions, Report, Samples, Shading, SurfaceMethod, render, render_into,
+};
 use durer::scene::Scene;
 use durer::target::Framebuffer;
 
 fn picture(scene: &Scene, options: &RenderOptions, threads: usize) -> (Framebuffer, Report) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| render(scene, options)).expect("picture")
+}
+
+#[test]
+fn what_a_framebuffer_held_before_is_of_no_matter() {
+    let (_, scene) = scenes::all().remove(0);
+    let mut options = scenes::options(&scene, 131, 77);
+    let mut kept = Framebuffer::new(131, 77).with_depth().with_stencil();
+    for &algorithm in SurfaceMethod::ALL {
+        for samples in [Samples::One, Samples::Four] {
+            (options.algorithm, options.samples) = (algorithm, samples);
+            options.normal = samples == Samples::One;
+            for scene in [&scene, &Scene::default()] {
+                kept.color.data_mut().fill([1, 2, 3, 4]);
+                let report = render_into(scene, &options, &mut kept).expect("picture");
+                let (expected, whole) = render(scene, &options).expect("picture");
+                assert!(kept == expected, "{algorithm} {samples:?}");
+                assert_eq!(report.drawn, whole.drawn);
+            }
+        }
+    }
 }
 
 #[test]
