@@ -7,7 +7,7 @@ use crate::picture::Picture;
 use crate::scene::{self, Place};
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::pipeline::{
-    Background, Cull, Lighting, RenderOptions, Samples, Shading, SurfaceMethod, render,
+    Background, Cull, Lighting, RenderOptions, Samples, Shading, SurfaceMethod, render_into,
 };
 use durer::scene::{
     Camera, Instance, Light, LightKind, Material, Part, Projection, Scene, ShadingModel,
