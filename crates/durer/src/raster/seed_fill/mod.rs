@@ -134,7 +134,7 @@ pub fn flood_fill<P: PixelValue>(
 
 /// Fills the pixels connected with the seed up to a boundary: those whose channels differ from the
 /// boundary's by more than `tolerance`; returns how many were filled.
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments, reason = "one call, all of it the kind of fill")]
 pub fn boundary_fill<P: PixelValue>(
     image: &mut Pixels<P>,
     seed: (u32, u32),
