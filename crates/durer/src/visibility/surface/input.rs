@@ -37,7 +37,7 @@ impl<'a> SurfaceInput<'a> {
         let mut assembler = Assembler::new(scene, view, filter, Level::new());
         let mut triangles = Vec::new();
         for run in &runs {
-            assembler.primitives(run, run.range.clone(), |t| triangles.push(t));
+            assembler.primitives(run, run.range.clone(), &mut triangles);
         }
         let counts = assembler.counts;
         Ok(Self { scene, view, filter, runs, triangles, counts })
