@@ -21,7 +21,7 @@ use crate::math::Vec4;
 use crate::scene::Scene;
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::Level;
+use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
@@ -72,7 +72,7 @@ impl Default for Options {
             cull: Cull::None,
             shading: None,
             background: Background::Color(Vec4::ONE),
-            level: Level::new(),
+            level: default_level(),
         }
     }
 }
