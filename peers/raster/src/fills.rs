@@ -24,9 +24,13 @@ fn all() -> Vec<Box<dyn Fn() -> Scene>> {
     ]
 }
 
-fn durer(scene: &Scene, overlap: Overlap, anti_alias: bool, target: &mut Pixels<[u8; 4]>) {
+/// A canvas, kept from picture to picture as vello_cpu's context is.
+fn canvas(scene: &Scene, overlap: Overlap, anti_alias: bool) -> Canvas {
     let options = Options { overlap, anti_alias, ..Options::default() };
-    let mut canvas = Canvas::new(scene.size, scene.size, options).unwrap();
+    Canvas::new(scene.size, scene.size, options).unwrap()
+}
+
+fn durer(scene: &Scene, canvas: &mut Canvas, target: &mut Pixels<[u8; 4]>) {
     canvas.clear([255; 4]);
     for s in &scene.shapes {
         let rule = if s.even_odd { FillRule::EvenOdd } else { FillRule::NonZero };
@@ -40,8 +44,9 @@ pub fn alone(filter: &str, times: usize, anti_alias: bool) {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for scene in all().iter().map(|make| make()).filter(|s| s.name.contains(filter)) {
         let mut target = Pixels::new(scene.size, scene.size, [255; 4]);
+        let mut canvas = canvas(&scene, Overlap::Exact, anti_alias);
         for _ in 0..times {
-            one.install(|| durer(&scene, Overlap::Exact, anti_alias, &mut target));
+            one.install(|| durer(&scene, &mut canvas, &mut target));
         }
     }
 }
@@ -150,6 +155,8 @@ pub fn anti_aliased(filter: &str) {
         let side = scene.size;
         let mut targets = [(); 3].map(|()| Pixels::new(side, side, [255; 4]));
         let [t0, t1, t2] = &mut targets;
+        let overlaps = [Overlap::Exact, Overlap::Accumulated, Overlap::Exact];
+        let [mut c0, mut c1, mut c2] = overlaps.map(|overlap| canvas(&scene, overlap, true));
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
@@ -164,19 +171,19 @@ pub fn anti_aliased(filter: &str) {
                     "exact",
                     Box::new(|| {
                         let start = Instant::now();
-                        one.install(|| durer(&scene, Overlap::Exact, true, t0));
+                        one.install(|| durer(&scene, &mut c0, t0));
                         wall_one.push(start.elapsed().as_secs_f64());
                     }),
                 ),
                 (
                     "accumulated",
-                    Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, true, t1))),
+                    Box::new(|| one.install(|| durer(&scene, &mut c1, t1))),
                 ),
                 (
                     "two",
                     Box::new(|| {
                         let start = Instant::now();
-                        two.install(|| durer(&scene, Overlap::Exact, true, t2));
+                        two.install(|| durer(&scene, &mut c2, t2));
                         wall_two.push(start.elapsed().as_secs_f64());
                     }),
                 ),
@@ -242,6 +249,7 @@ pub fn aliased(filter: &str) {
         }
         let side = scene.size;
         let mut target = Pixels::new(side, side, [255; 4]);
+        let mut canvas = canvas(&scene, Overlap::Exact, false);
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
@@ -252,7 +260,7 @@ pub fn aliased(filter: &str) {
             &mut [
                 (
                     "durer",
-                    Box::new(|| one.install(|| durer(&scene, Overlap::Exact, false, &mut target))),
+                    Box::new(|| one.install(|| durer(&scene, &mut canvas, &mut target))),
                 ),
                 (
                     "vello",

@@ -3,7 +3,7 @@
 //! Both give the same integers.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, i32x8, u32x8};
 
 use super::edge::{BITS, ONE};
 
@@ -102,6 +102,21 @@ pub(super) fn narrow_deltas(a: i32, b: i32, height: i32) -> [i32; 3] {
     let [d0, _, d2] = steep_deltas(a, b, inverse);
     let (d0, d2) = (scale(d0), scale(d2));
     [d0, height - d0 - d2, d2]
+}
+
+/// What an edge covers of eight pixels.
+#[inline(always)]
+pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
+    let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let (zero, last) = (i32x8::splat(simd, 0), i32x8::splat(simd, ramp.last - ramp.first));
+    let i = lane + i32x8::splat(simd, x - ramp.first);
+    let u: u32x8<S> = i.bitcast();
+    let area = u32x8::splat(simd, ramp.start) + u * u32x8::splat(simd, ramp.per_pixel);
+    let area: i32x8<S> = (area >> BITS).bitcast();
+    let area = i.simd_eq(zero).select(i32x8::splat(simd, ramp.head), area);
+    let area = i.simd_eq(last).select(i32x8::splat(simd, ramp.tail), area);
+    let area = i.simd_gt(last).select(i32x8::splat(simd, ramp.height), area);
+    i.simd_lt(zero).select(zero, area)
 }
 
 /// A steep edge in the next eight rows.

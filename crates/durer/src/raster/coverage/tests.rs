@@ -22,7 +22,7 @@ fn every_simd_level_gives_the_same_bytes() {
 }
 
 #[test]
-fn triangles_are_summed_with_and_without_cells_alike() {
+fn convex_outlines_are_summed_with_and_without_marks_alike() {
     let mut seed = 8_u64;
     let mut random = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -31,7 +31,7 @@ fn triangles_are_summed_with_and_without_cells_alike() {
     let (width, height) = (180, 140);
     let (mut simple, mut lit) = (0, 0);
     for round in 0..600 {
-        let corners = 3;
+        let corners = if round % 2 == 0 { 3 } else { 4 + round / 2 % 7 };
         let size = [0.7, 5.0, 14.0, 60.0, 110.0][round % 5];
         let center = DVec2::new(random() * 180.0, random() * 140.0);
         let thin = if round % 4 == 0 { 0.02 } else { 0.3 + random() };
@@ -43,12 +43,13 @@ fn triangles_are_summed_with_and_without_cells_alike() {
             // Some on borders and in the middle of pixels.
             if round % 3 == 0 { (p * 2.0).round() / 2.0 } else { p }
         };
-        let mut path = PathEdges::new(&Contours::polygon((0..corners).map(point)), width, height);
-        simple += usize::from(path.simple);
+        let (contours, mut list) = (Contours::polygon((0..corners).map(point)), Vec::new());
+        let mut path = PathEdges::new(&contours, width, height, &mut list);
+        simple += usize::from(path.whole);
         let mut at = |level, simple: bool| {
-            path.simple &= simple;
+            path.whole &= simple;
             let mut mask = Pixels::new(width, height, 0);
-            fill_path(level, &path, &mut mask, &Options::default(), &mut NoTrace);
+            fill_path(level, &path, &list, &mut mask, &Options::default(), &mut NoTrace);
             mask
         };
         let (own, other) = (at(Level::new(), true), at(Level::baseline(), true));
