@@ -39,9 +39,14 @@ fn durer(scene: &Scene, canvas: &mut Canvas, target: &mut Pixels<[u8; 4]>) {
     canvas.render(target).unwrap();
 }
 
+/// The thread that asks does the work: nobody else has to be woken for it.
+fn one_thread() -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap()
+}
+
 /// Durer's fill alone, so often, for a profile.
 pub fn alone(filter: &str, times: usize, anti_alias: bool) {
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let one = one_thread();
     for scene in all().iter().map(|make| make()).filter(|s| s.name.contains(filter)) {
         let mut target = Pixels::new(scene.size, scene.size, [255; 4]);
         let mut canvas = canvas(&scene, Overlap::Exact, anti_alias);
@@ -145,7 +150,7 @@ pub fn anti_aliased(filter: &str) {
         "| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads, by the clock |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let one = one_thread();
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     for make in all() {
         let scene = make();
@@ -241,7 +246,7 @@ pub fn aliased(filter: &str) {
         "| aliased, ms | durer | vello_cpu | tiny-skia | best / durer | pixels unlike tiny-skia's |"
     );
     println!("|---|---|---|---|---|---|");
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let one = one_thread();
     for make in all() {
         let scene = make();
         if !scene.name.contains(filter) {

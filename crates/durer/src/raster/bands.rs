@@ -63,26 +63,18 @@ impl<E> Edges<E> {
         Self::from_list(list, first, rows)
     }
 
-    /// Calls `f` with the edges of the band at row `top` in the order of the path, perhaps with others too, until it
-    /// says no.
+    /// The edges of the band at row `top` in the order of the path, perhaps with others too.
     #[inline(always)]
-    pub fn for_each(&self, list: &[E], top: i32, mut f: impl FnMut(&E) -> bool) {
-        match self {
-            Self::Few(range) => {
-                let own = list.get(range.start as usize..range.end as usize);
-                let _ = own.unwrap_or_default().iter().all(f);
-            }
-            Self::Many(chunks) => {
-                for chunk in chunks {
-                    for stretch in chunk.index.stretches(top) {
-                        let own = chunk.edges.get(stretch.0 as usize..stretch.1 as usize);
-                        if !own.unwrap_or_default().iter().all(&mut f) {
-                            return;
-                        }
-                    }
-                }
-            }
-        }
+    pub fn of_band<'a>(&'a self, list: &'a [E], top: i32) -> impl Iterator<Item = &'a [E]> {
+        let (few, chunks) = match self {
+            Self::Few(range) => (list.get(range.start as usize..range.end as usize), [].as_slice()),
+            Self::Many(chunks) => (None, chunks.as_slice()),
+        };
+        let many = chunks.iter().flat_map(move |chunk| {
+            let stretches = chunk.index.stretches(top).iter();
+            stretches.filter_map(|(from, to)| chunk.edges.get(*from as usize..*to as usize))
+        });
+        few.into_iter().chain(many)
     }
 }
 

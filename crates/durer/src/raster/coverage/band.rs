@@ -1,6 +1,7 @@
 //! One path in one band of rows: add its edges, resolve shared pixels, sum the rows.
 
 use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
 use fearless_simd_macros::simd;
 
 use super::FillRule;
@@ -68,15 +69,10 @@ impl Path<'_> {
         self.path.rows
     }
 
-    /// Calls `f` with the edges of the band at row `top` in the order of the path, moved so that pixel
-    /// `first` becomes the first one.
+    /// The edges of the band at row `top` in the order of the path, perhaps with others too.
     #[inline(always)]
-    fn for_each(&self, top: i32, first: usize, mut f: impl FnMut(Edge)) {
-        let first = (first as i32) << BITS;
-        self.path.edges.for_each(self.list, top, |edge| {
-            f(edge.moved(first));
-            true
-        });
+    fn of_band(&self, top: i32) -> impl Iterator<Item = &[Edge]> {
+        self.path.edges.of_band(self.list, top)
     }
 }
 
@@ -152,23 +148,25 @@ impl BandFiller {
     }
 
     /// Adds the edges of a path to the cells; says whether there are pixels that have to be resolved.
-    fn collect(&mut self, path: Path<'_>, top: i32, exact: bool) -> bool {
-        let (cells, resolver, Extent { rows, first, words }) = self.choose(path, top);
-        if !exact {
-            path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
-            return false;
-        }
+    #[simd]
+    fn collect<S: Simd>(simd: S, this: &mut Self, path: Path<'_>, top: i32, exact: bool) -> bool {
+        let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
+        let x = (first as i32) << BITS;
         cells.any_shared = 0;
         let mut edges = 0;
-        path.for_each(top, first, |edge| {
-            cells.add::<true>(&edge, top);
-            edges += 1;
-        });
+        for some in path.of_band(top) {
+            edges += some.len() as u32;
+            for edge in some {
+                cells.add(simd, &edge.moved(x), top, exact);
+            }
+        }
+        Cells::flush(simd, cells, exact);
         let any = cells.any_shared != 0;
         let shared = if any { resolver.begin(cells, rows, words, edges) } else { 0 };
         if shared != 0 {
             let marks = |row: i32| cells.marks_of(row);
-            path.for_each(top, first, |edge| resolver.add(&edge, top, shared, marks));
+            let edges = path.of_band(top).flatten();
+            edges.for_each(|edge| resolver.add(&edge.moved(x), top, shared, marks));
         }
         shared != 0
     }
@@ -194,7 +192,7 @@ impl BandFiller {
                 return convex::fill(simd, own, rows, top, this.width, sink);
             }
         }
-        let resolved = this.collect(path, top, exact && !convex);
+        let resolved = Self::collect(simd, this, path, top, exact && !convex);
         let width = this.width;
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
         let resolver = resolved.then_some(resolver);
@@ -205,8 +203,8 @@ impl BandFiller {
     /// pixel, 0 … 65,536.
     pub fn areas(&mut self, path: Path<'_>, top: i32, mut add: impl FnMut(i32, usize, i32)) {
         let width = self.width;
+        dispatch!(Level::new(), simd => Self::collect(simd, self, path, top, false));
         let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
-        path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
         for row in rows.0..rows.1 {
             let (cells, marks) = cells.row(row, words);
             let mut sum = 0_i32;

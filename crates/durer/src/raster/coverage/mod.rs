@@ -21,6 +21,7 @@ pub(crate) mod edge;
 mod joints;
 mod outline;
 mod partition;
+mod parts;
 mod ramp;
 mod resolve;
 mod small;
