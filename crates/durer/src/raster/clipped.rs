@@ -19,29 +19,31 @@ pub(crate) enum Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of a closed contour that begin at a range of its points, some after the other.
+    /// The first lines of those of a closed contour that begin at a range of its points, which then begins after them.
     #[inline(always)]
-    pub fn of(
+    pub fn next(
         points: &'a [DVec2],
-        own: Range<usize>,
+        own: &mut Range<usize>,
         low: DVec2,
         high: DVec2,
-    ) -> impl Iterator<Item = Self> {
-        let is_inside = move |all: bool, p: &DVec2| {
-            all & (p.x >= low.x) & (p.x <= high.x) & (p.y >= low.y) & (p.y <= high.y)
-        };
-        own.clone().step_by(BLOCK).map(move |first| {
-            let end = (first + BLOCK).min(own.end);
-            let next = points.get(end).or_else(|| points.first());
-            match (points.get(first..end), next) {
-                (Some(block @ [from, rest @ ..]), Some(next))
-                    if block.iter().fold(is_inside(true, next), is_inside) =>
-                {
-                    Self::Inside(from, rest, next)
-                }
-                _ => Self::Any(points, first..end),
+    ) -> Option<Self> {
+        if own.start >= own.end {
+            return None;
+        }
+        let is_inside =
+            |p: &DVec2| (p.x >= low.x) & (p.x <= high.x) & (p.y >= low.y) & (p.y <= high.y);
+        let (first, end) = (own.start, own.end.min(own.start + BLOCK));
+        own.start = end;
+        match (points.get(first..end), points.get(end).or_else(|| points.first())) {
+            (Some([from, rest @ ..]), Some(next))
+                if rest
+                    .iter()
+                    .fold(is_inside(from) & is_inside(next), |all, p| all & is_inside(p)) =>
+            {
+                Some(Self::Inside(from, rest, next))
             }
-        })
+            _ => Some(Self::Any(points, first..end)),
+        }
     }
 }
 

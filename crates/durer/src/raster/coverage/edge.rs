@@ -48,11 +48,16 @@ impl Steps {
 }
 
 impl Edge {
+    /// From one point in the target to another.
     #[inline(always)]
     pub(super) fn new(from: (i32, i32), to: (i32, i32)) -> Self {
-        let reversed = (to.1, to.0) < (from.1, from.0);
-        let ((x0, y0), (x1, y1)) = if reversed { (to, from) } else { (from, to) };
-        Self { x0, y0, x1, y1, flags: u32::from(reversed) * REVERSED }
+        // In one number each, so that there is nothing to be guessed.
+        let key = |(x, y): (i32, i32)| (i64::from(y) << 32) | i64::from(x as u32);
+        let (a, b) = (key(from), key(to));
+        let (upper, lower) = (a.min(b), a.max(b));
+        let flags = u32::from(b < a) * REVERSED;
+        let (x0, y0) = (upper as i32, (upper >> 32) as i32);
+        Self { x0, y0, x1: lower as i32, y1: (lower >> 32) as i32, flags }
     }
 
     /// The one division of an edge, made where it is needed.

@@ -159,24 +159,16 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds the edges that begin at a range of a contour's points.
-    fn lines(&mut self, points: &[DVec2], own: Range<usize>) {
+    fn lines(&mut self, points: &[DVec2], mut own: Range<usize>) {
         let size = self.size;
         let is_inside = |p: DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all();
-        for some in Lines::of(points, own, DVec2::ZERO, size) {
+        while let Some(some) = Lines::next(points, &mut own, DVec2::ZERO, size) {
             match some {
-                Lines::Inside(from, rest, next) => {
-                    let mut from = snap(*from);
-                    self.extent.add(from);
-                    for to in rest.iter().chain([next]) {
-                        let to = snap(*to);
-                        self.edge(from, to);
-                        from = to;
-                    }
-                }
+                Lines::Inside(from, rest, next) => self.inside(from, rest, next),
                 Lines::Any(points, own) => {
                     for (a, b) in lines(points, own) {
                         if is_inside(a) && is_inside(b) {
-                            self.separate_edge(snap(a), snap(b));
+                            self.edge(snap(a), snap(b));
                         } else {
                             self.extent.cut = true;
                             self.clipped(a, b);
@@ -187,6 +179,25 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Adds the edges along points that are all inside the target.
+    #[inline(always)]
+    fn inside(&mut self, from: &DVec2, rest: &[DVec2], next: &DVec2) {
+        let mut extent = self.extent;
+        let mut from = snap(*from);
+        extent.add(from);
+        let mut to = |to: &DVec2| {
+            let to = snap(*to);
+            extent.add(to);
+            if from != to {
+                self.edges.push(Edge::new(from, to));
+            }
+            from = to;
+        };
+        rest.iter().for_each(&mut to);
+        to(next);
+        self.extent = extent;
+    }
+
     /// The part of a line that matters: within the rows, and left of the right border.
     fn clipped(&mut self, a: DVec2, b: DVec2) {
         if a.x.min(b.x) > self.size.x {
@@ -194,19 +205,14 @@ impl<'a> Builder<'a> {
         }
         for (p, q) in pieces(a, b, DVec2::ZERO, self.size).into_iter().flatten() {
             if p != q && p.x.min(q.x) < self.size.x {
-                self.separate_edge(snap(p), snap(q));
+                self.edge(snap(p), snap(q));
             }
         }
     }
 
-    fn separate_edge(&mut self, from: (i32, i32), to: (i32, i32)) {
-        self.extent.add(from);
-        self.edge(from, to);
-    }
-
-    #[inline(always)]
     fn edge(&mut self, from: (i32, i32), to: (i32, i32)) {
         if from != to {
+            self.extent.add(from);
             self.extent.add(to);
             self.edges.push(Edge::new(from, to));
         }

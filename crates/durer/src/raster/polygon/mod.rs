@@ -83,16 +83,14 @@ fn snapped_edges(
     let grid = |p: DVec2| (snap(p.x), snap(p.y));
     let (low, high) = (DVec2::splat(REACH.0), DVec2::splat(REACH.1));
     let within = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
-    for (points, own) in contours.within(range) {
-        for some in Lines::of(points, own, low, high) {
+    for (points, mut own) in contours.within(range) {
+        while let Some(some) = Lines::next(points, &mut own, low, high) {
             match some {
                 Lines::Inside(from, rest, next) => {
                     let mut from = grid(*from);
-                    for to in rest.iter().chain([next]) {
-                        let to = grid(*to);
-                        f(from, to);
-                        from = to;
-                    }
+                    let mut to = |to: &DVec2| f(std::mem::replace(&mut from, grid(*to)), grid(*to));
+                    rest.iter().for_each(&mut to);
+                    to(next);
                 }
                 Lines::Any(points, own) => {
                     for (a, b) in lines(points, own) {
