@@ -163,13 +163,15 @@ impl Path<'_> {
     #[inline(always)]
     pub fn for_each(&self, top: i32, width: usize, mut f: impl FnMut(usize, usize, bool) -> bool) {
         let width = width as i64;
-        for edge in self.path.edges.of_band(self.list, top).flatten() {
-            let (first, last, mut x, slope) = edge.within(top);
-            for row in first..last {
-                if !f(row as usize, (x >> BITS).clamp(0, width) as usize, edge.down) {
-                    return;
+        for some in self.path.edges.of_band(self.list, top) {
+            for edge in some {
+                let (first, last, mut x, slope) = edge.within(top);
+                for row in first..last {
+                    if !f(row as usize, (x >> BITS).clamp(0, width) as usize, edge.down) {
+                        return;
+                    }
+                    x = x.wrapping_add(slope);
                 }
-                x = x.wrapping_add(slope);
             }
         }
     }
