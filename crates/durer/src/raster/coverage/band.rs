@@ -38,7 +38,9 @@ pub(crate) struct PathEdges {
 impl PathEdges {
     /// The edges of contours within a target of the given size; a few are added to the list.
     pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
-        let convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
+        // A triangle cannot be anything else.
+        let points = contours.points();
+        let convex = contours.iter().nth(1).is_none() && (points.len() <= 3 || is_convex(points));
         let (edges, extent) = outline::edges(contours, (width, height), convex, list);
         let whole = convex && !extent.cut && matches!(&edges, Edges::Few(_));
         let [rows, columns] = extent.pixels();

@@ -185,16 +185,14 @@ impl<'a> Builder<'a> {
         let mut extent = self.extent;
         let mut from = snap(*from);
         extent.add(from);
-        let mut to = |to: &DVec2| {
-            let to = snap(*to);
+        for i in 0..=rest.len() {
+            let to = snap(*rest.get(i).unwrap_or(next));
             extent.add(to);
             if from != to {
                 self.edges.push(Edge::new(from, to));
             }
             from = to;
-        };
-        rest.iter().for_each(&mut to);
-        to(next);
+        }
         self.extent = extent;
     }
 

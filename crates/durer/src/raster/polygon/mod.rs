@@ -88,9 +88,11 @@ fn snapped_edges(
             match some {
                 Lines::Inside(from, rest, next) => {
                     let mut from = grid(*from);
-                    let mut to = |to: &DVec2| f(std::mem::replace(&mut from, grid(*to)), grid(*to));
-                    rest.iter().for_each(&mut to);
-                    to(next);
+                    for i in 0..=rest.len() {
+                        let to = grid(*rest.get(i).unwrap_or(next));
+                        f(from, to);
+                        from = to;
+                    }
                 }
                 Lines::Any(points, own) => {
                     for (a, b) in lines(points, own) {
