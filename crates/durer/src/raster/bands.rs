@@ -14,7 +14,7 @@ pub(crate) const BAND_ROWS: i32 = 32;
 pub(crate) const FEW_EDGES: usize = 48;
 /// Points whose edges are made at once: enough to be worth a task, and few enough for their edges to stay in the
 /// second-level cache until they are sorted.
-const CHUNK: usize = 4096;
+pub(crate) const CHUNK: usize = 4096;
 
 /// The edges of one path.
 #[derive(Debug)]
@@ -78,13 +78,14 @@ impl<E> Edges<E> {
     }
 }
 
-/// What `make` gives for chunks of the contours' points, in their order.
+/// What `make` gives for chunks of the contours' points, so many at once, in their order.
 pub(crate) fn by_chunks<M: Send>(
     contours: &Contours,
+    size: usize,
     make: impl Fn(Range<usize>) -> M + Sync + Send,
 ) -> Vec<M> {
     let count = contours.points().len();
-    let chunks = (0..count).step_by(CHUNK).map(|start| start..(start + CHUNK).min(count));
+    let chunks = (0..count).step_by(size).map(|start| start..(start + size).min(count));
     parallel::map(chunks.collect(), make)
 }
 

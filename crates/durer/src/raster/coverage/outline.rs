@@ -6,11 +6,11 @@ use super::edge::{BITS, Edge, MAX_SIDE, ONE, snap};
 use super::joints::{Part, chain, chain_contour, chain_inner};
 use crate::curve::Contours;
 use crate::math::DVec2;
-use crate::raster::bands::{Chunk, Edges, FEW_EDGES, by_chunks};
+use crate::raster::bands::{CHUNK, Chunk, Edges, FEW_EDGES, by_chunks};
 use crate::raster::clipped::{Lines, lines, pieces};
 
 /// What the edges of a path touch, and whether it has been cut.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
     /// The least and the largest coordinates, 16.16.
     low: (i32, i32),
@@ -59,7 +59,18 @@ pub(super) fn edges(
         let extent = Builder::new(list, size, !convex).add(contours, 0..count);
         return (Edges::from_list(list, first, Edge::rows), extent);
     }
-    let made = by_chunks(contours, |range| {
+    let (chunks, extent) = chunks(contours, size, convex, CHUNK);
+    (Edges::from_chunks(chunks, list, Edge::rows), extent)
+}
+
+/// The edges of so many points at once; how many changes nothing in them.
+pub(super) fn chunks(
+    contours: &Contours,
+    size: DVec2,
+    convex: bool,
+    points: usize,
+) -> (Vec<Chunk<Edge>>, Extent) {
+    let made = by_chunks(contours, points, |range| {
         let mut edges = Vec::with_capacity(range.len() + 1);
         let mut builder = Builder::new(&mut edges, size, !convex);
         let extent = builder.add(contours, range);
@@ -76,7 +87,7 @@ pub(super) fn edges(
     for parts in parts.chunk_by(|a, b| a.1.contour == b.1.contour) {
         chain_parts(&mut chunks, parts);
     }
-    (Edges::from_chunks(chunks, list, Edge::rows), extent)
+    (chunks, extent)
 }
 
 /// Chains the joints of a contour that come between what was made in several chunks.

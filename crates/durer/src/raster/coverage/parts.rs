@@ -1,10 +1,11 @@
 //! What edges do in single rows, put in a queue and made into areas many at a time, eight at once.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, u32x8};
+use fearless_simd::{i32x8, u32x8};
 use fearless_simd_macros::simd;
 
 use super::edge::{BITS, Edge, ONE};
+use super::ramp::eight_deltas;
 use crate::raster::bands::BAND_ROWS;
 
 /// Parts that fit in the queue.
@@ -148,7 +149,7 @@ impl Parts {
     #[simd]
     pub fn make<S: Simd>(simd: S, this: &mut Self, limit: i32) {
         let splat = |v: i32| i32x8::splat(simd, v);
-        let (zero, one, bit) = (splat(0), splat(ONE), splat(1));
+        let (zero, one) = (splat(0), splat(ONE));
         let (limit, below) = (splat(limit), splat(ONE - 1));
         let (one_bit, two_bits) = (u32x8::splat(simd, 1), u32x8::splat(simd, 3));
         let (none, all) = (u32x8::splat(simd, 0), u32x8::splat(simd, 63));
@@ -167,18 +168,7 @@ impl Parts {
             let across = x0.max(x1).max(zero).min(limit) - from;
             let a = from & below;
             let b = a + across;
-            // As in the ramps: the triangle beyond the border between the pixels, and the rest.
-            let over = simd.cvt_f32_i32x8((b - one).max(zero));
-            let half_inverse = f32x8::splat(simd, 0.5) / simd.cvt_f32_i32x8(across.max(bit));
-            let c2 = simd.cvt_i32_f32x8(over * over * half_inverse);
-            let c0 = (one + c2 - ((a + b) >> 1)).max(zero);
-            let is_whole = height.simd_eq(one);
-            let (u0, u2, h): (u32x8<S>, u32x8<S>, u32x8<S>) =
-                (c0.bitcast(), c2.bitcast(), height.bitcast());
-            let (s0, s2): (i32x8<S>, i32x8<S>) =
-                (((u0 * h) >> BITS).bitcast(), ((u2 * h) >> BITS).bitcast());
-            let (c0, c2) = (is_whole.select(c0, s0), is_whole.select(c2, s2));
-            let c1 = height - c0 - c2;
+            let [c0, c1, c2] = eight_deltas(simd, a, across, height);
             let up: i32x8<S> = (flags & one_bit).bitcast();
             let flip = zero - up;
             let column: u32x8<S> = (from >> BITS).bitcast();

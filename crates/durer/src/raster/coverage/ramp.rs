@@ -104,6 +104,30 @@ pub(super) fn narrow_deltas(a: i32, b: i32, height: i32) -> [i32; 3] {
     [d0, height - d0 - d2, d2]
 }
 
+/// [`narrow_deltas`] of eight parts at once, from `a` on and so far across; for a height of one [`steep_deltas`].
+#[inline(always)]
+pub(super) fn eight_deltas<S: Simd>(
+    simd: S,
+    a: i32x8<S>,
+    across: i32x8<S>,
+    height: i32x8<S>,
+) -> [i32x8<S>; 3] {
+    let (zero, bit, one) = (i32x8::splat(simd, 0), i32x8::splat(simd, 1), i32x8::splat(simd, ONE));
+    let b = a + across;
+    let over = simd.cvt_f32_i32x8((b - one).max(zero));
+    let half_inverse = f32x8::splat(simd, 0.5) / simd.cvt_f32_i32x8(across.max(bit));
+    let d2 = simd.cvt_i32_f32x8(over * over * half_inverse);
+    let d0 = (one + d2 - ((a + b) >> 1)).max(zero);
+    // Less than one times one, so 32 bits are enough.
+    let (u0, u2): (u32x8<S>, u32x8<S>) = (d0.bitcast(), d2.bitcast());
+    let part: u32x8<S> = height.bitcast();
+    let (part0, part2): (i32x8<S>, i32x8<S>) =
+        (((u0 * part) >> BITS).bitcast(), ((u2 * part) >> BITS).bitcast());
+    let is_whole = height.simd_eq(one);
+    let (d0, d2) = (is_whole.select(d0, part0), is_whole.select(d2, part2));
+    [d0, height - d0 - d2, d2]
+}
+
 /// What an edge covers of eight pixels.
 #[inline(always)]
 pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {

@@ -3,13 +3,13 @@
 //! The same integers as in [`super::cells`], added up almost without branches: a steep edge in eight rows at once, a flat
 //! one row by row, eight pixels at once.
 
+use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
 use fearless_simd_macros::simd;
 
 use super::FillRule;
 use super::edge::{BITS, Edge, ONE, Steps};
-use super::ramp::{Ramp, area};
+use super::ramp::{Ramp, area, eight_deltas};
 use super::sweep::{Sink, lanes};
 use crate::raster::bands::BAND_ROWS;
 
@@ -123,7 +123,7 @@ fn sweep<S: Simd, K: Sink<S>>(
 fn steep<S: Simd>(simd: S, rows: &mut [Row; AT_ONCE], edge: &Edge, steps: &Steps, row: i32) {
     let &Edge { x0, y0, x1, y1, .. } = edge;
     let splat = |v: i32| i32x8::splat(simd, v);
-    let (zero, one, below) = (splat(0), splat(ONE), splat(ONE - 1));
+    let (zero, one) = (splat(0), splat(ONE));
     // The row that it crosses in part before whole ones, and the one after those.
     let whole = (y0 + ONE - 1) >> BITS;
     let (head, tail) = (whole - 1, y1 >> BITS);
@@ -147,26 +147,10 @@ fn steep<S: Simd>(simd: S, rows: &mut [Row; AT_ONCE], edge: &Edge, steps: &Steps
     let across = is_tail.select(splat(tail_x.1), is_head.select(splat(head_x.1), across));
     let height = is_head.select(splat(head_height), is_whole.select(one, zero));
     let height = is_tail.select(splat(tail_height), height);
-    // As in the ramps: the triangle beyond the border between the pixels, and the rest.
-    let a = left & below;
-    let b = a + across;
-    let over = simd.cvt_f32_i32x8((b - one).max(zero));
-    let half_inverse = f32x8::splat(simd, 0.5) / simd.cvt_f32_i32x8(across.max(splat(1)));
-    let d2 = simd.cvt_i32_f32x8(over * over * half_inverse);
-    let d0 = (one + d2 - ((a + b) >> 1)).max(zero);
-    let (d0, d2) = (scaled(d0, height, is_whole), scaled(d2, height, is_whole));
-    let d1 = height - d0 - d2;
+    let [d0, d1, d2] = eight_deltas(simd, left & splat(ONE - 1), across, height);
     let flip = splat((edge.sign() - 1) >> 1);
     let deltas = [(d0 ^ flip) - flip, (d1 ^ flip) - flip, (d2 ^ flip) - flip];
     add(rows, left >> BITS, deltas);
-}
-
-/// Deltas of parts of rows.
-#[inline(always)]
-fn scaled<S: Simd>(delta: i32x8<S>, height: i32x8<S>, is_whole: mask32x8<S>) -> i32x8<S> {
-    let (d, h): (u32x8<S>, u32x8<S>) = (delta.bitcast(), height.bitcast());
-    let part: i32x8<S> = ((d * h) >> BITS).bitcast();
-    is_whole.select(delta, part)
 }
 
 /// The left one of two points moved into the row, and how far it is to the other.

@@ -59,3 +59,43 @@ fn convex_outlines_are_summed_with_and_without_marks_alike() {
     }
     assert!(simple > 400 && lit > 100_000, "{simple} {lit}");
 }
+
+#[test]
+fn edges_and_joints_do_not_depend_on_the_chunks_they_are_made_in() {
+    let mut seed = 5_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    let (size, mut edges, mut chained) = (DVec2::new(90.0, 70.0), 0, 0);
+    for round in 0..400 {
+        // Short and long steps, some on the grid, some beyond the target, and a few points that are none.
+        let step = [0.2, 0.8, 3.0, 40.0][round % 4];
+        let mut contours = Contours::new();
+        for _ in 0..1 + round % 3 {
+            let mut p = DVec2::new(random(), random()) * size;
+            let points: Vec<DVec2> = (0..1 + (random() * 60.0) as usize)
+                .map(|i| {
+                    p += (DVec2::new(random(), random()) - 0.5) * step;
+                    match i % 23 {
+                        7 if round % 5 == 0 => DVec2::new(f64::NAN, 1.0),
+                        11 => p.round(),
+                        _ => p,
+                    }
+                })
+                .collect();
+            contours.push(points, true);
+        }
+        let made = |points: usize| {
+            let (chunks, extent) = outline::chunks(&contours, size, false, points);
+            (chunks.into_iter().flat_map(|chunk| chunk.edges).collect::<Vec<_>>(), extent)
+        };
+        let all = made(1000);
+        for points in [1, 2, 3, 7, 20] {
+            assert_eq!(made(points), all, "round {round}, {points} points at once");
+        }
+        edges += all.0.len();
+        chained += all.0.iter().filter(|edge| edge.chained() != (false, false)).count();
+    }
+    assert!(edges > 10_000 && chained > 5_000, "{edges} {chained}");
+}

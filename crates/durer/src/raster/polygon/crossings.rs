@@ -12,7 +12,7 @@ use fearless_simd_macros::simd;
 
 use super::{is_inside, snapped_edges};
 use crate::curve::Contours;
-use crate::raster::bands::{BAND_ROWS, Chunk, Edges, FEW_EDGES, by_chunks};
+use crate::raster::bands::{BAND_ROWS, CHUNK, Chunk, Edges, FEW_EDGES, by_chunks};
 use crate::raster::coverage::FillRule;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
@@ -120,7 +120,7 @@ impl CrossingEdges {
             extent = add(contours, 0..count, height, list);
             Edges::from_list(list, first, rows)
         } else {
-            let made = by_chunks(contours, |range| {
+            let made = by_chunks(contours, CHUNK, |range| {
                 let mut edges = Vec::with_capacity(range.len());
                 let extent = add(contours, range, height, &mut edges);
                 (Chunk::new(edges, rows), extent)
