@@ -183,8 +183,8 @@ fn flat<S: Simd>(simd: S, cells: &mut Row, edge: &Edge, steps: &Steps, row: i32)
     let whole = (edge.y0 + ONE - 1) >> BITS;
     let (upper, lower) = (edge.y0.max(row << BITS), edge.y1.min((row + 1) << BITS));
     let x = |row: i32| (steps.at(row - whole) >> BITS) as i32;
-    let x0 = if upper == edge.y0 { edge.x0 } else { x(row) };
-    let x1 = if lower == edge.y1 { edge.x1 } else { x(row + 1) };
+    let x0 = if row == edge.y0 >> BITS { edge.x0 } else { x(row) };
+    let x1 = if row == edge.y1 >> BITS { edge.x1 } else { x(row + 1) };
     let ramp = Ramp::new(x0, x1, lower - upper, LIMIT);
     let zero = i32x8::splat(simd, 0);
     let flip = i32x8::splat(simd, (edge.sign() - 1) >> 1);
