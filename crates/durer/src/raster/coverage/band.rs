@@ -1,7 +1,7 @@
 //! One path in one band of rows: add its edges, resolve shared pixels, sum the rows.
 
+use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch};
 use fearless_simd_macros::simd;
 
 use super::FillRule;
@@ -15,6 +15,7 @@ use super::sweep::{Rows, Sink, alpha, sweep};
 use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::raster::bands::{BAND_ROWS, Edges};
+use crate::simd::default_level;
 
 /// Paths that are not wider have cells of their own, few enough for the first-level cache.
 const NARROW: u32 = 112;
@@ -205,7 +206,7 @@ impl BandFiller {
     /// pixel, 0 … 65,536.
     pub fn areas(&mut self, path: Path<'_>, top: i32, mut add: impl FnMut(i32, usize, i32)) {
         let width = self.width;
-        dispatch!(Level::new(), simd => Self::collect(simd, self, path, top, false));
+        dispatch!(default_level(), simd => Self::collect(simd, self, path, top, false));
         let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
         for row in rows.0..rows.1 {
             let (cells, marks) = cells.row(row, words);
