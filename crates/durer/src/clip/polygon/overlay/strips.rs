@@ -3,9 +3,11 @@
 //!
 //! In each strip, segments that span it and do not cross one another form a staircase; the others
 //! find the stairs they cross or hit by binary search, and go down into the two halves.
-//! O(n log² n + k) time for n segments and k crossings, O(n log n) memory.
+//! O(n log² n + k) time for n segments and k crossings, O(n log n) memory. On neighbours that come
+//! one after the other sorting and searching cost little, and O(n log n + k) is left.
 
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use super::lattice::{Coord, Height, Point, Segment, cross};
 use super::parallel;
@@ -16,14 +18,25 @@ const FEW: usize = 12;
 /// How many segments one task looks for on a staircase.
 const CLIMBS: usize = if cfg!(test) { 8 } else { 1 << 11 };
 
+/// Of how many segments, at most, the ends tell where a strip is halved.
+const SAMPLES: usize = 64;
+
+/// Pairs that cross, and where.
+type Found<C> = Vec<(u32, u32, Point<C>)>;
+
 /// The staircases of all strips.
 #[derive(Debug, Default)]
 pub struct Strips<C> {
     strips: Vec<Strip<C>>,
     /// Indices of segments: of each strip its stairs, from low to high, and of the last ones all.
     lists: Vec<u32>,
-    /// Pairs that cross, and where.
-    found: Vec<(u32, u32, Point<C>)>,
+    found: Found<C>,
+    /// Segments of the strips that are being worked on, those of each half behind the whole's.
+    open: Vec<u32>,
+    /// Segments that span the strip that is being worked on, and those of them that are stairs.
+    spanning: Vec<Stair>,
+    stairs: Vec<Stair>,
+    ends: Vec<C>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -42,9 +55,10 @@ impl<C: Coord> Strips<C> {
         self.strips.clear();
         self.lists.clear();
         self.found.clear();
+        self.open.clear();
+        self.open.extend(0..segments.len() as u32);
         // One column more on both sides: a crossing on the border may round into the leaf.
-        let all: Vec<u32> = (0..segments.len() as u32).collect();
-        self.strip(segments, left - 1, right + 1, all);
+        self.strip(segments, (left - 1, right + 1), 0);
     }
 
     /// All pairs that cross, with their pixels; some pairs more than once.
@@ -54,53 +68,49 @@ impl<C: Coord> Strips<C> {
         }
     }
 
-    /// To look for what passes through pixels.
-    pub fn finder<'a>(&'a self, segments: &'a [Segment<C>]) -> Finder<'a, C> {
-        Finder { strips: self, segments, below: vec![0; self.strips.len()] }
-    }
-
-    /// Works on the columns `left..=right`, that is from x = left − ½ to right + ½.
-    fn strip(&mut self, segments: &[Segment<C>], left: i64, right: i64, list: Vec<u32>) -> u32 {
+    /// Works on the columns `left..=right`, that is from x = left − ½ to right + ½, and the open
+    /// segments from `start` on.
+    fn strip(&mut self, segments: &[Segment<C>], (left, right): (i64, i64), start: usize) -> u32 {
         let index = self.strips.len();
         self.strips.push(Strip::default());
-        let columns = Columns::new(left, right);
-        let (stairs, rest) = if list.len() <= FEW {
-            (Vec::new(), list)
-        } else {
-            staircase(segments, columns, &list)
-        };
-        let found = parallel::map(rest.chunks(CLIMBS).collect(), |some: &[u32]| {
-            let mut climber = Climber { segments, columns, stairs: &stairs, below: (0, 0) };
-            let mut found = Vec::new();
-            some.iter().for_each(|&i| climber.climb(i, &mut found));
-            found
-        });
-        found.iter().for_each(|found| self.found.extend_from_slice(found));
-        let start = self.lists.len() as u32;
-        self.lists.extend(stairs.iter().map(|stair| stair.index));
-        self.strips[index].stairs = (start, self.lists.len() as u32);
-        if rest.len() <= FEW || left == right {
-            self.compare_all(segments, &rest);
-            let start = self.lists.len() as u32;
-            self.lists.extend_from_slice(&rest);
-            self.strips[index].rest = (start, self.lists.len() as u32);
+        if self.open.len() - start > FEW {
+            self.strips[index].stairs = self.staircase(&Bounds::new(segments, left, right), start);
+        }
+        let end = self.open.len();
+        if end - start <= FEW || left == right {
+            self.compare_all(segments, start);
+            let first = self.lists.len() as u32;
+            self.lists.extend_from_slice(&self.open[start..]);
+            self.strips[index].rest = (first, self.lists.len() as u32);
             return index as u32;
         }
-        let middle = middle(segments, left, right, &rest);
-        let part = |f: &dyn Fn(&Segment<C>) -> bool| {
-            rest.iter().copied().filter(|&i| f(&segments[i as usize])).collect::<Vec<u32>>()
-        };
-        let lower = part(&|s| s.a.x.i64() < middle);
-        let upper = part(&|s| s.b.x.i64() >= middle);
-        drop(rest);
-        let lower = self.strip(segments, left, middle - 1, lower);
-        let upper = self.strip(segments, middle, right, upper);
+        let middle = self.middle(segments, (left, right), start);
+        self.open_half(start..end, |i| segments[i as usize].a.x.i64() < middle);
+        let lower = self.strip(segments, (left, middle - 1), end);
+        self.open.truncate(end);
+        self.open_half(start..end, |i| segments[i as usize].b.x.i64() >= middle);
+        let upper = self.strip(segments, (middle, right), end);
+        self.open.truncate(end);
         self.strips[index].middle = C::from_i64(middle);
         self.strips[index].halves = Some((lower, upper));
         index as u32
     }
 
-    fn compare_all(&mut self, segments: &[Segment<C>], list: &[u32]) {
+    /// Opens those of some open segments that `keep` accepts.
+    fn open_half(&mut self, range: Range<usize>, keep: impl Fn(u32) -> bool) {
+        let mut end = self.open.len();
+        self.open.resize(end + range.len(), 0);
+        // Which half one belongs to is hard to foretell: no branch.
+        for k in range {
+            let i = self.open[k];
+            self.open[end] = i;
+            end += usize::from(keep(i));
+        }
+        self.open.truncate(end);
+    }
+
+    fn compare_all(&mut self, segments: &[Segment<C>], start: usize) {
+        let list = &self.open[start..];
         for (k, &j) in list.iter().enumerate() {
             for &i in &list[..k] {
                 if let Some(p) = segments[i as usize].crossing(&segments[j as usize]) {
@@ -109,99 +119,195 @@ impl<C: Coord> Strips<C> {
             }
         }
     }
-}
 
-/// Looks for the segments that pass through pixels; each search begins on a staircase where the
-/// one before ended.
-pub struct Finder<'a, C> {
-    strips: &'a Strips<C>,
-    segments: &'a [Segment<C>],
-    /// Of each strip how many stairs were below the last pixel.
-    below: Vec<u32>,
-}
-
-impl<C: Coord> Finder<'_, C> {
-    /// All segments that pass through a pixel, each once.
-    pub fn hits(&mut self, p: Point<C>, mut f: impl FnMut(usize)) {
-        let Strips { strips, lists, .. } = self.strips;
-        let segments = self.segments;
-        let list = |(a, b): (u32, u32)| &lists[a as usize..b as usize];
-        let mut index = 0;
-        loop {
-            let strip = &strips[index];
-            let stairs = list(strip.stairs);
-            let side = |i: &u32| segments[*i as usize].side_of_pixel(p);
-            let below = &mut self.below[index];
-            let start = partition_near(stairs, *below as usize, |i| side(i) == Ordering::Greater);
-            *below = start as u32;
-            let hit = stairs[start..].iter().take_while(|i| side(i) == Ordering::Equal);
-            for &i in hit {
-                // A stair's line hits; in its y range it is only where the segment itself goes.
-                if segments[i as usize].hits_pixel(p) {
-                    f(i as usize);
-                }
+    /// Makes the staircase of a strip: takes from the open segments those that span the strip and do
+    /// not cross one another in it, from low to high, and finds what the others cross there.
+    fn staircase(&mut self, bounds: &Bounds<C>, start: usize) -> (u32, u32) {
+        self.spanning.clear();
+        self.stairs.clear();
+        let mut rest = start;
+        for k in start..self.open.len() {
+            let i = self.open[k];
+            if bounds.are_spanned_by(i) {
+                self.spanning.push(bounds.stair(i));
+            } else {
+                self.open[rest] = i;
+                rest += 1;
             }
-            let Some((left, right)) = strip.halves else {
-                for &i in list(strip.rest) {
-                    if segments[i as usize].hits_pixel(p) {
-                        f(i as usize);
-                    }
+        }
+        self.open.truncate(rest);
+        parallel::sort(&mut self.spanning, |s, t| {
+            bounds
+                .compare(WEST, s, t)
+                .then_with(|| bounds.compare(EAST, s, t))
+                .then(s.index.cmp(&t.index))
+        });
+        for &stair in &self.spanning {
+            match self.stairs.last() {
+                Some(top) if bounds.compare(EAST, top, &stair).is_gt() => {
+                    self.open.push(stair.index)
                 }
-                return;
-            };
-            index = if p.x < strip.middle { left } else { right } as usize;
+                _ => self.stairs.push(stair),
+            }
+        }
+        self.climb(bounds, start);
+        let first = self.lists.len() as u32;
+        self.lists.extend(self.stairs.iter().map(|stair| stair.index));
+        (first, self.lists.len() as u32)
+    }
+
+    /// Finds the stairs that open segments cross.
+    fn climb(&mut self, bounds: &Bounds<C>, start: usize) {
+        let (stairs, rest) = (&self.stairs[..], &self.open[start..]);
+        if stairs.is_empty() {
+            return;
+        }
+        let climb = |some: &[u32], found: &mut Found<C>| {
+            let mut climber = Climber { bounds, stairs, below: (0, 0) };
+            some.iter().for_each(|&i| climber.climb(i, found));
+        };
+        if parallel::threads() == 1 || rest.len() <= CLIMBS {
+            return climb(rest, &mut self.found);
+        }
+        let found = parallel::map(rest.chunks(CLIMBS).collect(), |some| {
+            let mut found = Vec::new();
+            climb(some, &mut found);
+            found
+        });
+        found.iter().for_each(|found| self.found.extend_from_slice(found));
+    }
+
+    /// The median column of the ends within the strip, of many segments those of some, or the
+    /// strip's middle.
+    fn middle(&mut self, segments: &[Segment<C>], (left, right): (i64, i64), start: usize) -> i64 {
+        let list = &self.open[start..];
+        self.ends.clear();
+        // An odd step, for every second edge of a ring may end on one side.
+        for &i in list.iter().step_by(list.len() / SAMPLES | 1) {
+            let s = &segments[i as usize];
+            let within = |x: &C| left < x.i64() && x.i64() <= right;
+            self.ends.extend([s.a.x, s.b.x].iter().filter(|x| within(x)));
+        }
+        if self.ends.is_empty() {
+            return left + (right - left + 1) / 2;
+        }
+        let half = self.ends.len() / 2;
+        self.ends.select_nth_unstable(half).1.i64()
+    }
+
+    /// Calls `f` with each segment that passes through a pixel and what the pixel is listed with,
+    /// once for each; reorders the list.
+    ///
+    /// All pixels are looked for in one strip before they go down into its halves. Neighbours mostly
+    /// follow one another, so that each search begins where the one before ended.
+    pub fn hits<T: Copy>(
+        &self,
+        segments: &[Segment<C>],
+        pixels: &mut [(Point<C>, T)],
+        f: &mut impl FnMut(usize, T),
+    ) {
+        let mut right = Vec::with_capacity(pixels.len());
+        self.hits_in(0, segments, pixels, &mut right, f);
+    }
+
+    fn hits_in<T: Copy>(
+        &self,
+        strip: u32,
+        segments: &[Segment<C>],
+        pixels: &mut [(Point<C>, T)],
+        right: &mut Vec<(Point<C>, T)>,
+        f: &mut impl FnMut(usize, T),
+    ) {
+        let strip = &self.strips[strip as usize];
+        let list = |(a, b): (u32, u32)| &self.lists[a as usize..b as usize];
+        let stairs = list(strip.stairs);
+        let mut below = 0;
+        for &(p, what) in &*pixels {
+            let side = |i: &u32| segments[*i as usize].side_of_pixel(p);
+            below = partition_near(stairs, below, |i| side(i) == Ordering::Greater);
+            let hit = stairs[below..].iter().take_while(|i| side(i) == Ordering::Equal);
+            // A stair's line hits; in its y range it is only where the segment itself goes.
+            let hit = hit.filter(|i| segments[**i as usize].hits_pixel(p));
+            hit.for_each(|&i| f(i as usize, what));
+        }
+        let Some(halves) = strip.halves else {
+            let rest = list(strip.rest);
+            for &(p, what) in &*pixels {
+                let hit = rest.iter().filter(|i| segments[**i as usize].hits_pixel(p));
+                hit.for_each(|&i| f(i as usize, what));
+            }
+            return;
+        };
+        right.clear();
+        let mut left = 0;
+        for k in 0..pixels.len() {
+            let pixel = pixels[k];
+            if pixel.0.x < strip.middle {
+                pixels[left] = pixel;
+                left += 1;
+            } else {
+                right.push(pixel);
+            }
+        }
+        let (lower, upper) = pixels.split_at_mut(left);
+        upper.copy_from_slice(right);
+        for (half, pixels) in [(halves.0, lower), (halves.1, upper)] {
+            if !pixels.is_empty() {
+                self.hits_in(half, segments, pixels, right, f);
+            }
         }
     }
 }
 
-/// A strip's columns, and its borders in half columns.
-#[derive(Debug, Clone, Copy)]
-struct Columns {
+/// The borders of a strip, by their indices.
+const WEST: usize = 0;
+const EAST: usize = 1;
+
+/// A strip's columns, its borders in half columns, and the segments that are compared there.
+#[derive(Debug)]
+struct Bounds<'a, C> {
+    segments: &'a [Segment<C>],
     left: i64,
     right: i64,
-    west: i64,
-    east: i64,
+    borders: [i64; 2],
 }
 
 /// A segment that spans a strip, with its heights at the strip's borders.
 #[derive(Debug, Clone, Copy)]
 struct Stair {
     index: u32,
-    west: Height,
-    east: Height,
+    heights: [Height; 2],
 }
 
-impl Columns {
-    fn new(left: i64, right: i64) -> Self {
-        Self { left, right, west: 2 * left - 1, east: 2 * right + 1 }
+impl<'a, C: Coord> Bounds<'a, C> {
+    fn new(segments: &'a [Segment<C>], left: i64, right: i64) -> Self {
+        Self { segments, left, right, borders: [2 * left - 1, 2 * right + 1] }
     }
 
-    fn are_spanned_by<C: Coord>(&self, s: &Segment<C>) -> bool {
-        s.a.x.i64() < self.left && s.b.x.i64() > self.right
+    fn are_spanned_by(&self, index: u32) -> bool {
+        let s = &self.segments[index as usize];
+        (s.a.x.i64() < self.left) & (s.b.x.i64() > self.right)
     }
 
-    fn stair<C: Coord>(&self, segments: &[Segment<C>], index: u32) -> Stair {
-        let s = &segments[index as usize];
-        Stair { index, west: s.height_at(self.west), east: s.height_at(self.east) }
+    fn stair(&self, index: u32) -> Stair {
+        let s = &self.segments[index as usize];
+        Stair { index, heights: self.borders.map(|border| s.height_at(border)) }
     }
 
-    /// Compares at the western border, then at the eastern one, then by index.
+    /// The order of two segments at a border that both span.
     #[inline]
-    fn compare<C: Coord>(&self, segments: &[Segment<C>], s: &Stair, t: &Stair) -> Ordering {
-        let exactly = |border| {
-            segments[s.index as usize].compare_exactly(&segments[t.index as usize], border)
-        };
-        let at_west = s.west.compare(t.west).unwrap_or_else(|| exactly(self.west));
-        let at_east = || s.east.compare(t.east).unwrap_or_else(|| exactly(self.east));
-        at_west.then_with(at_east).then(s.index.cmp(&t.index))
+    fn compare(&self, border: usize, s: &Stair, t: &Stair) -> Ordering {
+        s.heights[border].compare(t.heights[border]).unwrap_or_else(|| {
+            let t = &self.segments[t.index as usize];
+            self.segments[s.index as usize].compare_exactly(t, self.borders[border])
+        })
     }
 }
 
 /// Looks for what segments cross on a staircase. Neighbours mostly follow one another, so each
 /// search begins where the one before ended.
 struct Climber<'a, C> {
-    segments: &'a [Segment<C>],
-    columns: Columns,
+    bounds: &'a Bounds<'a, C>,
     stairs: &'a [Stair],
     /// How many stairs were below the start and the end of the last segment.
     below: (usize, usize),
@@ -209,11 +315,9 @@ struct Climber<'a, C> {
 
 impl<C: Coord> Climber<'_, C> {
     /// Finds the stairs that a segment crosses within the strip.
-    fn climb(&mut self, index: u32, found: &mut Vec<(u32, u32, Point<C>)>) {
-        if self.stairs.is_empty() {
-            return;
-        }
-        let Self { segments, columns, stairs, below } = self;
+    fn climb(&mut self, index: u32, found: &mut Found<C>) {
+        let Self { bounds, stairs, below } = self;
+        let segments = bounds.segments;
         let s = &segments[index as usize];
         let under = |end: Point<C>, guess: usize| {
             partition_near(stairs, guess, |stair| {
@@ -221,23 +325,19 @@ impl<C: Coord> Climber<'_, C> {
                 cross(stair.a, stair.b, end) > C::Wide::default()
             })
         };
-        let under_border = |border: i64, guess: usize, at: fn(&Stair) -> Height| {
-            let height = s.height_at(border);
-            partition_near(stairs, guess, |stair| {
-                let order = at(stair).compare(height);
-                let stair = &segments[stair.index as usize];
-                order.unwrap_or_else(|| stair.compare_exactly(s, border)) == Ordering::Less
-            })
+        let under_border = |border: usize, guess: usize| {
+            let mut heights = [Height::default(); 2];
+            heights[border] = s.height_at(bounds.borders[border]);
+            let here = Stair { index, heights };
+            partition_near(stairs, guess, |stair| bounds.compare(border, stair, &here).is_lt())
         };
-        let start = if s.a.x.i64() >= columns.left {
-            under(s.a, below.0)
-        } else {
-            under_border(columns.west, below.0, |stair| stair.west)
+        let start = match s.a.x.i64() >= bounds.left {
+            true => under(s.a, below.0),
+            false => under_border(WEST, below.0),
         };
-        let end = if s.b.x.i64() <= columns.right {
-            under(s.b, below.1)
-        } else {
-            under_border(columns.east, below.1, |stair| stair.east)
+        let end = match s.b.x.i64() <= bounds.right {
+            true => under(s.b, below.1),
+            false => under_border(EAST, below.1),
         };
         *below = (start, end);
         for stair in &stairs[start.min(end)..start.max(end)] {
@@ -270,52 +370,6 @@ fn partition_near<T>(list: &[T], guess: usize, mut before: impl FnMut(&T) -> boo
         step *= 2;
     }
     low + list[low..high.max(low)].partition_point(before)
-}
-
-/// Splits off segments that span the strip and do not cross one another in it, from low to high.
-fn staircase<C: Coord>(
-    segments: &[Segment<C>],
-    columns: Columns,
-    list: &[u32],
-) -> (Vec<Stair>, Vec<u32>) {
-    let mut spanning = Vec::new();
-    let mut rest = Vec::new();
-    for &i in list {
-        if columns.are_spanned_by(&segments[i as usize]) {
-            spanning.push(columns.stair(segments, i));
-        } else {
-            rest.push(i);
-        }
-    }
-    parallel::sort(&mut spanning, |s, t| columns.compare(segments, s, t));
-    let mut stairs: Vec<Stair> = Vec::with_capacity(spanning.len());
-    for stair in spanning {
-        let above = |top: &Stair| {
-            top.east.compare(stair.east).unwrap_or_else(|| {
-                let other = &segments[stair.index as usize];
-                segments[top.index as usize].compare_exactly(other, columns.east)
-            })
-        };
-        match stairs.last() {
-            Some(top) if above(top) == Ordering::Greater => rest.push(stair.index),
-            _ => stairs.push(stair),
-        }
-    }
-    (stairs, rest)
-}
-
-/// The median column of the ends within the strip, or its middle.
-fn middle<C: Coord>(segments: &[Segment<C>], left: i64, right: i64, list: &[u32]) -> i64 {
-    let ends = list.iter().flat_map(|&i| {
-        let s = &segments[i as usize];
-        [s.a.x.i64(), s.b.x.i64()]
-    });
-    let mut ends: Vec<i64> = ends.filter(|&x| left < x && x <= right).collect();
-    if ends.is_empty() {
-        return left + (right - left + 1) / 2;
-    }
-    let half = ends.len() / 2;
-    *ends.select_nth_unstable(half).1
 }
 
 #[cfg(test)]
@@ -364,13 +418,14 @@ mod tests {
                 list.dedup();
             }
             assert_eq!(found, expected);
-            let mut finder = strips.finder(&segments);
+            let mut pixels: Vec<_> = expected.iter().take(500).map(|&p| (p, p)).collect();
+            let mut hits = Vec::new();
+            strips.hits(&segments, &mut pixels, &mut |i, p| hits.push((p, i)));
+            hits.sort_unstable();
             for &p in expected.iter().take(500) {
-                let mut hits = Vec::new();
-                finder.hits(p, |i| hits.push(i));
-                hits.sort_unstable();
+                let hits = hits.iter().filter(|hit| hit.0 == p).map(|hit| hit.1);
                 let all = (0..segments.len()).filter(|&i| segments[i].hits_pixel(p));
-                assert_eq!(hits, all.collect::<Vec<_>>());
+                assert!(hits.eq(all));
             }
         }
     }
