@@ -297,15 +297,15 @@ impl<C: Coord> Workbench<C> {
         // In the order of the segments that end there, for those mostly follow one another.
         list.sort_by_key(|&(_, k)| pixels[k as usize].1);
         if parallel::threads() == 1 || list.len() <= SEARCHES {
-            strips.hits(segments, &mut list, &mut |i, k| {
+            strips.hits(segments, &list, |i, k| {
                 part.hits[items[i] as usize / SHELF].push((items[i], first + k));
                 self.pixels[k as usize].1.count();
             });
             return;
         }
-        let hits = parallel::map(list.chunks_mut(SEARCHES).collect(), |some| {
+        let hits = parallel::map(list.chunks(SEARCHES).collect(), |some| {
             let mut hits = Vec::new();
-            strips.hits(segments, some, &mut |i, k| hits.push((i, k)));
+            strips.hits(segments, some, |i, k| hits.push((i, k)));
             hits
         });
         for (i, k) in hits.into_iter().flatten() {

@@ -2,9 +2,10 @@
 //! (*An optimal algorithm for finding segments intersections*, 1995, the simpler form).
 //!
 //! In each strip, segments that span it and do not cross one another form a staircase; the others
-//! find the stairs they cross or hit by binary search, and go down into the two halves.
-//! O(n log² n + k) time for n segments and k crossings, O(n log n) memory. On neighbours that come
-//! one after the other sorting and searching cost little, and O(n log n + k) is left.
+//! find the stairs they cross or hit by binary search. Stairs divide the others into groups, each
+//! between two of them, and each group goes down into its own two halves of the strip. So neighbours
+//! that run side by side come apart at once, and what is left of each level is small.
+//! O(n log² n + k) time for n segments and k crossings, O(n log n + k) memory.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -14,6 +15,9 @@ use super::parallel;
 
 /// Strips with no more segments than this are not halved.
 const FEW: usize = 12;
+
+/// About how many segments are in a group, if stairs keep them apart.
+const GROUP: usize = if cfg!(test) { 4 } else { 48 };
 
 /// How many segments one task looks for on a staircase.
 const CLIMBS: usize = if cfg!(test) { 8 } else { 1 << 11 };
@@ -27,12 +31,18 @@ type Found<C> = Vec<(u32, u32, Point<C>)>;
 /// The staircases of all strips.
 #[derive(Debug, Default)]
 pub struct Strips<C> {
-    strips: Vec<Strip<C>>,
-    /// Indices of segments: of each strip its stairs, from low to high, and of the last ones all.
+    strips: Vec<Strip>,
+    groups: Vec<Group<C>>,
+    /// Indices of segments: of each strip its stairs, from low to high, and of each group that is not
+    /// halved all.
     lists: Vec<u32>,
     found: Found<C>,
-    /// Segments of the strips that are being worked on, those of each half behind the whole's.
+    /// Segments of the strips that are being worked on, those of a part behind the whole's.
     open: Vec<u32>,
+    /// Of the open segments of a strip the lowest and the highest place on its staircase.
+    places: Vec<(u32, u32)>,
+    /// Of each place on a staircase its group.
+    group_of: Vec<u32>,
     /// Segments that span the strip that is being worked on, and those of them that are stairs.
     spanning: Vec<Stair>,
     stairs: Vec<Stair>,
@@ -40,19 +50,54 @@ pub struct Strips<C> {
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Strip<C> {
+struct Strip {
     stairs: (u32, u32),
+    /// From low to high, at least one.
+    groups: (u32, u32),
+}
+
+/// What is not on a staircase, between two of its stairs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group<C> {
+    /// Places on the staircase below this belong to the group or to those before: above so many
+    /// stairs.
+    end: u32,
     /// Columns from `middle` on belong to the right half.
     middle: C,
     halves: Option<(u32, u32)>,
-    /// The rest, compared one by one, where there are no halves.
+    /// Its segments, compared one by one, where there are no halves.
     rest: (u32, u32),
+}
+
+/// A pixel on its way down.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pixel<C> {
+    at: Point<C>,
+    name: u32,
+    /// Whether it went into two groups, so that what hits it may be found twice.
+    twice: bool,
+}
+
+/// What looks for pixels works with.
+struct Finder<'a, C, F> {
+    strips: &'a Strips<C>,
+    segments: &'a [Segment<C>],
+    /// Pixels of the strips that are being worked on, those of a part behind the whole's.
+    open: Vec<Pixel<C>>,
+    /// Of the pixels of a strip the first and the last group.
+    groups: Vec<(u32, u32)>,
+    /// Where the open pixels of each group start, those of a part behind the whole's.
+    starts: Vec<usize>,
+    /// What may have been found twice.
+    twice: Vec<(u32, u32)>,
+    found: F,
 }
 
 impl<C: Coord> Strips<C> {
     /// Divides the columns `left..=right` of pixels.
     pub fn build(&mut self, segments: &[Segment<C>], left: i64, right: i64) {
         self.strips.clear();
+        self.groups.clear();
         self.lists.clear();
         self.found.clear();
         self.open.clear();
@@ -70,19 +115,90 @@ impl<C: Coord> Strips<C> {
 
     /// Works on the columns `left..=right`, that is from x = left − ½ to right + ½, and the open
     /// segments from `start` on.
-    fn strip(&mut self, segments: &[Segment<C>], (left, right): (i64, i64), start: usize) -> u32 {
+    fn strip(&mut self, segments: &[Segment<C>], columns: (i64, i64), start: usize) -> u32 {
         let index = self.strips.len();
         self.strips.push(Strip::default());
+        let mut stairs = (0, 0);
         if self.open.len() - start > FEW {
-            self.strips[index].stairs = self.staircase(&Bounds::new(segments, left, right), start);
+            stairs = self.staircase(&Bounds::new(segments, columns), start);
         }
+        let (first, end) = (self.groups.len(), self.open.len());
+        self.divide(start, stairs.1 - stairs.0);
+        self.strips[index] = Strip { stairs, groups: (first as u32, self.groups.len() as u32) };
+        for group in (first..self.groups.len()).rev() {
+            let (start, end) = self.groups[group].rest;
+            self.open.truncate(end as usize);
+            self.group(group, segments, columns, start as usize);
+        }
+        self.open.truncate(end);
+        index as u32
+    }
+
+    /// Divides open segments into groups, which lie behind them if there are several.
+    fn divide(&mut self, start: usize, stairs: u32) {
+        let end = self.open.len();
+        let count = end - start;
+        let first = self.groups.len();
+        let whole = Group { end: u32::MAX, rest: (start as u32, end as u32), ..Group::default() };
+        if stairs == 0 || count < 2 * GROUP {
+            return self.groups.push(whole);
+        }
+        self.group_of.clear();
+        self.group_of.resize(stairs as usize + 1, 0);
+        self.places.iter().for_each(|&(low, _)| self.group_of[low as usize] += 1);
+        let (mut load, mut group) = (0, 0);
+        for (place, load_or_group) in (1..).zip(&mut self.group_of) {
+            load += std::mem::replace(load_or_group, group);
+            if load as usize >= GROUP {
+                self.groups.push(Group { end: place, ..Group::default() });
+                (load, group) = (0, group + 1);
+            }
+        }
+        self.groups.push(whole);
+        let groups = |(low, high): (u32, u32)| {
+            let [low, high] = [low, high].map(|place| self.group_of[place as usize] as usize);
+            first + low..first + high + 1
+        };
+        let copies: usize = self.places.iter().map(|&places| groups(places).len()).sum();
+        // What crosses many stairs would be in many groups.
+        if copies > 2 * count {
+            self.groups.truncate(first);
+            return self.groups.push(whole);
+        }
+        self.groups[first..].iter_mut().for_each(|group| group.rest = (0, 0));
+        for &places in &self.places {
+            self.groups[groups(places)].iter_mut().for_each(|group| group.rest.1 += 1);
+        }
+        let mut place = end as u32;
+        for group in &mut self.groups[first..] {
+            let count = group.rest.1;
+            group.rest = (place, place);
+            place += count;
+        }
+        self.open.resize(end + copies, 0);
+        for (k, &places) in (start..).zip(&self.places) {
+            for group in &mut self.groups[groups(places)] {
+                self.open[group.rest.1 as usize] = self.open[k];
+                group.rest.1 += 1;
+            }
+        }
+    }
+
+    /// Works on a group, whose open segments are those from `start` on.
+    fn group(
+        &mut self,
+        group: usize,
+        segments: &[Segment<C>],
+        (left, right): (i64, i64),
+        start: usize,
+    ) {
         let end = self.open.len();
         if end - start <= FEW || left == right {
             self.compare_all(segments, start);
             let first = self.lists.len() as u32;
             self.lists.extend_from_slice(&self.open[start..]);
-            self.strips[index].rest = (first, self.lists.len() as u32);
-            return index as u32;
+            self.groups[group].rest = (first, self.lists.len() as u32);
+            return;
         }
         let middle = self.middle(segments, (left, right), start);
         self.open_half(start..end, |i| segments[i as usize].a.x.i64() < middle);
@@ -91,9 +207,8 @@ impl<C: Coord> Strips<C> {
         self.open_half(start..end, |i| segments[i as usize].b.x.i64() >= middle);
         let upper = self.strip(segments, (middle, right), end);
         self.open.truncate(end);
-        self.strips[index].middle = C::from_i64(middle);
-        self.strips[index].halves = Some((lower, upper));
-        index as u32
+        self.groups[group].middle = C::from_i64(middle);
+        self.groups[group].halves = Some((lower, upper));
     }
 
     /// Opens those of some open segments that `keep` accepts.
@@ -144,9 +259,7 @@ impl<C: Coord> Strips<C> {
         });
         for &stair in &self.spanning {
             match self.stairs.last() {
-                Some(top) if bounds.compare(EAST, top, &stair).is_gt() => {
-                    self.open.push(stair.index)
-                }
+                Some(top) if bounds.crosses(top, &stair) => self.open.push(stair.index),
                 _ => self.stairs.push(stair),
             }
         }
@@ -156,22 +269,25 @@ impl<C: Coord> Strips<C> {
         (first, self.lists.len() as u32)
     }
 
-    /// Finds the stairs that open segments cross.
+    /// Finds the stairs that open segments cross, and their places on the staircase.
     fn climb(&mut self, bounds: &Bounds<C>, start: usize) {
         let (stairs, rest) = (&self.stairs[..], &self.open[start..]);
         if stairs.is_empty() {
             return;
         }
-        let climb = |some: &[u32], found: &mut Found<C>| {
+        self.places.clear();
+        self.places.resize(rest.len(), (0, 0));
+        let climb = |some: &[u32], places: &mut [(u32, u32)], found: &mut Found<C>| {
             let mut climber = Climber { bounds, stairs, below: (0, 0) };
-            some.iter().for_each(|&i| climber.climb(i, found));
+            some.iter().zip(places).for_each(|(&i, place)| *place = climber.climb(i, found));
         };
         if parallel::threads() == 1 || rest.len() <= CLIMBS {
-            return climb(rest, &mut self.found);
+            return climb(rest, &mut self.places, &mut self.found);
         }
-        let found = parallel::map(rest.chunks(CLIMBS).collect(), |some| {
+        let tasks = rest.chunks(CLIMBS).zip(self.places.chunks_mut(CLIMBS));
+        let found = parallel::map(tasks.collect(), |(some, places)| {
             let mut found = Vec::new();
-            climb(some, &mut found);
+            climb(some, places, &mut found);
             found
         });
         found.iter().for_each(|found| self.found.extend_from_slice(found));
@@ -195,66 +311,134 @@ impl<C: Coord> Strips<C> {
         self.ends.select_nth_unstable(half).1.i64()
     }
 
-    /// Calls `f` with each segment that passes through a pixel and what the pixel is listed with,
-    /// once for each; reorders the list.
-    ///
-    /// All pixels are looked for in one strip before they go down into its halves. Neighbours mostly
-    /// follow one another, so that each search begins where the one before ended.
-    pub fn hits<T: Copy>(
+    /// Calls `f` with each segment that passes through a pixel and the pixel's name, once for each.
+    pub fn hits(
         &self,
         segments: &[Segment<C>],
-        pixels: &mut [(Point<C>, T)],
-        f: &mut impl FnMut(usize, T),
+        pixels: &[(Point<C>, u32)],
+        f: impl FnMut(usize, u32),
     ) {
-        let mut right = Vec::with_capacity(pixels.len());
-        self.hits_in(0, segments, pixels, &mut right, f);
+        let pixel = |&(at, name): &(Point<C>, u32)| Pixel { at, name, twice: false };
+        let mut finder = Finder {
+            strips: self,
+            segments,
+            open: pixels.iter().map(pixel).collect(),
+            groups: Vec::new(),
+            starts: Vec::new(),
+            twice: Vec::new(),
+            found: f,
+        };
+        finder.strip(0, 0);
+        finder.twice.sort_unstable();
+        finder.twice.dedup();
+        let Finder { twice, mut found, .. } = finder;
+        twice.iter().for_each(|&(i, name)| found(i as usize, name));
+    }
+}
+
+impl<C: Coord, F: FnMut(usize, u32)> Finder<'_, C, F> {
+    /// Looks for the open pixels from `start` on in one strip, then in its groups. Neighbours mostly
+    /// follow one another, so that each search begins where the one before ended.
+    fn strip(&mut self, index: u32, start: usize) {
+        let Strip { stairs, groups } = self.strips.strips[index as usize];
+        self.stairs(stairs, groups, start);
+        if groups.1 - groups.0 == 1 {
+            return self.group(groups.0, start);
+        }
+        let end = self.open.len();
+        self.divide((groups.1 - groups.0) as usize, start);
+        for group in (groups.0..groups.1).rev() {
+            let start = self.starts.pop().unwrap_or(end);
+            self.group(group, start);
+            self.open.truncate(start);
+        }
     }
 
-    fn hits_in<T: Copy>(
-        &self,
-        strip: u32,
-        segments: &[Segment<C>],
-        pixels: &mut [(Point<C>, T)],
-        right: &mut Vec<(Point<C>, T)>,
-        f: &mut impl FnMut(usize, T),
-    ) {
-        let strip = &self.strips[strip as usize];
-        let list = |(a, b): (u32, u32)| &self.lists[a as usize..b as usize];
-        let stairs = list(strip.stairs);
-        let mut below = 0;
-        for &(p, what) in &*pixels {
-            let side = |i: &u32| segments[*i as usize].side_of_pixel(p);
-            below = partition_near(stairs, below, |i| side(i) == Ordering::Greater);
-            let hit = stairs[below..].iter().take_while(|i| side(i) == Ordering::Equal);
-            // A stair's line hits; in its y range it is only where the segment itself goes.
-            let hit = hit.filter(|i| segments[**i as usize].hits_pixel(p));
-            hit.for_each(|&i| f(i as usize, what));
+    /// Lists the pixels of each group behind the open ones, group by group.
+    fn divide(&mut self, groups: usize, start: usize) {
+        let (end, base) = (self.open.len(), self.starts.len());
+        self.starts.resize(base + groups, 0);
+        let starts = &mut self.starts[base..];
+        for &(first, last) in &self.groups {
+            starts[first as usize..=last as usize].iter_mut().for_each(|count| *count += 1);
         }
-        let Some(halves) = strip.halves else {
-            let rest = list(strip.rest);
-            for &(p, what) in &*pixels {
-                let hit = rest.iter().filter(|i| segments[**i as usize].hits_pixel(p));
-                hit.for_each(|&i| f(i as usize, what));
+        let mut place = end;
+        for start in starts.iter_mut() {
+            place += *start;
+            *start = place;
+        }
+        self.open.resize(place, Pixel::default());
+        // From the end of each list, so that afterwards its start is at hand.
+        for (k, &(first, last)) in (start..end).zip(&self.groups).rev() {
+            for start in &mut starts[first as usize..=last as usize] {
+                *start -= 1;
+                self.open[*start] = self.open[k];
+            }
+        }
+    }
+
+    /// Looks for the open pixels from `start` on in a group.
+    fn group(&mut self, index: u32, start: usize) {
+        let end = self.open.len();
+        let Group { middle, halves, rest, .. } = self.strips.groups[index as usize];
+        let Some((lower, upper)) = halves else {
+            for k in start..end {
+                for &i in &self.strips.lists[rest.0 as usize..rest.1 as usize] {
+                    if self.segments[i as usize].hits_pixel(self.open[k].at) {
+                        self.tell(i, k);
+                    }
+                }
             }
             return;
         };
-        right.clear();
-        let mut left = 0;
-        for k in 0..pixels.len() {
-            let pixel = pixels[k];
-            if pixel.0.x < strip.middle {
-                pixels[left] = pixel;
-                left += 1;
-            } else {
-                right.push(pixel);
+        for (half, is_lower) in [(lower, true), (upper, false)] {
+            for k in start..end {
+                let pixel = self.open[k];
+                if (pixel.at.x < middle) == is_lower {
+                    self.open.push(pixel);
+                }
+            }
+            if self.open.len() > end {
+                self.strip(half, end);
+                self.open.truncate(end);
             }
         }
-        let (lower, upper) = pixels.split_at_mut(left);
-        upper.copy_from_slice(right);
-        for (half, pixels) in [(halves.0, lower), (halves.1, upper)] {
-            if !pixels.is_empty() {
-                self.hits_in(half, segments, pixels, right, f);
+    }
+
+    /// Finds the stairs that pass through pixels, and the groups that these lie in.
+    fn stairs(&mut self, stairs: (u32, u32), groups: (u32, u32), start: usize) {
+        let stairs = &self.strips.lists[stairs.0 as usize..stairs.1 as usize];
+        let groups = &self.strips.groups[groups.0 as usize..groups.1 as usize];
+        let (mut below, mut first) = (0, 0);
+        self.groups.clear();
+        for k in start..self.open.len() {
+            let Pixel { at, .. } = self.open[k];
+            let side = |i: &u32| self.segments[*i as usize].side_of_pixel(at);
+            below = partition_near(stairs, below, |i| side(i) == Ordering::Greater);
+            let mut above = below;
+            while above < stairs.len() && side(&stairs[above]) == Ordering::Equal {
+                // A stair's line hits; in its y range it is only where the segment itself goes.
+                if self.segments[stairs[above] as usize].hits_pixel(at) {
+                    self.tell(stairs[above], k);
+                }
+                above += 1;
             }
+            if groups.len() > 1 {
+                first = partition_near(groups, first, |group| group.end as usize <= below);
+                let count = groups[first..].iter().position(|group| above < group.end as usize);
+                let last = first + count.unwrap_or(0);
+                self.groups.push((first as u32, last as u32));
+                self.open[k].twice |= last > first;
+            }
+        }
+    }
+
+    fn tell(&mut self, segment: u32, pixel: usize) {
+        let Pixel { name, twice, .. } = self.open[pixel];
+        if twice {
+            self.twice.push((segment, name));
+        } else {
+            (self.found)(segment as usize, name);
         }
     }
 }
@@ -280,7 +464,7 @@ struct Stair {
 }
 
 impl<'a, C: Coord> Bounds<'a, C> {
-    fn new(segments: &'a [Segment<C>], left: i64, right: i64) -> Self {
+    fn new(segments: &'a [Segment<C>], (left, right): (i64, i64)) -> Self {
         Self { segments, left, right, borders: [2 * left - 1, 2 * right + 1] }
     }
 
@@ -292,6 +476,14 @@ impl<'a, C: Coord> Bounds<'a, C> {
     fn stair(&self, index: u32) -> Stair {
         let s = &self.segments[index as usize];
         Stair { index, heights: self.borders.map(|border| s.height_at(border)) }
+    }
+
+    /// Whether two segments that span the strip, of which the first is not higher in the west, cross
+    /// in it. What they do on the eastern border belongs to it: both come that far, and in the next
+    /// strip neither would be above the other.
+    fn crosses(&self, s: &Stair, t: &Stair) -> bool {
+        let order = self.compare(EAST, s, t);
+        order.is_gt() || (order.is_eq() && self.compare(WEST, s, t).is_lt())
     }
 
     /// The order of two segments at a border that both span.
@@ -314,8 +506,9 @@ struct Climber<'a, C> {
 }
 
 impl<C: Coord> Climber<'_, C> {
-    /// Finds the stairs that a segment crosses within the strip.
-    fn climb(&mut self, index: u32, found: &mut Found<C>) {
+    /// Finds the stairs that a segment crosses within the strip. Gives its lowest and highest place:
+    /// how many stairs are below.
+    fn climb(&mut self, index: u32, found: &mut Found<C>) -> (u32, u32) {
         let Self { bounds, stairs, below } = self;
         let segments = bounds.segments;
         let s = &segments[index as usize];
@@ -325,26 +518,34 @@ impl<C: Coord> Climber<'_, C> {
                 cross(stair.a, stair.b, end) > C::Wide::default()
             })
         };
-        let under_border = |border: usize, guess: usize| {
+        let at = |border: usize| {
             let mut heights = [Height::default(); 2];
             heights[border] = s.height_at(bounds.borders[border]);
-            let here = Stair { index, heights };
-            partition_near(stairs, guess, |stair| bounds.compare(border, stair, &here).is_lt())
+            Stair { index, heights }
         };
-        let start = match s.a.x.i64() >= bounds.left {
-            true => under(s.a, below.0),
-            false => under_border(WEST, below.0),
+        let start = if s.a.x.i64() >= bounds.left {
+            under(s.a, below.0)
+        } else {
+            let west = at(WEST);
+            partition_near(stairs, below.0, |stair| bounds.compare(WEST, stair, &west).is_lt())
         };
-        let end = match s.b.x.i64() <= bounds.right {
-            true => under(s.b, below.1),
-            false => under_border(EAST, below.1),
+        let (end, met) = if s.b.x.i64() <= bounds.right {
+            (under(s.b, below.1), 0)
+        } else {
+            let east = at(EAST);
+            let order = |stair: &Stair| bounds.compare(EAST, stair, &east);
+            let end = partition_near(stairs, below.1, |stair| order(stair).is_lt());
+            // What is met on the eastern border is crossed there: see `Bounds::crosses`.
+            (end, stairs[end..].iter().take_while(|stair| order(stair).is_eq()).count())
         };
         *below = (start, end);
-        for stair in &stairs[start.min(end)..start.max(end)] {
+        let (low, high) = (start.min(end), start.max(end + met));
+        for stair in &stairs[low..high] {
             if let Some(p) = segments[stair.index as usize].crossing(s) {
                 found.push((stair.index, index, p));
             }
         }
+        (low as u32, high as u32)
     }
 }
 
@@ -394,12 +595,16 @@ mod tests {
 
     #[test]
     fn strips_find_what_all_pairs_find() {
-        for (round, limit) in [(1u64, 40), (2, 300), (3, 1 << 28)] {
+        // On tiny grids many cross just where two strips meet.
+        let tiny = (4..60).map(|round| (round, 16, 60));
+        for (round, limit, count) in
+            [(1u64, 40, 400), (2, 300, 400), (3, 1 << 28, 400)].into_iter().chain(tiny)
+        {
             let mut seed = round;
             let mut point = |near: i64| {
                 Point::<i32>::new(near + spread(&mut seed, limit / 4), spread(&mut seed, limit))
             };
-            let segments: Vec<Segment<i32>> = (0..400)
+            let segments: Vec<Segment<i32>> = (0..count)
                 .map(|i| {
                     let (a, b) = (point(0), point(if i % 3 == 0 { 0 } else { 3 * limit / 4 }));
                     if a < b { Segment { a, b } } else { Segment { a: b, b: a } }
@@ -409,21 +614,22 @@ mod tests {
             let mut strips = Strips::default();
             strips.build(&segments, 0, limit);
             let mut found = Vec::new();
-            strips.crossings(|_, _, p| found.push(p));
+            strips.crossings(|i, j, p| found.push((i.min(j), i.max(j), p)));
             let pairs = (0..segments.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-            let mut expected: Vec<_> =
-                pairs.filter_map(|(i, j)| segments[i].crossing(&segments[j])).collect();
+            let crossing =
+                |(i, j): (usize, usize)| Some((i, j, segments[i].crossing(&segments[j])?));
+            let mut expected: Vec<_> = pairs.filter_map(crossing).collect();
             for list in [&mut found, &mut expected] {
                 list.sort_unstable();
                 list.dedup();
             }
             assert_eq!(found, expected);
-            let mut pixels: Vec<_> = expected.iter().take(500).map(|&p| (p, p)).collect();
+            let pixels: Vec<_> = expected.iter().map(|pair| pair.2).zip(0..500).collect();
             let mut hits = Vec::new();
-            strips.hits(&segments, &mut pixels, &mut |i, p| hits.push((p, i)));
+            strips.hits(&segments, &pixels, |i, k| hits.push((k, i)));
             hits.sort_unstable();
-            for &p in expected.iter().take(500) {
-                let hits = hits.iter().filter(|hit| hit.0 == p).map(|hit| hit.1);
+            for &(p, k) in &pixels {
+                let hits = hits.iter().filter(|hit| hit.0 == k).map(|hit| hit.1);
                 let all = (0..segments.len()).filter(|&i| segments[i].hits_pixel(p));
                 assert!(hits.eq(all));
             }
