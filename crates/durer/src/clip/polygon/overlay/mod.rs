@@ -494,7 +494,7 @@ impl<P: Vertex> Job<'_, P> {
             rings.order.iter().for_each(|&ring| points.extend(rings.ring(ring).iter().map(point)));
             points
         } else {
-            let mut points = vec![P::default(); end];
+            let mut points = parallel::filled(P::default(), end);
             let ends: Vec<u32> =
                 ring_ends.chunks(TASK).filter_map(|some| Some(*some.last()? as u32)).collect();
             let tasks = parallel::cut(&mut points, &ends).into_iter();

@@ -17,7 +17,7 @@ use super::parallel;
 const FEW: usize = 12;
 
 /// About how many segments are in a group, if stairs keep them apart.
-const GROUP: usize = if cfg!(test) { 4 } else { 48 };
+const GROUP: usize = if cfg!(test) { 4 } else { 24 };
 
 /// How many segments one task looks for on a staircase.
 const CLIMBS: usize = if cfg!(test) { 8 } else { 1 << 11 };
