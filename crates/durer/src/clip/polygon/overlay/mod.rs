@@ -13,7 +13,7 @@
 //! borders is joined afterwards in a fixed order: the result does not depend on their number. In
 //! tests the patches are tiny.
 //!
-//! It takes 130 to 190 bytes per edge beside the input, the result included. There is no mode that
+//! It takes 130 to 210 bytes per edge beside the input, the result included. There is no mode that
 //! does without hot pixels: they cost less than a tenth of the time, and without them the graph is
 //! not planar, so that windings would be wrong far from the place.
 

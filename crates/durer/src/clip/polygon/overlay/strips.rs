@@ -299,7 +299,7 @@ impl<C: Coord> Strips<C> {
         let list = &self.open[start..];
         self.ends.clear();
         // An odd step, for every second edge of a ring may end on one side.
-        for &i in list.iter().step_by(list.len() / SAMPLES | 1) {
+        for &i in list.iter().step_by((list.len() / SAMPLES) | 1) {
             let s = &segments[i as usize];
             let within = |x: &C| left < x.i64() && x.i64() <= right;
             self.ends.extend([s.a.x, s.b.x].iter().filter(|x| within(x)));
