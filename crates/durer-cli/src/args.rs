@@ -340,6 +340,9 @@ pub struct RunningArgs {
     /// Work on so many threads [default: as many as there are processors]; the pictures are the same
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Work with these SIMD instructions, e.g. sse2 [default: the best of the machine]; the pictures are the same
+    #[arg(long, value_name = "LEVEL", value_parser = values::simd_level)]
+    pub simd: Option<durer::simd::Level>,
     /// No warnings and no progress; errors are still told
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,

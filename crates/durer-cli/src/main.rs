@@ -75,11 +75,14 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Runs the work on as many threads as were asked for.
+/// Runs the work on as many threads and with the instructions that were asked for.
 fn on_threads(
     args: &RunningArgs,
     work: impl FnOnce() -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {
+    if let Some(level) = args.simd {
+        durer::simd::set_default_level(level);
+    }
     let Some(threads) = args.threads else { return work() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
     pool.map_err(|e| Failure::Data(format!("--threads {threads}: {e}")))?.install(work)

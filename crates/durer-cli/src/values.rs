@@ -4,6 +4,7 @@ use crate::output::Kind;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::SurfaceMethod;
+use durer::simd::{self, Level};
 use durer::visibility::wireframe;
 use durer_formats::drawing::DrawingFormat;
 
@@ -120,6 +121,14 @@ pub fn count(text: &str) -> Result<u64, String> {
         Ok(n) if n > 0 => Ok(n),
         _ => Err("a whole number from 1 is needed".to_owned()),
     }
+}
+
+/// A SIMD level of this machine by its name.
+pub fn simd_level(text: &str) -> Result<Level, String> {
+    let levels = simd::levels();
+    let names: Vec<_> = levels.iter().map(|&level| simd::name(level)).collect();
+    let found = levels.iter().zip(&names).find(|(_, name)| **name == text);
+    found.map(|(&level, _)| level).ok_or_else(|| format!("this machine has {}", names.join(", ")))
 }
 
 /// A number of bytes, with `k`, `M` or `G` for powers of 1024.

@@ -200,6 +200,20 @@ mod tests {
     }
 
     #[test]
+    fn a_header_with_the_wrong_byte_order_is_suspected() {
+        let faces = "element face 1\nproperty list uchar int vertex_indices\n";
+        let head = format!(
+            "ply\nformat binary_big_endian 1.0\nelement vertex 3\n{XYZ}{faces}end_header\n"
+        );
+        let mut bytes = [head.as_bytes(), &[0; 36], &[3]].concat();
+        bytes.extend([0_i32, 1, 2].map(i32::to_le_bytes).as_flattened());
+        let error =
+            super::read(&bytes, &NoResources, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("vertex 16777216 does not exist: there are 3"), "{error}");
+        assert!(error.contains("other byte order"), "{error}");
+    }
+
+    #[test]
     fn huge_counts_are_refused_at_once() {
         for encoding in ["ascii", "binary_little_endian"] {
             let text = format!(

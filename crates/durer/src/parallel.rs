@@ -22,6 +22,24 @@ pub fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) ->
     done.filter_map(|(_, result)| result).collect()
 }
 
+/// [`map`] with a state that one thread at a time has and that is used again: what `make` gives, and what the items before
+/// left in it. That must not show in the results, for which item has which state is not foretold.
+pub fn map_with<S: Send, T: Send, R: Send>(
+    items: Vec<T>,
+    make: impl Fn() -> S + Sync + Send,
+    f: impl Fn(&mut S, T) -> R + Sync + Send,
+) -> Vec<R> {
+    let idle = Mutex::new(Vec::new());
+    let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+    map(items, |item| {
+        let waiting = idle().pop();
+        let mut state = waiting.unwrap_or_else(&make);
+        let result = f(&mut state, item);
+        idle().push(state);
+        result
+    })
+}
+
 /// How many threads share the work.
 pub fn threads() -> usize {
     #[cfg(feature = "parallel")]

@@ -8,7 +8,7 @@ use crate::math::Vec4;
 use crate::scene::{Camera, Light, Scene};
 use crate::shade::PreparedLights;
 pub use crate::shade::Shading;
-use crate::simd::Level;
+use crate::simd::{Level, default_level};
 use crate::target::Framebuffer;
 use crate::trace::NoTrace;
 use crate::view::View;
@@ -106,7 +106,7 @@ impl RenderOptions {
             item: false,
             normal: false,
             max_pixels: 16_384 * 16_384,
-            level: Level::new(),
+            level: default_level(),
         }
     }
 

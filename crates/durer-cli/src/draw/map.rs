@@ -35,19 +35,18 @@ impl Job<'_> {
             layers.push(self.features(layer)?);
         }
         self.report.read_seconds += start.elapsed().as_secs_f64();
-        let window = match self.args.picture.window {
-            Some(window) => window,
-            None => extent(&layers).ok_or_else(|| {
-                Failure::Data(format!("{}: there is nothing to draw", names(given)))
-            })?,
-        };
         let usage = |e: durer::Error| Failure::Usage(e.to_string());
-        let natural = window.size() * (MAP_SIDE / window.size().max_element());
-        let size = sides(self.args.picture.size, natural);
+        let window = match &self.args.picture.window {
+            Some(given) => {
+                let (lo, hi) = (given.min(), given.max());
+                Window::new(lo.x, hi.x, lo.y, hi.y).map_err(usage)?
+            }
+            None => extent(&layers, &names(given))?,
+        };
+        let extent = window.rect().size();
+        let size = sides(self.args.picture.size, extent * (MAP_SIDE / extent.max_element()));
         let canvas = self.canvas(size, [255; 4])?;
         let viewport = self.viewport(size)?;
-        let (lo, hi) = (window.min(), window.max());
-        let window = Window::new(lo.x, hi.x, lo.y, hi.y).map_err(usage)?;
         let screen = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
         let (seen, counts) = (seen(&viewport)?, MapCounts::default());
         let mut map = Map { canvas, screen, seen, counts, joined: None };
@@ -114,14 +113,23 @@ fn names(given: &[Given<'_>]) -> String {
     names.join(", ")
 }
 
-/// The rectangle around all features, with some room; a point gets one of side 1.
-fn extent(layers: &[Vec<Feature>]) -> Option<Rect> {
+/// The window around all features, with some room; a point gets one of side 1.
+fn extent(layers: &[Vec<Feature>], names: &str) -> Result<Window, Failure> {
     let all = layers.iter().flatten().filter_map(|f| f.geometry.as_ref()?.bounds());
-    let bounds = Rect::around(all.flat_map(|b| [b.min(), b.max()]))?;
+    let nothing = || Failure::Data(format!("{names}: there is nothing to draw"));
+    let bounds = Rect::around(all.flat_map(|b| [b.min(), b.max()])).ok_or_else(nothing)?;
     let size = bounds.size();
     let least = if size.max_element() > 0.0 { size.max_element() * MARGIN } else { 0.5 };
     let room = (size * MARGIN).max(DVec2::splat(least));
-    Rect::new(bounds.min() - room, bounds.max() + room).ok()
+    let (lo, hi) = (bounds.min() - room, bounds.max() + room);
+    Window::new(lo.x, hi.x, lo.y, hi.y).map_err(|_| {
+        let (lo, hi) = (bounds.min(), bounds.max());
+        Failure::Data(format!(
+            "{names}: coordinates reach from ({:?}, {:?}) to ({:?}, {:?}); a map must lie within ±10¹⁰⁰ and be \
+             wider than 10⁻¹⁰⁰, or --window must say which part of it to draw",
+            lo.x, lo.y, hi.x, hi.y
+        ))
+    })
 }
 
 fn seen(viewport: &Viewport) -> Result<Rect, Failure> {

@@ -49,6 +49,21 @@ fn sizes_may_leave_one_side_open() {
 }
 
 #[test]
+fn maps_beyond_all_measure_are_bad_data() {
+    let folder = folder();
+    for line in ["0 0, 1e308 0", "-1e308 0, 1e308 5", "1e300 1e300, 0 1"] {
+        folder.write("far.wkt", format!("LINESTRING ({line})"));
+        let ended = folder.run("draw map.geojson far.wkt -o a.png");
+        assert_eq!(ended.code, 1, "{ended:?}");
+        assert!(
+            ended.err.contains("far.wkt: coordinates reach from (") && ended.err.len() < 250,
+            "{ended:?}"
+        );
+        folder.must("draw far.wkt --window 0,-1,2,1 -o a.png");
+    }
+}
+
+#[test]
 fn windows_and_viewports_choose_the_part_and_its_place() {
     let folder = folder();
     folder.must("draw a.svg -o a.png --size 40x40 --window 5,0,15,10 --viewport 20,20,20,20 --background white");

@@ -1,4 +1,5 @@
-//! Same input, same bytes: every command that writes something, on one, two and four threads.
+//! Same input, same bytes: every command that writes something, on one, two and four threads, and at each
+//! SIMD level.
 
 use crate::harness::Folder;
 use std::path::Path;
@@ -47,7 +48,7 @@ const COMMANDS: &[(&str, &str)] = &[
 ];
 
 /// Runs all commands; the bytes of everything in the folder, by name.
-fn written(threads: u32) -> Vec<(String, Vec<u8>)> {
+fn written(how: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Folder::new();
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples");
     for entry in std::fs::read_dir(samples).expect("samples are part of the repository") {
@@ -58,20 +59,31 @@ fn written(threads: u32) -> Vec<(String, Vec<u8>)> {
     for (command, out) in COMMANDS {
         let pixels = command.starts_with("render") && out.ends_with(".png");
         let size = if pixels { "--size 96x80" } else { "" };
-        folder.must(&format!("{command} {size} -o {out} --threads {threads}"));
+        folder.must(&format!("{command} {size} -o {out} {how}"));
         assert!(folder.path(out).exists(), "{command}");
     }
     let names = folder.names().into_iter();
     names.map(|name| (name.clone(), folder.read(&name))).collect()
 }
 
-#[test]
-fn all_commands_write_the_same_bytes_on_any_number_of_threads() {
-    let expected = written(1);
+fn are_the_same_bytes(how: impl Iterator<Item = String>) {
+    let expected = written("--threads 1");
     assert!(expected.len() > COMMANDS.len());
-    for threads in [2, 4] {
-        for (found, expected) in written(threads).into_iter().zip(&expected) {
-            assert!(found == *expected, "{} with {threads} threads", expected.0);
+    for how in how {
+        for (found, expected) in written(&how).into_iter().zip(&expected) {
+            assert!(found == *expected, "{} with {how}", expected.0);
         }
     }
+}
+
+#[test]
+fn all_commands_write_the_same_bytes_on_any_number_of_threads() {
+    are_the_same_bytes([2, 4].map(|threads| format!("--threads {threads}")).into_iter());
+}
+
+#[test]
+fn all_commands_write_the_same_bytes_at_any_simd_level() {
+    let levels = durer::simd::levels();
+    assert!(!levels.is_empty());
+    are_the_same_bytes(levels.iter().map(|&level| format!("--simd {}", durer::simd::name(level))));
 }

@@ -247,7 +247,14 @@ impl Builder {
             return Ok(value as u32);
         }
         let count = self.vertex_count;
-        let message = format!("vertex {value} does not exist: there are {count}, counted from 0");
+        let mut message =
+            format!("vertex {value} does not exist: there are {count}, counted from 0");
+        if u64::from((value as u32).swap_bytes()) < count
+            && value <= f64::from(u32::MAX)
+            && value >= 65536.0
+        {
+            message += "; it would if the header named the other byte order";
+        }
         Err(Error::Decode { place: values.place(), message })
     }
 

@@ -35,6 +35,7 @@ use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
 use std::collections::BTreeSet;
+use svgtypes::{PathParser, PathSegment};
 use usvg::{ImageHrefResolver, ImageKind, roxmltree};
 
 /// Elements that are passed over, beside those that only describe.
@@ -99,6 +100,7 @@ impl Drawing {
             let message = format!("the root is `{name}`, not `svg` with xmlns=\"{}\"", ROOT.0);
             return Err(Error::line(1, 0, message));
         }
+        check_arcs(&document)?;
         let mut warnings = passed_over(&document);
         let (tree, told) = {
             let told = Told::default();
@@ -179,6 +181,42 @@ fn wrong(error: usvg::Error) -> Error {
         ),
         other => Error::whole(other.to_string()),
     }
+}
+
+/// Refuses arcs of paths with numbers beyond this: an arc becomes the more curves the larger it is, and one of
+/// 10³⁸ pixels millions, which take for ever.
+const FARTHEST: f64 = 1e15;
+
+/// Whether arcs can be read in a time that is in proportion to the document.
+fn check_arcs(document: &roxmltree::Document<'_>) -> Result<()> {
+    for path in document.descendants().filter_map(|node| node.attribute_node("d")) {
+        // Arcs begin where a path has come to by then, wherever that is.
+        if path.value().contains(['A', 'a']) && PathParser::from(path.value()).any(is_far) {
+            let at = document.text_pos_at(path.range().start);
+            let message = "a path with arcs reaches beyond ±10¹⁵, farther than arcs can be drawn";
+            return Err(Error::line(at.row.into(), at.col.into(), message));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a number of a segment is beyond [`FARTHEST`]; where there is none, usvg ends the path.
+fn is_far(segment: std::result::Result<PathSegment, svgtypes::Error>) -> bool {
+    use PathSegment::*;
+    let largest = match segment {
+        Err(_) | Ok(ClosePath { .. }) => 0.0,
+        Ok(MoveTo { x, y, .. } | LineTo { x, y, .. } | SmoothQuadratic { x, y, .. }) => {
+            x.abs().max(y.abs())
+        }
+        Ok(HorizontalLineTo { x: v, .. } | VerticalLineTo { y: v, .. }) => v.abs(),
+        Ok(
+            CurveTo { x1: a, y1: b, x, y, .. }
+            | SmoothCurveTo { x2: a, y2: b, x, y, .. }
+            | Quadratic { x1: a, y1: b, x, y, .. }
+            | EllipticalArc { rx: a, ry: b, x, y, .. },
+        ) => a.abs().max(b.abs()).max(x.abs()).max(y.abs()),
+    };
+    largest > FARTHEST
 }
 
 /// Elements that are not drawn, each kind once, with the first place.

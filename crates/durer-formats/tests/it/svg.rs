@@ -137,6 +137,27 @@ fn what_is_no_drawing_is_refused_with_its_place() {
 }
 
 #[test]
+fn arcs_from_far_away_are_refused_at_once() {
+    let document = |d: &str| {
+        let text = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>\n<path d='{d}'/></svg>"
+        );
+        Drawing::read(text.as_bytes(), &ReadOptions::default())
+    };
+    for path in [
+        "M1 1S80 20 3.4e38 70A10 20 30 0 1 5 5Z",
+        "M1 1a1e38 1 0 1 1 3 3",
+        "M-9e37 0v3a1 1 0 0 0 1 1",
+    ] {
+        let error = document(path).unwrap_err().to_string();
+        assert!(error.starts_with("line 2") && error.contains("arcs"), "{error}");
+    }
+    // Without arcs the length is of no matter, and arcs of any size that has a use are drawn.
+    document("M1 1L3.4e38 70L5 5Z").expect("a drawing");
+    document("M1 1L1e15 70A10 20 30 0 1 5 5Z").expect("a drawing");
+}
+
+#[test]
 fn what_is_nested_deeply_is_left_out() {
     let body = format!(
         "{}<rect width='20' height='20'/>{}",

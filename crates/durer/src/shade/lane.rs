@@ -355,21 +355,6 @@ impl From<Vec3Lane<f32>> for Vec3 {
     }
 }
 
-/// Every SIMD level of this machine, for tests.
-#[cfg(test)]
-pub(crate) fn levels() -> Vec<fearless_simd::Level> {
-    use fearless_simd::Level;
-    let best = Level::new();
-    let mut levels = vec![best, Level::baseline()];
-    #[cfg(target_arch = "x86_64")]
-    {
-        levels.extend(best.as_sse2().map(Level::Sse2));
-        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-        levels.extend(best.as_avx2().map(Level::Avx2));
-    }
-    levels
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -405,7 +390,7 @@ mod tests {
     #[test]
     fn eight_lanes_are_eight_numbers_bit_for_bit() {
         let inputs: [f32; 8] = [1e-30, 1e-3, 0.7, 1.0, 1.5, 3.25, 1e9, 1e30];
-        for level in levels() {
+        for level in crate::simd::levels() {
             let lanes = dispatch!(level, simd => {
                 functions(f32x8::simd_from(simd, inputs)).map(<[f32; 8]>::from)
             });

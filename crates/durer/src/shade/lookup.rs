@@ -183,7 +183,7 @@ fn inside_x8<S: Simd>(simd: S, i: i32x8<S>, size: i32x8<S>, wrap: Wrap) -> i32x8
 mod tests {
     use super::*;
     use crate::scene::{Image, Sampler};
-    use crate::shade::lane::levels;
+    use crate::simd::levels;
     use fearless_simd::dispatch;
 
     #[simd]

@@ -134,8 +134,8 @@ mod tests {
     use super::*;
     use crate::math::{DVec3, Vec3, Vec4};
     use crate::scene::{Camera, Light, LightKind, Material, Projection, ShadingModel};
-    use crate::shade::lane::levels;
     use crate::shade::{PreparedMaterials, Surface, shade};
+    use crate::simd::levels;
     use fearless_simd::dispatch;
 
     /// Eight points of test data.

@@ -131,12 +131,7 @@ impl<const N: usize> Outermost<N> {
 
 /// A box in world space around placed positions; not finite where one of them is not.
 fn around(positions: &[Vec3], place: &DMat4) -> Aabb {
-    let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for p in positions {
-        // NaN is neither smaller nor larger, and such a point is left out in the end.
-        min = Vec3::new(smaller(p.x, min.x), smaller(p.y, min.y), smaller(p.z, min.z));
-        max = Vec3::new(larger(p.x, max.x), larger(p.y, max.y), larger(p.z, max.z));
-    }
+    let [min, max] = extent(positions);
     let (min, max) = (min.as_dvec3(), max.as_dvec3());
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     let linear = DMat3::from_mat4(*place);
@@ -147,12 +142,22 @@ fn around(positions: &[Vec3], place: &DMat4) -> Aabb {
     Aabb { min: world - reach, max: world + reach }
 }
 
-/// `f32::min` without its care for two NaNs, which costs twice the time.
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// See [`smaller`].
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+/// The least and the largest coordinates of points; infinite, the wrong way round, where there are none.
+fn extent(positions: &[Vec3]) -> [Vec3; 2] {
+    // Four points are twelve numbers: three registers, whose lanes are put together in the end.
+    let (mut least, mut most) = ([f32::INFINITY; 12], [f32::NEG_INFINITY; 12]);
+    let (fours, rest) = positions.as_chunks::<4>();
+    for four in fours {
+        let numbers = four.map(|p| p.to_array());
+        for (i, &v) in numbers.as_flattened().iter().enumerate() {
+            // NaN is neither smaller nor larger, and such a point is left out in the end.
+            least[i] = if v < least[i] { v } else { least[i] };
+            most[i] = if v > most[i] { v } else { most[i] };
+        }
+    }
+    let lanes = |all: &[f32; 12]| [0, 3, 6, 9].map(|i| Vec3::new(all[i], all[i + 1], all[i + 2]));
+    let min = lanes(&least).iter().chain(rest).copied().fold(Vec3::INFINITY, |min, p| p.min(min));
+    let max =
+        lanes(&most).iter().chain(rest).copied().fold(Vec3::NEG_INFINITY, |max, p| p.max(max));
+    [min, max]
 }

@@ -125,12 +125,10 @@ impl Window {
             && right - left >= WINDOW_LIMIT.recip()
             && top - bottom >= WINDOW_LIMIT.recip();
         if !sound {
-            let value = format!("{left} … {right} × {bottom} … {top}");
-            return Err(Error::parameter(
-                "window",
-                value,
-                "finite, with left < right and bottom < top",
-            ));
+            // As Debug, which does not write out hundreds of digits.
+            let value = format!("{left:?} … {right:?} × {bottom:?} … {top:?}");
+            let expected = "within ±10¹⁰⁰, with left < right and bottom < top by 10⁻¹⁰⁰ or more";
+            return Err(Error::parameter("window", value, expected));
         }
         Ok(Self { rect: Rect::new(DVec2::new(left, bottom), DVec2::new(right, top))? })
     }

@@ -11,9 +11,10 @@
 use super::{Segment, liang_barsky};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
+use crate::simd::{Level, default_level};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
-use fearless_simd::{Level, dispatch, prelude::*};
+use fearless_simd::{dispatch, prelude::*};
 use fearless_simd_macros::simd;
 
 /// The facts of clipping in batches.
@@ -53,7 +54,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { level: Level::new(), threads: true }
+        Self { level: default_level(), threads: true }
     }
 }
 

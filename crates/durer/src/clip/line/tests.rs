@@ -393,18 +393,7 @@ fn rings_that_are_not_convex_are_refused() {
 mod batches {
     use super::*;
     use crate::clip::line::batch::{Clipped, Options, Segments, clip};
-    use fearless_simd::Level;
-
-    fn levels() -> Vec<Level> {
-        let best = Level::new();
-        let mut levels = vec![best, Level::baseline()];
-        #[cfg(target_arch = "x86_64")]
-        {
-            levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-            levels.extend(best.as_avx2().map(Level::Avx2));
-        }
-        levels
-    }
+    use crate::simd::levels;
 
     fn check(w: &Rect, segments: &[Segment<DVec2>]) {
         let array = |f: fn(&Segment<DVec2>) -> f64| segments.iter().map(f).collect::<Vec<_>>();

@@ -28,11 +28,12 @@ pub use partition::{Face, INFO as PARTITION, fill_partition};
 use std::ops::Range;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch, u32x8};
+use fearless_simd::{dispatch, u32x8};
 
 use crate::curve::Contours;
 use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
+use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 use crate::{Error, Result};
@@ -122,7 +123,7 @@ pub fn fill(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Result<Pixels<u8>> {
-    fill_at(Level::new(), contours, width, height, options, t)
+    fill_at(default_level(), contours, width, height, options, t)
 }
 
 fn fill_at(

@@ -6,12 +6,11 @@
 //! pixels). A piece of a line is entered with the fraction it has there, so the pixels are
 //! [`super::bresenham`]'s, all of them. Limits: as there.
 
-use fearless_simd::Level;
-
 use super::pieces::{AT_ONCE, Ends, PIXELS, Pieces, SHORT, TILE_BITS};
 use super::{Course, Options, bresenham};
 use crate::info::{Class, Info};
 use crate::math::IVec2;
+use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::trace::NoTrace;
 
@@ -70,7 +69,7 @@ pub struct Line<T> {
 /// assert_eq!(String::from_iter(picture.data()), "aab....ba...b.a".to_owned());
 /// ```
 pub fn draw<T: Copy>(lines: &[Line<T>], target: &mut Pixels<T>) {
-    draw_at(Level::new(), lines, target);
+    draw_at(default_level(), lines, target);
 }
 
 fn draw_at<T: Copy>(level: Level, lines: &[Line<T>], target: &mut Pixels<T>) {

@@ -12,14 +12,13 @@ mod source;
 
 pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
 
-use fearless_simd::Level;
-
 use super::coverage::convex::Strip;
 use super::coverage::{FillRule, Overlap, check_size};
 use super::line::anti_aliased;
 use super::line::wide::{self, Stroke};
 use crate::curve::{Contours, Path, flatten};
 use crate::math::DAffine2;
+use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
@@ -287,7 +286,7 @@ impl Canvas {
     /// # Errors
     /// [`Error::Parameter`] where the target has another size than the canvas.
     pub fn render(&self, target: &mut Pixels<Color>) -> Result<()> {
-        self.render_at(Level::new(), target)
+        self.render_at(default_level(), target)
     }
 
     fn render_at(&self, level: Level, target: &mut Pixels<Color>) -> Result<()> {

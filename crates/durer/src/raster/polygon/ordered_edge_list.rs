@@ -13,7 +13,7 @@
 use std::ops::Range;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch, u32x8};
+use fearless_simd::{dispatch, u32x8};
 
 pub use super::Options;
 use super::crossings::{CrossingEdges, CrossingFiller};
@@ -22,6 +22,7 @@ use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::span::Span;
+use crate::simd::{Level, default_level};
 use crate::trace::Tracer;
 
 /// The facts.
@@ -63,7 +64,7 @@ pub fn fill(
     mut emit: impl FnMut(Span),
     t: &mut impl Tracer<Step>,
 ) {
-    fill_at(Level::new(), contours, (width, height), options, &mut emit, t);
+    fill_at(default_level(), contours, (width, height), options, &mut emit, t);
 }
 
 fn fill_at(

@@ -10,7 +10,7 @@ use crate::parallel;
 use crate::scene::Scene;
 use crate::shade::color::encode_rgba8;
 use crate::shade::{PreparedLights, PreparedMaterials};
-use crate::simd::Level;
+use crate::simd::default_level;
 use crate::target::drawing::{Line, LineClass, Region, RegionKind};
 use crate::view::View;
 use crate::visibility::surface::lit::{Lighting, Lit};
@@ -218,7 +218,7 @@ pub fn colors(
         materials: &materials,
         lights,
         shading,
-        level: Level::new(),
+        level: default_level(),
     };
     let parts = parallel::map(shown.chunks(TASK).collect(), |part| {
         let mut lit = Lit::new(shared);

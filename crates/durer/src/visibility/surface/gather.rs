@@ -5,7 +5,7 @@ use crate::shade::lane::{Lane, Vec3Lane};
 use crate::shade::{Faces, Points};
 use crate::visibility::surface::attributes::{Row, VisibleTriangle};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f32x16};
+use fearless_simd::{Simd, f32x8, f32x16, f64x8};
 
 /// Up to eight points from anywhere; those not set hold what was there before.
 #[derive(Debug, Clone, Copy, Default)]
@@ -81,6 +81,20 @@ pub fn transpose<S: Simd>(simd: S, mut from: [f32x8<S>; 8]) -> [f32x8<S>; 8] {
         from = to;
     }
     from
+}
+
+/// In double precision.
+#[inline(always)]
+pub fn widened<S: Simd>(simd: S, v: f32x8<S>) -> f64x8<S> {
+    let (a, b) = simd.widen_f32x8(v);
+    simd.combine_f64x4(a, b)
+}
+
+/// Rounded to single precision.
+#[inline(always)]
+pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
+    let (a, b) = simd.split_f64x8(v);
+    simd.narrow_f64x4(a, b)
 }
 
 /// Points of positions and normals, component by component.

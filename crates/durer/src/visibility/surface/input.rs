@@ -1,7 +1,7 @@
 //! The one scene that all visible-surface algorithms start from.
 
 use crate::scene::Scene;
-use crate::simd::Level;
+use crate::simd::default_level;
 use crate::view::View;
 use crate::visibility::surface::setup::{
     Assembler, Counts, Coverage, Filter, Run, ScreenTriangle, runs,
@@ -34,10 +34,10 @@ impl<'a> SurfaceInput<'a> {
     /// [`crate::Error::Limit`] where the scene has too many primitives to number.
     pub fn new(scene: &'a Scene, view: &'a View, filter: Filter) -> crate::Result<Self> {
         let runs = runs(scene)?;
-        let mut assembler = Assembler::new(scene, view, filter, Level::new());
+        let mut assembler = Assembler::new(scene, view, filter, default_level());
         let mut triangles = Vec::new();
         for run in &runs {
-            assembler.primitives(run, run.range.clone(), |t| triangles.push(t));
+            assembler.primitives(run, run.range.clone(), &mut triangles);
         }
         let counts = assembler.counts;
         Ok(Self { scene, view, filter, runs, triangles, counts })

@@ -4,7 +4,7 @@ use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::scene::{AlphaMode, Material, Scene};
 use crate::shade::{PreparedLights, Shading};
-use crate::simd::Level;
+use crate::simd::{Level, default_level};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::a_buffer::Mask;
@@ -81,7 +81,7 @@ impl Default for Options {
             bounces: 0,
             shading: None,
             background: Background::Color(Vec4::ONE),
-            level: Level::new(),
+            level: default_level(),
         }
     }
 }

@@ -7,7 +7,7 @@
 use crate::math::Vec4;
 use crate::shade::color::{encode_rgba8, encode_srgb8};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::Level;
+use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
@@ -32,7 +32,7 @@ impl Default for Options {
     /// By material, on white, the machine's best level.
     fn default() -> Self {
         let background = Background::Color(Vec4::ONE);
-        Self { shading: None, background, level: Level::new() }
+        Self { shading: None, background, level: default_level() }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::scene::{Mesh, Projection, Scene, Topology};
 use crate::simd::Level;
 use crate::view::View;
 use crate::visibility::surface::attributes::VisibleTriangle;
-use crate::visibility::surface::gather::transpose;
+use crate::visibility::surface::gather::{narrowed, transpose, widened};
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, f32x8, f64x8, mask32x8};
@@ -163,7 +163,9 @@ fn prepare<S: Simd>(
     let mut eye = [[zero; 3]; 3];
     let (mut x, mut y, mut w) = ([zero; 3], [zero; 3], [zero; 3]);
     for (i, [px, py, pz]) in at.iter().enumerate() {
-        let (px, py, pz) = (widened(simd, px), widened(simd, py), widened(simd, pz));
+        let (px, py) = (f32x8::from_slice(simd, px), f32x8::from_slice(simd, py));
+        let (px, py) = (widened(simd, px), widened(simd, py));
+        let pz = widened(simd, f32x8::from_slice(simd, pz));
         let m = &t.eye_from_mesh;
         eye[i] = [
             px * m.x_axis.x + py * m.y_axis.x + pz * m.z_axis.x + m.w_axis.x,
@@ -252,18 +254,6 @@ fn within<S: Simd>(simd: S, product: f32x8<S>, length2: f32x8<S>) -> mask32x8<S>
 #[inline(always)]
 fn dot<S: Simd>([ax, ay, az]: [f32x8<S>; 3], [bx, by, bz]: [f32x8<S>; 3]) -> f32x8<S> {
     ax * bx + ay * by + az * bz
-}
-
-#[inline(always)]
-fn widened<S: Simd>(simd: S, v: &[f32; 8]) -> f64x8<S> {
-    let (a, b) = simd.widen_f32x8(f32x8::from_slice(simd, v));
-    simd.combine_f64x4(a, b)
-}
-
-#[inline(always)]
-fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
-    let (a, b) = simd.split_f64x8(v);
-    simd.narrow_f64x4(a, b)
 }
 
 /// One over the length, of which the square is given; 0 where there is no direction.

@@ -7,7 +7,7 @@
 //! Source: near-plane-only clipping after Blinn & Newell, *Clipping using homogeneous coordinates*
 //! (1978); the guard band as in graphics hardware. Cost: O(vertices + triangles).
 
-mod plane;
+mod eight;
 mod runs;
 mod vertex;
 
@@ -22,9 +22,11 @@ use crate::simd::Level;
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Cull;
-use plane::depth_plane;
+use eight::{EIGHT, Eight, Rules};
+use fearless_simd::{Simd, dispatch};
+use fearless_simd_macros::simd;
 use std::ops::Range;
-use vertex::{Hidden, ScreenVertex, Transform, code};
+use vertex::{Hidden, ScreenVertex, Transform};
 
 /// A triangle on the screen: snapped vertices and the plane of its depth.
 ///
@@ -98,6 +100,17 @@ pub struct Counts {
     pub drawn: u64,
 }
 
+impl Counts {
+    /// Adds those of eight triangles that are there and need not be cut.
+    #[inline(always)]
+    fn add(&mut self, eight: &Eight, there: u64) {
+        let number = |of: u64| u64::from((of & there).count_ones());
+        self.non_finite += number(eight.non_finite);
+        self.drawn += number(eight.seen);
+        self.culled += number(!(eight.non_finite | eight.seen | eight.uncut));
+    }
+}
+
 impl std::ops::AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
         self.non_finite += other.non_finite;
@@ -115,6 +128,19 @@ pub struct Filter {
     /// How far samples lie from the pixel's centre, in 1/256 pixel: triangles that cannot reach a
     /// sample are left out.
     pub sample_reach: i32,
+}
+
+/// Takes triangles as they come.
+pub trait Sink {
+    /// Takes one.
+    fn take(&mut self, triangle: ScreenTriangle);
+}
+
+impl Sink for Vec<ScreenTriangle> {
+    #[inline(always)]
+    fn take(&mut self, triangle: ScreenTriangle) {
+        self.push(triangle);
+    }
 }
 
 /// Triangles without indices whose vertices are transformed at a time.
@@ -143,14 +169,9 @@ impl<'a> Assembler<'a> {
         Self { scene, view, filter, level, vertices: Vec::new(), counts: Counts::default() }
     }
 
-    /// Hands the screen triangles of primitives `range` of a run to `emit`, in order. Lines become
+    /// Hands the screen triangles of primitives `range` of a run to `sink`, in order. Lines become
     /// strips of [`LINE_WIDTH`], points squares of [`POINT_SIZE`].
-    pub fn primitives(
-        &mut self,
-        run: &Run,
-        range: Range<u32>,
-        mut emit: impl FnMut(ScreenTriangle),
-    ) {
+    pub fn primitives(&mut self, run: &Run, range: Range<u32>, sink: &mut impl Sink) {
         let mesh = &self.scene.meshes[run.mesh];
         let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
         let transform = Transform {
@@ -166,13 +187,13 @@ impl<'a> Assembler<'a> {
             },
         };
         match mesh.topology {
-            Topology::Triangles => self.triangles(mesh, &transform, run, range, &mut emit),
+            Topology::Triangles => self.triangles(mesh, &transform, run, range, sink),
             Topology::Lines | Topology::Points => {
                 for primitive in range {
                     let item = run.first_item + (primitive - run.range.start);
                     let ends = mesh.line_or_point(primitive as usize);
                     let ends = ends.map(|c| transform.clip_vertex(mesh.positions[c as usize]));
-                    self.strip(&transform, ends, item, &mut emit);
+                    self.strip(&transform, ends, item, sink);
                 }
             }
         }
@@ -184,7 +205,7 @@ impl<'a> Assembler<'a> {
         transform: &Transform,
         run: &Run,
         range: Range<u32>,
-        emit: &mut impl FnMut(ScreenTriangle),
+        sink: &mut impl Sink,
     ) {
         let mut vertices = std::mem::take(&mut self.vertices);
         // Without indices no vertex serves two triangles, and a few at a time stay in the cache.
@@ -194,24 +215,13 @@ impl<'a> Assembler<'a> {
             let part = start..range.end.min(start.saturating_add(most));
             start = part.end;
             let first = self.transform_vertices(mesh, transform, &part, &mut vertices);
-            let items = run.first_item + (part.start - run.range.start)..;
-            match (first, &mesh.indices) {
-                (Some(first), Some(indices)) => {
-                    let corners = &indices[3 * part.start as usize..3 * part.end as usize];
-                    for (&[a, b, c], item) in corners.as_chunks().0.iter().zip(items) {
-                        let at = |corner: u32| &vertices[(corner - first) as usize];
-                        let v = [at(a), at(b), at(c)];
-                        self.assemble(mesh, transform, [a, b, c], v, item, emit);
-                    }
-                }
-                _ => {
-                    let of_triangles = part.zip(vertices.as_chunks().0).zip(items);
-                    for ((triangle, [a, b, c]), item) in of_triangles {
-                        let corners = mesh.triangle(triangle as usize);
-                        self.assemble(mesh, transform, corners, [a, b, c], item, emit);
-                    }
-                }
-            }
+            let corners = 3 * part.start as usize..3 * part.end as usize;
+            let indices = first.zip(mesh.indices.as_ref());
+            let shared = indices.map(|(first, all)| (first, all[corners].as_chunks().0));
+            let first_item = run.first_item + (part.start - run.range.start);
+            let part =
+                Part { mesh, transform, triangles: part, first_item, vertices: &vertices, shared };
+            dispatch!(self.level, simd => assemble(simd, self, &part, sink));
         }
         self.vertices = vertices;
     }
@@ -243,34 +253,6 @@ impl<'a> Assembler<'a> {
         None
     }
 
-    #[inline(always)]
-    fn assemble(
-        &mut self,
-        mesh: &Mesh,
-        transform: &Transform,
-        corners: [u32; 3],
-        v: [&ScreenVertex; 3],
-        item: u32,
-        emit: &mut impl FnMut(ScreenTriangle),
-    ) {
-        let (all, any) = (v[0].code & v[1].code & v[2].code, v[0].code | v[1].code | v[2].code);
-        if any & code::NON_FINITE != 0 {
-            self.counts.non_finite += 1;
-        } else if all & code::OUTSIDE != 0 {
-            self.counts.culled += 1;
-        } else if any & (code::NEAR | code::GUARD) != 0 {
-            self.clip(mesh, transform, corners, item, emit);
-        } else {
-            match self.set_up(v, item, transform.hidden_side()) {
-                Some(triangle) => {
-                    self.counts.drawn += 1;
-                    emit(triangle);
-                }
-                None => self.counts.culled += 1,
-            }
-        }
-    }
-
     /// Cuts a triangle at the near plane and the guard band and sets up the fan of what remains.
     #[cold]
     fn clip(
@@ -279,23 +261,41 @@ impl<'a> Assembler<'a> {
         transform: &Transform,
         corners: [u32; 3],
         item: u32,
-        emit: &mut impl FnMut(ScreenTriangle),
+        sink: &mut impl Sink,
     ) {
         self.counts.clipped += 1;
         let points = corners.map(|c| transform.clip_vertex(mesh.positions[c as usize]));
         let polygon = clip_polygon(&points, &transform.clip_options(), &mut NoTrace);
         let projected: Vec<ScreenVertex> =
             polygon.iter().map(|v| ScreenVertex::new(transform.to_screen(v))).collect();
+        let fan = (2..projected.len()).map(|i| [0, i - 1, i].map(|corner| projected[corner]));
+        self.few(fan, item, transform.hidden_side(), sink);
+    }
+
+    /// Sets up the few triangles that one primitive has become.
+    fn few(
+        &mut self,
+        triangles: impl Iterator<Item = [ScreenVertex; 3]>,
+        item: u32,
+        hidden: Option<Hidden>,
+        sink: &mut impl Sink,
+    ) {
+        let (rules, mut eight) = (self.rules(hidden), Eight::default());
         let mut drawn = 0;
-        for i in 2..projected.len() {
-            let v = [&projected[0], &projected[i - 1], &projected[i]];
-            if let Some(triangle) = self.set_up(v, item, transform.hidden_side()) {
+        for corners in triangles {
+            let of = corners.each_ref().map(|v| [v; EIGHT]);
+            dispatch!(self.level, simd => eight::set_up(simd, &rules, of, &mut eight));
+            if eight.seen != 0 {
                 drawn = 1;
-                emit(triangle);
+                sink.take(eight.triangle(0, item));
             }
         }
         self.counts.drawn += drawn;
         self.counts.culled += 1 - drawn;
+    }
+
+    fn rules(&self, hidden: Option<Hidden>) -> Rules {
+        Rules { filter: self.filter, size: [self.view.width(), self.view.height()], hidden }
     }
 
     /// The strip around a line, or the square around a point (whose ends are the same).
@@ -304,7 +304,7 @@ impl<'a> Assembler<'a> {
         transform: &Transform,
         ends: [ClipVertex; 2],
         item: u32,
-        emit: &mut impl FnMut(ScreenTriangle),
+        sink: &mut impl Sink,
     ) {
         if !ends.iter().all(|v| v.position.is_finite()) {
             self.counts.non_finite += 1;
@@ -323,62 +323,69 @@ impl<'a> Assembler<'a> {
         let corners = [pa - back - side, pa - back + side, pb + back + side, pb + back - side];
         let z = [za, za, zb, zb];
         let v = [0, 1, 2, 3].map(|i| ScreenVertex::new((corners[i], z[i])));
-        let mut drawn = 0;
-        for [i, j, k] in [[0, 1, 2], [0, 2, 3]] {
-            let triangle = self.set_up([&v[i], &v[j], &v[k]], item, None);
-            if let Some(triangle) = triangle {
-                drawn = 1;
-                emit(triangle);
+        let halves = [[0, 1, 2], [0, 2, 3]].map(|of: [usize; 3]| of.map(|i| v[i]));
+        self.few(halves.into_iter(), item, None, sink);
+    }
+}
+
+/// Triangles of a run, and their vertices.
+struct Part<'p> {
+    mesh: &'p Mesh,
+    transform: &'p Transform,
+    /// Triangles of the mesh.
+    triangles: Range<u32>,
+    /// The item of the first.
+    first_item: u32,
+    vertices: &'p [ScreenVertex],
+    /// Where triangles share vertices: the index of the first of `vertices` in the mesh, and the corners.
+    shared: Option<(u32, &'p [[u32; 3]])>,
+}
+
+impl Part<'_> {
+    /// Where the vertices of the i-th triangle are.
+    #[inline(always)]
+    fn corners(&self, i: usize) -> [usize; 3] {
+        match self.shared {
+            Some((first, corners)) => corners[i].map(|corner| (corner - first) as usize),
+            None => [3 * i, 3 * i + 1, 3 * i + 2],
+        }
+    }
+}
+
+/// Sets up triangles, eight at a time; those that must be cut first one by one.
+#[simd]
+fn assemble<S: Simd>(
+    simd: S,
+    assembler: &mut Assembler<'_>,
+    part: &Part<'_>,
+    sink: &mut impl Sink,
+) {
+    let rules = assembler.rules(part.transform.hidden_side());
+    let mut eight = Eight::default();
+    let count = part.triangles.len();
+    for start in (0..count).step_by(EIGHT) {
+        // Where there are fewer than eight left, the last stands for those missing.
+        let mut corners = [[&part.vertices[0]; EIGHT]; 3];
+        let [first, second, third] = &mut corners;
+        for (lane, ((a, b), c)) in first.iter_mut().zip(second).zip(third).enumerate() {
+            let of = part.corners((start + lane).min(count - 1));
+            (*a, *b, *c) = (&part.vertices[of[0]], &part.vertices[of[1]], &part.vertices[of[2]]);
+        }
+        eight::set_up(simd, &rules, corners, &mut eight);
+        let there = 0xff >> EIGHT.saturating_sub(count - start);
+        let mut left = (eight.seen | eight.uncut) & there;
+        assembler.counts.add(&eight, there);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let i = (start + lane) as u32;
+            let item = part.first_item + i;
+            if eight.uncut >> lane & 1 == 0 {
+                sink.take(eight.triangle(lane, item));
+            } else {
+                let corners = part.mesh.triangle((part.triangles.start + i) as usize);
+                assembler.clip(part.mesh, part.transform, corners, item, sink);
             }
         }
-        self.counts.drawn += drawn;
-        self.counts.culled += 1 - drawn;
-    }
-
-    /// Back-face and area test, bounding box test, depth plane.
-    #[inline(always)]
-    fn set_up(
-        &self,
-        v: [&ScreenVertex; 3],
-        item: u32,
-        hidden: Option<Hidden>,
-    ) -> Option<ScreenTriangle> {
-        let area = i64::from(v[1].x - v[0].x) * i64::from(v[2].y - v[0].y)
-            - i64::from(v[2].x - v[0].x) * i64::from(v[1].y - v[0].y);
-        let culled = match hidden {
-            None => area == 0,
-            Some(Hidden::Positive) => area >= 0,
-            Some(Hidden::Negative) => area <= 0,
-        };
-        if culled {
-            return None;
-        }
-        let [a, b, c] = if area < 0 { [v[0], v[2], v[1]] } else { v };
-        let (x, y) = ([a.x, b.x, c.x], [a.y, b.y, c.y]);
-        if self.misses_all_samples(&x, self.view.width())
-            || self.misses_all_samples(&y, self.view.height())
-        {
-            return None;
-        }
-        let [depth, depth_dx, depth_dy] = depth_plane(a, b, c, area.abs() as f64);
-        Some(ScreenTriangle {
-            x,
-            y,
-            depth,
-            depth_dx,
-            depth_dy,
-            depth_min: a.depth.min(b.depth).min(c.depth).max(0.0),
-            depth_max: a.depth.max(b.depth).max(c.depth).max(0.0),
-            item,
-        })
-    }
-
-    /// Whether no sample of a pixel on the screen lies between three coordinates.
-    #[inline(always)]
-    fn misses_all_samples(&self, v: &[i32; 3], pixels: u32) -> bool {
-        let reach = self.filter.sample_reach;
-        let (lo, hi) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
-        let (first, end) = (first_center(lo - reach), first_center(hi + reach + 1));
-        first >= end || end <= 0 || i64::from(first) >= i64::from(pixels)
     }
 }

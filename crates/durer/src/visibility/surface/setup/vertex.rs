@@ -1,11 +1,12 @@
-//! Vertices: to homogeneous screen space, in f64, four at a time.
+//! Vertices: to homogeneous screen space, in f64, eight at a time.
 
 use crate::clip::volume::{self, Borders, ClipVertex};
 use crate::math::{DMat4, DVec2, Vec3};
 use crate::raster::fixed::{GUARD_BAND, SUBPIXELS, snap};
 use crate::simd::Level;
+use crate::visibility::surface::gather::{narrowed, transpose, widened};
 use fearless_simd::prelude::*;
-use fearless_simd::{dispatch, f64x4};
+use fearless_simd::{Simd, dispatch, f32x8, f64x8, u32x8};
 use fearless_simd_macros::simd;
 
 /// Bits of [`ScreenVertex::code`]: beyond which border of the view volume a vertex lies.
@@ -23,23 +24,21 @@ pub mod code {
     pub const NON_FINITE: u32 = 128;
 }
 
-/// A vertex after division and snapping; x and y have no meaning where `code` has NEAR or GUARD.
+/// Where the code is in a [`ScreenVertex`].
+const CODE: usize = 5;
+
+/// A vertex after division and snapping, as a row of numbers, so that eight of them are soon columns: x and y on
+/// the grid; what snapping took away from each, in grid steps, for the place is (x + rest, y + rest); the
+/// depth; the [`code`]; two zeros. x and y have no meaning where the code has NEAR or GUARD. Floats are bits.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct ScreenVertex {
-    pub x: i32,
-    pub y: i32,
-    /// What snapping took away, in grid steps: the place is (x + rest_x, y + rest_y).
-    pub rest_x: f32,
-    pub rest_y: f32,
-    pub depth: f32,
-    pub code: u32,
-}
+pub struct ScreenVertex(pub [u32; 8]);
 
 impl ScreenVertex {
     pub fn new((pixels, depth): (DVec2, f32)) -> Self {
         let (x, y) = (snap(pixels.x), snap(pixels.y));
         let rest = |p: f64, snapped: i32| (p * f64::from(SUBPIXELS) - f64::from(snapped)) as f32;
-        Self { x, y, rest_x: rest(pixels.x, x), rest_y: rest(pixels.y, y), depth, code: 0 }
+        let [rest_x, rest_y] = [rest(pixels.x, x), rest(pixels.y, y)].map(f32::to_bits);
+        Self([x.cast_unsigned(), y.cast_unsigned(), rest_x, rest_y, depth.to_bits(), 0, 0, 0])
     }
 }
 
@@ -97,35 +96,37 @@ impl Transform {
     }
 }
 
-/// [`Transform::vertices`], four at a time.
+/// [`Transform::vertices`], eight at a time.
 #[simd]
 fn transform<S: Simd>(simd: S, by: &Transform, from: &[Vec3], to: &mut [ScreenVertex]) {
-    let (fours, rest) = from.as_chunks::<4>();
-    let (to_fours, to_rest) = to.as_chunks_mut::<4>();
-    for (from, to) in fours.iter().zip(to_fours) {
-        transform_four(simd, by, from, to);
+    let (eights, rest) = from.as_chunks::<8>();
+    let (to_eights, to_rest) = to.as_chunks_mut::<8>();
+    for (from, to) in eights.iter().zip(to_eights) {
+        transform_eight(simd, by, from, to);
     }
     if !rest.is_empty() {
-        let mut from = [Vec3::ZERO; 4];
-        let mut to = [ScreenVertex::default(); 4];
+        let mut from = [Vec3::ZERO; 8];
+        let mut to = [ScreenVertex::default(); 8];
         from[..rest.len()].copy_from_slice(rest);
-        transform_four(simd, by, &from, &mut to);
+        transform_eight(simd, by, &from, &mut to);
         to_rest.copy_from_slice(&to[..rest.len()]);
     }
 }
 
 #[inline(always)]
-fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [ScreenVertex; 4]) {
+fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [ScreenVertex; 8]) {
     let m = &by.screen_from_mesh;
-    let px: f64x4<S> = [p[0].x, p[1].x, p[2].x, p[3].x].map(f64::from).simd_into(simd);
-    let py: f64x4<S> = [p[0].y, p[1].y, p[2].y, p[3].y].map(f64::from).simd_into(simd);
-    let pz: f64x4<S> = [p[0].z, p[1].z, p[2].z, p[3].z].map(f64::from).simd_into(simd);
+    let [a, b, c, d, e, f, g, h] = p;
+    let px: f32x8<S> = [a.x, b.x, c.x, d.x, e.x, f.x, g.x, h.x].simd_into(simd);
+    let py: f32x8<S> = [a.y, b.y, c.y, d.y, e.y, f.y, g.y, h.y].simd_into(simd);
+    let pz: f32x8<S> = [a.z, b.z, c.z, d.z, e.z, f.z, g.z, h.z].simd_into(simd);
+    let (px, py, pz) = (widened(simd, px), widened(simd, py), widened(simd, pz));
     let hx = (px * m.x_axis.x + py * m.y_axis.x) + (pz * m.z_axis.x + m.w_axis.x);
     let hy = (px * m.x_axis.y + py * m.y_axis.y) + (pz * m.z_axis.y + m.w_axis.y);
     let hz = (px * m.x_axis.z + py * m.y_axis.z) + (pz * m.z_axis.z + m.w_axis.z);
     let hw = (px * m.x_axis.w + py * m.y_axis.w) + (pz * m.z_axis.w + m.w_axis.w);
-    let zero = f64x4::splat(simd, 0.0);
-    let inv_w = f64x4::splat(simd, 1.0) / hw;
+    let zero = simd.splat_f64x8(0.0);
+    let inv_w = simd.splat_f64x8(1.0) / hw;
     let (x, y, z) = (hx * inv_w, hy * inv_w, hz * inv_w);
     // Every bit is set where a comparison fails too, so NaN is beyond everything.
     let left = !hx.simd_ge(zero).to_bitmask();
@@ -134,7 +135,7 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     let bottom = !hy.simd_le(hw * by.height).to_bitmask();
     let near = !(hz.simd_ge(zero) & hw.simd_gt(zero)).to_bitmask();
     let far = !hz.simd_le(hw).to_bitmask();
-    let guard = f64x4::splat(simd, GUARD_BAND);
+    let guard = simd.splat_f64x8(GUARD_BAND);
     let outside_guard = !(x.abs().simd_lt(guard) & y.abs().simd_lt(guard)).to_bitmask();
     // Zero times what is not finite is NaN.
     let sum = (hx + hy + hz + hw) * 0.0;
@@ -145,36 +146,58 @@ fn transform_four<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 4], to: &mut [Scr
     let (grid_x, grid_y) = (x * snap_scale, y * snap_scale);
     let (snapped_x, snapped_y) = (grid_x + magic, grid_y + magic);
     let (rest_x, rest_y) = (grid_x - (snapped_x - magic), grid_y - (snapped_y - magic));
-    let [first, second, third, fourth] = codes([
-        (left, code::LEFT),
-        (right, code::RIGHT),
-        (top, code::TOP),
-        (bottom, code::BOTTOM),
-        (near, code::NEAR),
-        (far, code::FAR),
-        (outside_guard, code::GUARD),
-        (non_finite, code::NON_FINITE),
-    ]);
-    for (i, code) in [first, second, third, fourth].into_iter().enumerate() {
-        to[i] = ScreenVertex {
-            x: snapped_x[i].to_bits() as i32,
-            y: snapped_y[i].to_bits() as i32,
-            rest_x: rest_x[i] as f32,
-            rest_y: rest_y[i] as f32,
-            depth: z[i] as f32,
-            code,
-        };
+    let none = simd.splat_f32x8(0.0);
+    let (rest_x, rest_y) = (narrowed(simd, rest_x), narrowed(simd, rest_y));
+    let (x, y) = (low_bits(simd, snapped_x), low_bits(simd, snapped_y));
+    let depth = narrowed(simd, z);
+    let rows = transpose(simd, [x, y, rest_x, rest_y, depth, none, none, none]);
+    for (to, row) in to.iter_mut().zip(&rows) {
+        row.bitcast::<u32x8<S>>().store_slice(&mut to.0);
+    }
+    let beyond = [left, right, top, bottom, near, far, outside_guard, non_finite];
+    let mut any = 0;
+    for border in beyond {
+        any |= border & 0xff;
+    }
+    if any != 0 {
+        for (to, code) in to.iter_mut().zip(codes(beyond)) {
+            to.0[CODE] = code;
+        }
     }
 }
 
-/// From masks whose bit i is set where vertex i is beyond a border, and the border's code, to the codes of
-/// the four vertices.
+/// The lower 32 bits of eight doubles.
 #[inline(always)]
-fn codes(borders: [(u64, u32); 8]) -> [u32; 4] {
-    // A byte per vertex: the product puts bit i of the mask at bit 8 · i.
-    let mut all = 0_u32;
-    for (mask, code) in borders {
-        all |= ((mask as u32 & 15).wrapping_mul(0x0020_4081) & 0x0101_0101) * code;
+fn low_bits<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
+    let (a, b) = simd.split_f64x8(v);
+    simd.narrow_i64x4(a.bitcast(), b.bitcast()).bitcast()
+}
+
+/// From masks whose bit i is set where vertex i is beyond a border, in the order of the bits of [`code`],
+/// to the codes of the eight vertices.
+#[inline(always)]
+fn codes(beyond: [u64; 8]) -> [u32; 8] {
+    // Rows of bits to columns: exchange single bits, then blocks of two by two, then of four by four.
+    let mut bits = u64::from_le_bytes(beyond.map(|mask| mask as u8));
+    for (apart, mask) in
+        [(7, 0x00aa_00aa_00aa_00aa), (14, 0x0000_cccc_0000_cccc), (28, 0x0000_0000_f0f0_f0f0)]
+    {
+        let differing = (bits ^ (bits >> apart)) & mask;
+        bits ^= differing ^ (differing << apart);
     }
-    all.to_le_bytes().map(u32::from)
+    bits.to_le_bytes().map(u32::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_by_border_become_codes_by_vertex() {
+        let beyond = [0x01, 0x82, 0x00, 0xff, 0x10, 0x08, 0x55, 0x80];
+        let expected = |vertex: usize| {
+            (0..8).fold(0, |code, border| code | ((beyond[border] >> vertex) as u32 & 1) << border)
+        };
+        assert_eq!(codes(beyond), std::array::from_fn(expected));
+    }
 }

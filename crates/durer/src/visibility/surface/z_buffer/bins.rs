@@ -5,7 +5,9 @@ use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::scene::Scene;
 use crate::simd::Level;
 use crate::view::View;
-use crate::visibility::surface::setup::{Assembler, Counts, Coverage, Filter, Run, ScreenTriangle};
+use crate::visibility::surface::setup::{
+    Assembler, Counts, Coverage, Filter, Run, ScreenTriangle, Sink,
+};
 use std::ops::Range;
 
 /// Triangles per job: enough to keep a thread busy for about a tenth of a millisecond.
@@ -65,16 +67,17 @@ impl Bins {
     ) -> Self {
         let mut assembler = Assembler::new(scene, view, filter, level);
         let most = job.pieces.iter().map(|(_, range)| range.len()).sum();
-        let mut triangles = Vec::with_capacity(most);
-        let mut touched = Vec::with_capacity(most);
         let screen = TileGrid::new(view.width(), view.height());
+        let mut sorter = Sorter {
+            screen,
+            reach: filter.sample_reach,
+            triangles: Vec::with_capacity(most),
+            touched: Vec::with_capacity(most),
+        };
         for (run, range) in &job.pieces {
-            assembler.primitives(&runs[*run], range.clone(), |triangle| {
-                let index = triangles.len() as u32;
-                screen.touched(&triangle, filter.sample_reach, |tile| touched.push((tile, index)));
-                triangles.push(triangle);
-            });
+            assembler.primitives(&runs[*run], range.clone(), &mut sorter);
         }
+        let Sorter { triangles, touched, .. } = sorter;
         let (starts, entries) = sort_by_tile(&touched, screen.count());
         Self { coverage: job.coverage, counts: assembler.counts, triangles, starts, entries }
     }
@@ -89,6 +92,28 @@ impl Bins {
             Err(_) => &[],
         };
         entries.iter().map(|&e| &self.triangles[e as usize])
+    }
+}
+
+/// Keeps triangles, and finds the tiles that they touch.
+struct Sorter {
+    screen: TileGrid,
+    reach: i32,
+    triangles: Vec<ScreenTriangle>,
+    /// Tile and triangle.
+    touched: Vec<(u32, u32)>,
+}
+
+impl Sink for Sorter {
+    #[inline(always)]
+    fn take(&mut self, triangle: ScreenTriangle) {
+        let index = self.triangles.len();
+        // First to its place: from there its numbers are read sooner than from the pieces it comes in.
+        self.triangles.push(triangle);
+        let touched = &mut self.touched;
+        self.screen.touched(&self.triangles[index], self.reach, |tile| {
+            touched.push((tile, index as u32));
+        });
     }
 }
 

@@ -23,6 +23,8 @@ const PARTS: [usize; 5] = [1, 4, 8, 12, 16];
 #[derive(Default)]
 pub struct FrontToBack<'a> {
     given: Vec<&'a ScreenTriangle>,
+    /// The depth of the nearest vertex of each: read once, for the triangles lie far apart.
+    depths: Vec<f32>,
     sorted: Vec<&'a ScreenTriangle>,
 }
 
@@ -64,26 +66,24 @@ impl<'a> FrontToBack<'a> {
 
     /// A counting sort by the depth of the nearest vertex.
     fn sort(&mut self) {
-        let (mut nearest, mut farthest) = (f32::INFINITY, f32::NEG_INFINITY);
-        for t in &self.given {
-            nearest = nearest.min(t.depth_min);
-            farthest = farthest.max(t.depth_min);
-        }
+        self.depths.clear();
+        self.depths.extend(self.given.iter().map(|t| t.depth_min));
+        let nearest = self.depths.iter().copied().fold(f32::INFINITY, f32::min);
+        let farthest = self.depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         // Where all are equally near the product is no number, and the cast gives bucket 0.
         let scale = BUCKETS as f32 / (farthest - nearest);
-        let bucket =
-            |t: &ScreenTriangle| (((t.depth_min - nearest) * scale) as usize).min(BUCKETS - 1);
+        let bucket = |depth: f32| (((depth - nearest) * scale) as usize).min(BUCKETS - 1);
         let mut next = [0; BUCKETS + 1];
-        for t in &self.given {
-            next[bucket(t) + 1] += 1;
+        for &depth in &self.depths {
+            next[bucket(depth) + 1] += 1;
         }
         for i in 1..BUCKETS {
             next[i] += next[i - 1];
         }
         self.sorted.clear();
         self.sorted.extend_from_slice(&self.given);
-        for t in &self.given {
-            let slot = &mut next[bucket(t)];
+        for (t, &depth) in self.given.iter().zip(&self.depths) {
+            let slot = &mut next[bucket(depth)];
             self.sorted[*slot] = t;
             *slot += 1;
         }

@@ -21,7 +21,7 @@ use crate::math::Vec4;
 use crate::scene::Scene;
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::Level;
+use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
@@ -72,7 +72,7 @@ impl Default for Options {
             cull: Cull::None,
             shading: None,
             background: Background::Color(Vec4::ONE),
-            level: Level::new(),
+            level: default_level(),
         }
     }
 }
@@ -127,7 +127,10 @@ pub fn render(
     let triangle_count = scene.triangle_count() as u32;
     let occupied = bins::occupied(&bins, view);
     let frame = Frame { view, options, lighting, bins: &bins, occupied, triangle_count };
-    crate::parallel::map(bands(framebuffer), |band| frame.render_band(band));
+    let scratch = || Scratch::new(&frame);
+    crate::parallel::map_with(bands(framebuffer), scratch, |scratch, band| {
+        frame.render_band(band, scratch);
+    });
     report.raster_seconds = start.elapsed().as_secs_f64();
     Ok(report)
 }
@@ -181,7 +184,7 @@ struct Frame<'a> {
 /// One thread's buffers.
 struct Scratch<'a> {
     planes: Vec<SamplePlane>,
-    /// One sample at the pixel's centre, for depth, item and normal.
+    /// One sample at the pixel's centre, for depth, item and normal: made where they are first asked for.
     center: Vec<SamplePlane>,
     fragments: Fragments,
     mixed: Mixed,
@@ -189,19 +192,24 @@ struct Scratch<'a> {
     order: FrontToBack<'a>,
 }
 
-impl<'a> Frame<'a> {
-    fn render_band(&self, mut band: Band<'_>) {
-        let grid = TileGrid::new(self.view.width(), self.view.height());
-        let offsets = self.options.samples.offsets();
-        let wants_center = band.depth.is_some() || band.item.is_some() || band.normal.is_some();
-        let mut scratch = Scratch {
+impl<'a> Scratch<'a> {
+    fn new(frame: &Frame<'a>) -> Self {
+        let offsets = frame.options.samples.offsets();
+        Self {
             planes: SamplePlane::of(offsets),
-            center: if wants_center { SamplePlane::of(&[[0; 2]]) } else { Vec::new() },
+            center: Vec::new(),
             fragments: Fragments::new(offsets),
             mixed: Mixed::new(tile::TILE_PIXELS),
-            lit: Lit::new(self.lighting),
+            lit: Lit::new(frame.lighting),
             order: FrontToBack::default(),
-        };
+        }
+    }
+}
+
+impl<'a> Frame<'a> {
+    fn render_band(&self, mut band: Band<'_>, scratch: &mut Scratch<'a>) {
+        let grid = TileGrid::new(self.view.width(), self.view.height());
+        let wants_center = band.depth.is_some() || band.item.is_some() || band.normal.is_some();
         for column in 0..grid.columns {
             let tile = [column * TILE, band.row * TILE];
             let size = [
@@ -210,12 +218,12 @@ impl<'a> Frame<'a> {
             ];
             let index = (band.row * grid.columns + column) as u32;
             if self.occupied[index as usize] {
-                self.color_tile(&mut band, &mut scratch, [tile, size], index);
+                self.color_tile(&mut band, scratch, [tile, size], index);
             } else {
                 self.empty_tile(&mut band, [tile, size]);
             }
             if wants_center {
-                self.center_tile(&mut band, &mut scratch, [tile, size], index);
+                self.center_tile(&mut band, scratch, [tile, size], index);
             }
         }
     }
@@ -329,6 +337,9 @@ impl<'a> Frame<'a> {
     ) {
         let [tile, size] = area;
         let Scratch { center, lit, .. } = scratch;
+        if center.is_empty() {
+            *center = SamplePlane::of(&[[0; 2]]);
+        }
         center.iter_mut().for_each(SamplePlane::clear);
         for coverage in [Coverage::Opaque, Coverage::Blended] {
             self.rasterize(coverage, center, area, index, None::<&mut AllPass>);

@@ -227,29 +227,36 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
     }
     let (x0, mut y) = (x0 & -width, y0 & -BLOCK);
     let nearest = t.depth_min.to_bits() as i32;
+    // From a block to the one beside it, and to the one below.
+    let beside = dx.map(|dx| i64::from(dx) * i64::from(width * SUBPIXELS));
+    let below = dy.map(|dy| i64::from(dy) * i64::from(BLOCK * SUBPIXELS));
+    let mut first = [0; 3];
+    for i in 0..3 {
+        first[i] = at[i] + i64::from(dx[i]) * i64::from(x0 * SUBPIXELS);
+        first[i] += i64::from(dy[i]) * i64::from(y * SUBPIXELS);
+    }
     while y <= y1 {
-        let mut x = x0;
+        let (mut x, mut here, mut entered) = (x0, first, false);
         while x <= x1 {
-            if plane.hides([x, y, x + width - 1, y], nearest) {
-                x += width;
-                continue;
+            let outside = (0..3).any(|i| here[i] + highest[i] < 0);
+            // Those that are not outside lie side by side.
+            if outside && entered {
+                break;
             }
-            let (fx, fy) = (i64::from(x * SUBPIXELS), i64::from(y * SUBPIXELS));
-            let mut edges = LaneEdges { row: [S::i32s::splat(simd, 0); 3], step_y: [0; 3] };
-            let mut most = [i32x8::splat(simd, 0); 3];
-            let (mut step_x, mut outside) = ([0; 3], false);
-            for i in 0..3 {
-                let here = at[i] + i64::from(dx[i]) * fx + i64::from(dy[i]) * fy;
-                outside |= here + highest[i] < 0;
-                // An edge that the whole block lies inside of is left out; the others fit i32.
-                if here + lowest[i] < 0 {
-                    edges.row[i] = at_lanes[i] + (here >> SUBPIXEL_BITS) as i32;
-                    most[i] = rows[i] + (here >> SUBPIXEL_BITS) as i32;
-                    edges.step_y[i] = dy[i];
-                    step_x[i] = dx[i].wrapping_mul(columns);
+            entered |= !outside;
+            if !outside && !plane.hides([x, y, x + width - 1, y], nearest) {
+                let mut edges = LaneEdges { row: [S::i32s::splat(simd, 0); 3], step_y: [0; 3] };
+                let mut most = [i32x8::splat(simd, 0); 3];
+                let mut step_x = [0; 3];
+                for i in 0..3 {
+                    // An edge that the whole block lies inside of is left out; the others fit i32.
+                    if here[i] + lowest[i] < 0 {
+                        edges.row[i] = at_lanes[i] + (here[i] >> SUBPIXEL_BITS) as i32;
+                        most[i] = rows[i] + (here[i] >> SUBPIXEL_BITS) as i32;
+                        edges.step_y[i] = dy[i];
+                        step_x[i] = dx[i].wrapping_mul(columns);
+                    }
                 }
-            }
-            if !outside {
                 let in_box = (2u64 << (y1 - y).min(7)) - 1;
                 let mut column = 0;
                 while column < width {
@@ -264,7 +271,13 @@ fn rasterize_blocks<S: Simd, T: FragmentTest>(
                     column += columns;
                 }
             }
+            for (here, step) in here.iter_mut().zip(beside) {
+                *here += step;
+            }
             x += width;
+        }
+        for (first, step) in first.iter_mut().zip(below) {
+            *first += step;
         }
         y += BLOCK;
     }
