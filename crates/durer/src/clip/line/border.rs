@@ -188,7 +188,7 @@ impl<const N: usize> Canonical<N> {
     /// Decides exactly on which side of the borders of axis k the crossing with `border` is, and
     /// puts the rounded point there.
     #[inline(never)]
-    fn settle_cut(
+    pub(super) fn settle_cut(
         &self,
         window: &ClipBox<N>,
         (axis, border): (usize, f64),
@@ -293,7 +293,7 @@ impl<const N: usize> Canonical<N> {
 
 /// Whether a comes after b lexicographically; no branches, which half of all segments would miss.
 #[inline]
-fn is_greater<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
+pub(super) fn is_greater<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
     (0..N).rev().fold(false, |rest, k| (a[k] > b[k]) | ((a[k] == b[k]) & rest))
 }
 

@@ -8,7 +8,7 @@
 //! We deviate in one point: every cut is computed from the original ends, and its outcode exactly,
 //! so rounding does not pile up over several cuts and a corner touch is never judged wrong.
 
-use super::border::{Canonical, Cut, lowest_border};
+use super::border::{Canonical, Cut, bit, doubt, is_greater, lowest_border};
 use super::{ClipBox, End, Segment};
 use crate::Result;
 use crate::clip::outcode::Outcode;
@@ -110,7 +110,8 @@ pub fn clip_box(
     run(window, segment, segment.start.to_array(), segment.end.to_array(), t)
 }
 
-#[inline]
+// A call would pass both ends through memory.
+#[inline(always)]
 fn run<const N: usize, P: From<[f64; N]>>(
     window: &ClipBox<N>,
     segment: Segment<P>,
@@ -124,13 +125,14 @@ fn run<const N: usize, P: From<[f64; N]>>(
         t.step(|| Step::Accepted);
         return Ok(Some(segment));
     }
-    let line = Canonical::new(start, end)?;
+    let line = Line::new(start, end);
     if !(code_start & code_end).is_inside() {
+        Canonical::new(start, end)?;
         t.step(|| Step::Rejected);
         return Ok(None);
     }
-    let mut codes = if line.swapped { [code_end, code_start] } else { [code_start, code_end] };
-    let mut ends = [line.p, line.q];
+    let mut codes = [code_start, code_end];
+    let mut ends = [start, end];
     // Each turn clears at least one bit for good, so 2·N·2 turns would be the end in any case.
     while !(codes[0] | codes[1]).is_inside() {
         if !(codes[0] & codes[1]).is_inside() {
@@ -139,34 +141,113 @@ fn run<const N: usize, P: From<[f64; N]>>(
         }
         let which = usize::from(codes[0].is_inside());
         let (axis, upper) = lowest_border(codes[which]);
-        let cut = short_cut(&line, window, axis, upper);
+        let cut = line.cut(window, axis, upper)?;
         (ends[which], codes[which]) = (cut.point, cut.code);
         t.step(|| Step::Cut {
-            end: [End::Start, End::End][which].swapped_if(line.swapped),
-            border: super::border::bit(axis, upper),
+            end: [End::Start, End::End][which],
+            border: bit(axis, upper),
             point: cut.point.into(),
             code: cut.code,
         });
     }
     t.step(|| Step::Accepted);
-    Ok(Some(line.in_order(ends[0], ends[1])))
+    Ok(Some(Segment { start: ends[0].into(), end: ends[1].into() }))
 }
 
-/// The cut with a border; segments parallel to the axis take the short way without arithmetic.
-#[inline]
-fn short_cut<const N: usize>(
-    line: &Canonical<N>,
-    window: &ClipBox<N>,
-    axis: usize,
-    upper: usize,
-) -> Cut<N> {
-    if N == 2 && line.p[1 - axis] == line.q[1 - axis] {
-        let mut point = line.p;
+/// A segment that is cut without being turned round: [`Canonical::cut`] with the same bits.
+///
+/// For a point from p to q, (q − p)·((border − p) / (q − p)) does not hang on the sign of q − p, for
+/// rounding is symmetric. So of the canonical direction only its first end is needed.
+#[derive(Debug, Clone, Copy)]
+struct Line<const N: usize> {
+    ends: [[f64; N]; 2],
+    /// From the first to the second.
+    way: [f64; N],
+}
+
+impl<const N: usize> Line<N> {
+    #[inline(always)]
+    fn new(start: [f64; N], end: [f64; N]) -> Self {
+        Self { ends: [start, end], way: std::array::from_fn(|k| end[k] - start[k]) }
+    }
+
+    /// What only an exact test tells of a cut.
+    ///
+    /// # Errors
+    /// [`crate::Error::NonFinite`], with index 0 for the start and 1 for the end.
+    // Not in the loop, where the compiler would do it for every segment.
+    #[cold]
+    #[inline(never)]
+    fn settle(
+        &self,
+        window: &ClipBox<N>,
+        border: (usize, f64),
+        k: usize,
+    ) -> Result<(Outcode, f64)> {
+        let line = Canonical::new(self.ends[0], self.ends[1])?;
+        let mut point = [border.1; N];
+        let code = line.settle_cut(window, border, k, &mut point);
+        Ok((code, point[k]))
+    }
+
+    /// The crossing with a border, which the segment must span; segments parallel to the axis take
+    /// the short way without arithmetic.
+    ///
+    /// Coordinates that are not finite let none of the quick tests succeed, so that only what these
+    /// leave open needs to be looked at.
+    // A call would pass the cut through memory, which costs as much as making it.
+    #[inline(always)]
+    fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Result<Cut<N>> {
+        if N == 2 && self.way[1 - axis] == 0.0 {
+            return self.short_cut(window, axis, upper);
+        }
+        let p = &self.ends[usize::from(self.is_turned())];
+        let border = window.borders[axis][upper];
+        let length = self.way[axis];
+        let t = (border - p[axis]) / length;
+        let mut point = [border; N];
+        let mut code = Outcode::INSIDE;
+        // The other axes, without a branch that depends on which axis it is.
+        for k in (1..N).map(|step| (axis + step) % N) {
+            let [min, max] = window.borders[k];
+            let near = p[k] + self.way[k] * t;
+            let margin = doubt(self.ends[0][k], self.ends[1][k]);
+            point[k] = near;
+            // Huge coordinates make one of these infinite or NaN, and then the test fails.
+            let sure = length.abs() < f64::MAX;
+            if sure && near - min > margin && max - near > margin {
+                continue;
+            }
+            // Beyond a border by more than any rounding, it needs no exact test either.
+            if sure && min - near > margin && near > -f64::MAX {
+                code |= bit(k, 0);
+            } else if sure && near - max > margin && near < f64::MAX {
+                code |= bit(k, 1);
+            } else {
+                let (settled, near) = self.settle(window, (axis, border), k)?;
+                (point[k], code) = (near, code | settled);
+            }
+        }
+        Ok(Cut { point, code })
+    }
+
+    /// Whether the second end is lexicographically smaller. Of a segment in the plane that is not
+    /// parallel to an axis x tells.
+    #[inline(always)]
+    fn is_turned(&self) -> bool {
+        let [start, end] = &self.ends;
+        if N == 2 { start[0] > end[0] } else { is_greater(start, end) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn short_cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Result<Cut<N>> {
+        Canonical::new(self.ends[0], self.ends[1])?;
+        let mut point = self.ends[0];
         point[axis] = window.borders[axis][upper];
         // Its other coordinate is inside, or the AND test would have rejected the segment; adding
         // zero turns −0 into 0, as the long way does.
         point[1 - axis] += 0.0;
-        return Cut { point, code: Outcode::INSIDE };
+        Ok(Cut { point, code: Outcode::INSIDE })
     }
-    line.cut(window, axis, upper)
 }

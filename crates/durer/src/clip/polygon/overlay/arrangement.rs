@@ -262,7 +262,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
         if self.inner.is_empty() {
             return;
         }
-        self.place = vec![NONE; self.nodes.len()];
+        self.place = parallel::filled(NONE, self.nodes.len());
         for (&node, place) in self.inner.iter().zip(0..) {
             self.place[node as usize] = place;
         }
@@ -285,7 +285,7 @@ impl<'a, C: Coord> Arrangement<'a, C> {
             });
         let ends = parallel::ends(counts.into_iter());
         let mut starts = vec![0u32; self.nodes.len() + 1];
-        let mut around = vec![Half::default(); self.edges.len() * 2];
+        let mut around = parallel::filled(Half::default(), self.edges.len() * 2);
         starts[self.nodes.len()] = around.len() as u32;
         let node_ends = self.node_ends();
         let tasks = parallel::cut(&mut starts, &node_ends).into_iter();

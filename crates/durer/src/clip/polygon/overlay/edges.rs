@@ -127,7 +127,8 @@ impl Edges {
         }
         let length = |pieces: &Vec<Piece>| pieces.iter().map(|p| p.range().len()).sum();
         let ends = parallel::ends(pieces.iter().map(length));
-        let mut list = vec![Edge::default(); ends.last().copied().unwrap_or(0) as usize];
+        let mut list =
+            parallel::filled(Edge::default(), ends.last().copied().unwrap_or(0) as usize);
         let tasks = parallel::cut(&mut list, &ends).into_iter().zip(&pieces).enumerate();
         let leaving = parallel::map(tasks.collect(), |(patch, (list, pieces))| {
             place(list, pieces, |piece, list| {

@@ -293,14 +293,19 @@ impl<C: Coord> Workbench<C> {
     #[inline(never)]
     fn crowd_hits(&mut self, items: &[u32], first: u32, part: &mut Part<C>) {
         let (strips, segments, pixels) = (&self.strips, &self.segments, &self.pixels);
+        let mut list: Vec<(Point<C>, u32)> = (pixels.iter().map(|p| p.0)).zip(0..).collect();
         // In the order of the segments that end there, for those mostly follow one another.
-        let mut order: Vec<u32> = (0..pixels.len() as u32).collect();
-        order.sort_by_key(|&k| pixels[k as usize].1);
-        let hits = parallel::map(order.chunks(SEARCHES).collect(), |some: &[u32]| {
-            let (mut hits, mut finder) = (Vec::new(), strips.finder(segments));
-            for &k in some {
-                finder.hits(pixels[k as usize].0, |i| hits.push((i, k)));
-            }
+        list.sort_by_key(|&(_, k)| pixels[k as usize].1);
+        if parallel::threads() == 1 || list.len() <= SEARCHES {
+            strips.hits(segments, &list, |i, k| {
+                part.hits[items[i] as usize / SHELF].push((items[i], first + k));
+                self.pixels[k as usize].1.count();
+            });
+            return;
+        }
+        let hits = parallel::map(list.chunks(SEARCHES).collect(), |some| {
+            let mut hits = Vec::new();
+            strips.hits(segments, some, |i, k| hits.push((i, k)));
             hits
         });
         for (i, k) in hits.into_iter().flatten() {

@@ -78,8 +78,8 @@ impl Outlines {
         lattice: &P::Lattice,
     ) -> (Vec<Segment<C>>, Vec<Source>) {
         let count = self.ends.last().copied().unwrap_or(0) as usize;
-        let mut segments = vec![Segment::default(); count];
-        let mut sources = vec![Source::default(); count];
+        let mut segments = parallel::filled(Segment::default(), count);
+        let mut sources = parallel::filled(Source::default(), count);
         let tasks =
             segments.chunks_mut(TASK).zip(sources.chunks_mut(TASK)).zip((0..).step_by(TASK));
         parallel::map(tasks.collect(), |((segments, sources), start)| {

@@ -65,13 +65,27 @@ pub fn range(ends: &[u32], index: usize) -> Range<usize> {
     start as usize..ends[index] as usize
 }
 
+/// Less than this is filled faster than it is shared out.
+const FILLS: usize = if cfg!(test) { 8 } else { 1 << 16 };
+
+/// So many times a value: memory that is written for the first time costs the kernel a fault for each
+/// page, so threads share that too.
+pub fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    if count > FILLS && threads() > 1 {
+        use rayon::prelude::*;
+        return rayon::iter::repeat_n(value, count).with_min_len(FILLS / 4).collect();
+    }
+    vec![value; count]
+}
+
 /// All lists, one after the other.
 pub fn concat<T: Copy + Default + Send + Sync>(lists: &[&[T]]) -> Vec<T> {
     if threads() == 1 {
         return lists.concat();
     }
     let ends = ends(lists.iter().map(|list| list.len()));
-    let mut all = vec![T::default(); ends.last().copied().unwrap_or(0) as usize];
+    let mut all = filled(T::default(), ends.last().copied().unwrap_or(0) as usize);
     let tasks = cut(&mut all, &ends).into_iter().zip(lists).collect();
     map(tasks, |(to, from): (&mut [T], &&[T])| to.copy_from_slice(from));
     all

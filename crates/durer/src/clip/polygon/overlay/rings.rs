@@ -90,7 +90,7 @@ fn courses<C: Coord>(
     graph: &Arrangement<C>,
     inside: impl Fn(Winding) -> bool + Sync,
 ) -> Vec<Course> {
-    let mut courses = vec![Course::No; graph.edges.len()];
+    let mut courses = parallel::filled(Course::No, graph.edges.len());
     let tasks = parallel::cut(&mut courses, &graph.edge_ends()).into_iter().zip(&graph.patches);
     parallel::map(tasks.collect(), |(courses, patch): (&mut [Course], &Patch)| {
         for (course, e) in courses.iter_mut().zip(patch.edges.clone()) {
@@ -109,7 +109,7 @@ impl<C: Coord> Linker<'_, C> {
     /// the piece of inside to its left, so that pieces that only touch stay apart.
     #[inline(never)]
     fn pair(&mut self) {
-        let mut next = vec![NONE; self.graph.edges.len()];
+        let mut next = parallel::filled(NONE, self.graph.edges.len());
         let tasks = parallel::cut(&mut next, &self.graph.edge_ends()).into_iter();
         let tasks = tasks.zip(&self.graph.patches).collect();
         let elsewhere = parallel::map(tasks, |(next, patch): (&mut [u32], &Patch)| {
@@ -153,28 +153,16 @@ impl<C: Coord> Linker<'_, C> {
     /// back to a node: first the walks that stay within a patch, then the others.
     #[inline(never)]
     fn trace(&mut self) {
-        let mut walk_of = vec![NONE; self.graph.edges.len()];
-        let edge_ends = self.graph.edge_ends();
-        let tasks = parallel::cut(&mut walk_of, &edge_ends).into_iter().zip(&self.graph.patches);
-        let groups = parallel::groups(tasks.collect());
-        let group_sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
-        let mut found = parallel::map(groups, |group: Vec<(&mut [u32], &Patch)>| {
-            let mut found = Found::default();
-            let edges = group.iter().flat_map(|(_, patch)| patch.edges.clone());
-            let on = edges.filter(|&e| self.courses[e] != Course::No);
-            found.nodes.reserve(on.map(|e| 1 + self.graph.inner(e).len()).sum());
-            for (walk_of, patch) in group {
-                let starts = patch.edges.clone().map(|e| e as u32);
-                found = Trace { linker: &*self, patch, walk_of, found }.run(starts);
-            }
-            found
+        let mut walk_of = parallel::filled(NONE, self.graph.edges.len());
+        let groups = parallel::groups(self.graph.patches.iter().collect());
+        let group_ends: Vec<u32> =
+            groups.iter().map(|group| group.last().map_or(0, |p| p.edges.end as u32)).collect();
+        let tasks = groups.iter().zip(parallel::cut(&mut walk_of, &group_ends)).collect();
+        let mut found = parallel::map(tasks, |(group, walk_of): (&Vec<&Patch>, &mut [u32])| {
+            self.trace_group(group, walk_of)
         });
         // Walks are named from zero in each group.
         let first_walks = parallel::ends(found.iter().map(|found| found.walks.len()));
-        let mut group_ends = parallel::ends(group_sizes.into_iter());
-        group_ends.iter_mut().for_each(|end| {
-            *end = end.checked_sub(1).map_or(0, |patch| edge_ends[patch as usize]);
-        });
         let tasks = parallel::cut(&mut walk_of, &group_ends).into_iter().enumerate();
         parallel::map(tasks.collect(), |(k, walk_of): (usize, &mut [u32])| {
             let first = parallel::range(&first_walks, k).start as u32;
@@ -196,6 +184,32 @@ impl<C: Coord> Linker<'_, C> {
         }
         self.walk_of = walk_of;
         self.collect(found);
+    }
+
+    /// Walks that stay within a patch of a group, then those that stay within the group.
+    fn trace_group(&self, group: &[&Patch], walk_of: &mut [u32]) -> Found {
+        let mut found = Found::default();
+        let [Some(first), Some(last)] = [group.first(), group.last()] else { return found };
+        let all = Patch {
+            nodes: first.nodes.start..last.nodes.end,
+            edges: first.edges.start..last.edges.end,
+        };
+        let on = all.edges.clone().filter(|&e| self.courses[e] != Course::No);
+        found.nodes.reserve(on.map(|e| 1 + self.graph.inner(e).len()).sum());
+        for patch in group {
+            let starts = patch.edges.clone().map(|e| e as u32);
+            let place = |e: usize| e - all.edges.start;
+            let walk_of = &mut walk_of[place(patch.edges.start)..place(patch.edges.end)];
+            found = Trace { linker: self, patch, walk_of, found }.run(starts);
+        }
+        let left = std::mem::take(&mut found.left);
+        if group.len() > 1 && !left.is_empty() {
+            walk_of.iter_mut().filter(|walk| **walk == LEFT).for_each(|walk| *walk = NONE);
+            found = Trace { linker: self, patch: &all, walk_of, found }.run(left.into_iter());
+        } else {
+            found.left = left;
+        }
+        found
     }
 
     fn collect(&mut self, mut found: Vec<Found>) {

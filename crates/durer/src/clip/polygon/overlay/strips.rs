@@ -2,10 +2,15 @@
 //! (*An optimal algorithm for finding segments intersections*, 1995, the simpler form).
 //!
 //! In each strip, segments that span it and do not cross one another form a staircase; the others
-//! find the stairs they cross or hit by binary search, and go down into the two halves.
-//! O(n log² n + k) time for n segments and k crossings, O(n log n) memory.
+//! find the stairs they cross or hit by binary search. Stairs divide the others into groups, each
+//! between two of them, and each group goes down into its own two halves of the strip. So neighbours
+//! that run side by side come apart at once, and what is left of each level is small.
+//! O(n log² n + k) time for n segments and k crossings, O(n log n + k) memory.
+
+mod finder;
 
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use super::lattice::{Coord, Height, Point, Segment, cross};
 use super::parallel;
@@ -13,26 +18,56 @@ use super::parallel;
 /// Strips with no more segments than this are not halved.
 const FEW: usize = 12;
 
+/// About how many segments are in a group, if stairs keep them apart.
+const GROUP: usize = if cfg!(test) { 4 } else { 24 };
+
 /// How many segments one task looks for on a staircase.
 const CLIMBS: usize = if cfg!(test) { 8 } else { 1 << 11 };
+
+/// Of how many segments, at most, the ends tell where a strip is halved.
+const SAMPLES: usize = 64;
+
+/// Pairs that cross, and where.
+type Found<C> = Vec<(u32, u32, Point<C>)>;
 
 /// The staircases of all strips.
 #[derive(Debug, Default)]
 pub struct Strips<C> {
-    strips: Vec<Strip<C>>,
-    /// Indices of segments: of each strip its stairs, from low to high, and of the last ones all.
+    strips: Vec<Strip>,
+    groups: Vec<Group<C>>,
+    /// Indices of segments: of each strip its stairs, from low to high, and of each group that is not
+    /// halved all.
     lists: Vec<u32>,
-    /// Pairs that cross, and where.
-    found: Vec<(u32, u32, Point<C>)>,
+    found: Found<C>,
+    /// Segments of the strips that are being worked on, those of a part behind the whole's.
+    open: Vec<u32>,
+    /// Of the open segments of a strip the lowest and the highest place on its staircase.
+    places: Vec<(u32, u32)>,
+    /// Of each place on a staircase its group.
+    group_of: Vec<u32>,
+    /// Segments that span the strip that is being worked on, and those of them that are stairs.
+    spanning: Vec<Stair>,
+    stairs: Vec<Stair>,
+    ends: Vec<C>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Strip<C> {
+struct Strip {
     stairs: (u32, u32),
+    /// From low to high, at least one.
+    groups: (u32, u32),
+}
+
+/// What is not on a staircase, between two of its stairs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group<C> {
+    /// Places on the staircase below this belong to the group or to those before: above so many
+    /// stairs.
+    end: u32,
     /// Columns from `middle` on belong to the right half.
     middle: C,
     halves: Option<(u32, u32)>,
-    /// The rest, compared one by one, where there are no halves.
+    /// Its segments, compared one by one, where there are no halves.
     rest: (u32, u32),
 }
 
@@ -40,11 +75,13 @@ impl<C: Coord> Strips<C> {
     /// Divides the columns `left..=right` of pixels.
     pub fn build(&mut self, segments: &[Segment<C>], left: i64, right: i64) {
         self.strips.clear();
+        self.groups.clear();
         self.lists.clear();
         self.found.clear();
+        self.open.clear();
+        self.open.extend(0..segments.len() as u32);
         // One column more on both sides: a crossing on the border may round into the leaf.
-        let all: Vec<u32> = (0..segments.len() as u32).collect();
-        self.strip(segments, left - 1, right + 1, all);
+        self.strip(segments, (left - 1, right + 1), 0);
     }
 
     /// All pairs that cross, with their pixels; some pairs more than once.
@@ -54,53 +91,119 @@ impl<C: Coord> Strips<C> {
         }
     }
 
-    /// To look for what passes through pixels.
-    pub fn finder<'a>(&'a self, segments: &'a [Segment<C>]) -> Finder<'a, C> {
-        Finder { strips: self, segments, below: vec![0; self.strips.len()] }
-    }
-
-    /// Works on the columns `left..=right`, that is from x = left − ½ to right + ½.
-    fn strip(&mut self, segments: &[Segment<C>], left: i64, right: i64, list: Vec<u32>) -> u32 {
+    /// Works on the columns `left..=right`, that is from x = left − ½ to right + ½, and the open
+    /// segments from `start` on.
+    fn strip(&mut self, segments: &[Segment<C>], columns: (i64, i64), start: usize) -> u32 {
         let index = self.strips.len();
         self.strips.push(Strip::default());
-        let columns = Columns::new(left, right);
-        let (stairs, rest) = if list.len() <= FEW {
-            (Vec::new(), list)
-        } else {
-            staircase(segments, columns, &list)
-        };
-        let found = parallel::map(rest.chunks(CLIMBS).collect(), |some: &[u32]| {
-            let mut climber = Climber { segments, columns, stairs: &stairs, below: (0, 0) };
-            let mut found = Vec::new();
-            some.iter().for_each(|&i| climber.climb(i, &mut found));
-            found
-        });
-        found.iter().for_each(|found| self.found.extend_from_slice(found));
-        let start = self.lists.len() as u32;
-        self.lists.extend(stairs.iter().map(|stair| stair.index));
-        self.strips[index].stairs = (start, self.lists.len() as u32);
-        if rest.len() <= FEW || left == right {
-            self.compare_all(segments, &rest);
-            let start = self.lists.len() as u32;
-            self.lists.extend_from_slice(&rest);
-            self.strips[index].rest = (start, self.lists.len() as u32);
-            return index as u32;
+        let mut stairs = (0, 0);
+        if self.open.len() - start > FEW {
+            stairs = self.staircase(&Bounds::new(segments, columns), start);
         }
-        let middle = middle(segments, left, right, &rest);
-        let part = |f: &dyn Fn(&Segment<C>) -> bool| {
-            rest.iter().copied().filter(|&i| f(&segments[i as usize])).collect::<Vec<u32>>()
-        };
-        let lower = part(&|s| s.a.x.i64() < middle);
-        let upper = part(&|s| s.b.x.i64() >= middle);
-        drop(rest);
-        let lower = self.strip(segments, left, middle - 1, lower);
-        let upper = self.strip(segments, middle, right, upper);
-        self.strips[index].middle = C::from_i64(middle);
-        self.strips[index].halves = Some((lower, upper));
+        let (first, end) = (self.groups.len(), self.open.len());
+        self.divide(start, stairs.1 - stairs.0);
+        self.strips[index] = Strip { stairs, groups: (first as u32, self.groups.len() as u32) };
+        for group in (first..self.groups.len()).rev() {
+            let (start, end) = self.groups[group].rest;
+            self.open.truncate(end as usize);
+            self.group(group, segments, columns, start as usize);
+        }
+        self.open.truncate(end);
         index as u32
     }
 
-    fn compare_all(&mut self, segments: &[Segment<C>], list: &[u32]) {
+    /// Divides open segments into groups, which lie behind them if there are several.
+    fn divide(&mut self, start: usize, stairs: u32) {
+        let end = self.open.len();
+        let count = end - start;
+        let first = self.groups.len();
+        let whole = Group { end: u32::MAX, rest: (start as u32, end as u32), ..Group::default() };
+        if stairs == 0 || count < 2 * GROUP {
+            return self.groups.push(whole);
+        }
+        self.group_of.clear();
+        self.group_of.resize(stairs as usize + 1, 0);
+        self.places.iter().for_each(|&(low, _)| self.group_of[low as usize] += 1);
+        let (mut load, mut group) = (0, 0);
+        for (place, load_or_group) in (1..).zip(&mut self.group_of) {
+            load += std::mem::replace(load_or_group, group);
+            if load as usize >= GROUP {
+                self.groups.push(Group { end: place, ..Group::default() });
+                (load, group) = (0, group + 1);
+            }
+        }
+        self.groups.push(whole);
+        let groups = |(low, high): (u32, u32)| {
+            let [low, high] = [low, high].map(|place| self.group_of[place as usize] as usize);
+            first + low..first + high + 1
+        };
+        let copies: usize = self.places.iter().map(|&places| groups(places).len()).sum();
+        // What crosses many stairs would be in many groups.
+        if copies > 2 * count {
+            self.groups.truncate(first);
+            return self.groups.push(whole);
+        }
+        self.groups[first..].iter_mut().for_each(|group| group.rest = (0, 0));
+        for &places in &self.places {
+            self.groups[groups(places)].iter_mut().for_each(|group| group.rest.1 += 1);
+        }
+        let mut place = end as u32;
+        for group in &mut self.groups[first..] {
+            let count = group.rest.1;
+            group.rest = (place, place);
+            place += count;
+        }
+        self.open.resize(end + copies, 0);
+        for (k, &places) in (start..).zip(&self.places) {
+            for group in &mut self.groups[groups(places)] {
+                self.open[group.rest.1 as usize] = self.open[k];
+                group.rest.1 += 1;
+            }
+        }
+    }
+
+    /// Works on a group, whose open segments are those from `start` on.
+    fn group(
+        &mut self,
+        group: usize,
+        segments: &[Segment<C>],
+        (left, right): (i64, i64),
+        start: usize,
+    ) {
+        let end = self.open.len();
+        if end - start <= FEW || left == right {
+            self.compare_all(segments, start);
+            let first = self.lists.len() as u32;
+            self.lists.extend_from_slice(&self.open[start..]);
+            self.groups[group].rest = (first, self.lists.len() as u32);
+            return;
+        }
+        let middle = self.middle(segments, (left, right), start);
+        self.open_half(start..end, |i| segments[i as usize].a.x.i64() < middle);
+        let lower = self.strip(segments, (left, middle - 1), end);
+        self.open.truncate(end);
+        self.open_half(start..end, |i| segments[i as usize].b.x.i64() >= middle);
+        let upper = self.strip(segments, (middle, right), end);
+        self.open.truncate(end);
+        self.groups[group].middle = C::from_i64(middle);
+        self.groups[group].halves = Some((lower, upper));
+    }
+
+    /// Opens those of some open segments that `keep` accepts.
+    fn open_half(&mut self, range: Range<usize>, keep: impl Fn(u32) -> bool) {
+        let mut end = self.open.len();
+        self.open.resize(end + range.len(), 0);
+        // Which half one belongs to is hard to foretell: no branch.
+        for k in range {
+            let i = self.open[k];
+            self.open[end] = i;
+            end += usize::from(keep(i));
+        }
+        self.open.truncate(end);
+    }
+
+    fn compare_all(&mut self, segments: &[Segment<C>], start: usize) {
+        let list = &self.open[start..];
         for (k, &j) in list.iter().enumerate() {
             for &i in &list[..k] {
                 if let Some(p) = segments[i as usize].crossing(&segments[j as usize]) {
@@ -109,111 +212,152 @@ impl<C: Coord> Strips<C> {
             }
         }
     }
-}
 
-/// Looks for the segments that pass through pixels; each search begins on a staircase where the
-/// one before ended.
-pub struct Finder<'a, C> {
-    strips: &'a Strips<C>,
-    segments: &'a [Segment<C>],
-    /// Of each strip how many stairs were below the last pixel.
-    below: Vec<u32>,
-}
-
-impl<C: Coord> Finder<'_, C> {
-    /// All segments that pass through a pixel, each once.
-    pub fn hits(&mut self, p: Point<C>, mut f: impl FnMut(usize)) {
-        let Strips { strips, lists, .. } = self.strips;
-        let segments = self.segments;
-        let list = |(a, b): (u32, u32)| &lists[a as usize..b as usize];
-        let mut index = 0;
-        loop {
-            let strip = &strips[index];
-            let stairs = list(strip.stairs);
-            let side = |i: &u32| segments[*i as usize].side_of_pixel(p);
-            let below = &mut self.below[index];
-            let start = partition_near(stairs, *below as usize, |i| side(i) == Ordering::Greater);
-            *below = start as u32;
-            let hit = stairs[start..].iter().take_while(|i| side(i) == Ordering::Equal);
-            for &i in hit {
-                // A stair's line hits; in its y range it is only where the segment itself goes.
-                if segments[i as usize].hits_pixel(p) {
-                    f(i as usize);
-                }
+    /// Makes the staircase of a strip: takes from the open segments those that span the strip and do
+    /// not cross one another in it, from low to high, and finds what the others cross there.
+    fn staircase(&mut self, bounds: &Bounds<C>, start: usize) -> (u32, u32) {
+        self.spanning.clear();
+        self.stairs.clear();
+        let mut rest = start;
+        for k in start..self.open.len() {
+            let i = self.open[k];
+            if bounds.are_spanned_by(i) {
+                self.spanning.push(bounds.stair(i));
+            } else {
+                self.open[rest] = i;
+                rest += 1;
             }
-            let Some((left, right)) = strip.halves else {
-                for &i in list(strip.rest) {
-                    if segments[i as usize].hits_pixel(p) {
-                        f(i as usize);
-                    }
-                }
-                return;
-            };
-            index = if p.x < strip.middle { left } else { right } as usize;
         }
+        self.open.truncate(rest);
+        parallel::sort(&mut self.spanning, |s, t| {
+            bounds
+                .compare(WEST, s, t)
+                .then_with(|| bounds.compare(EAST, s, t))
+                .then(s.index.cmp(&t.index))
+        });
+        for &stair in &self.spanning {
+            match self.stairs.last() {
+                Some(top) if bounds.crosses(top, &stair) => self.open.push(stair.index),
+                _ => self.stairs.push(stair),
+            }
+        }
+        self.climb(bounds, start);
+        let first = self.lists.len() as u32;
+        self.lists.extend(self.stairs.iter().map(|stair| stair.index));
+        (first, self.lists.len() as u32)
+    }
+
+    /// Finds the stairs that open segments cross, and their places on the staircase.
+    fn climb(&mut self, bounds: &Bounds<C>, start: usize) {
+        let (stairs, rest) = (&self.stairs[..], &self.open[start..]);
+        if stairs.is_empty() {
+            return;
+        }
+        self.places.clear();
+        self.places.resize(rest.len(), (0, 0));
+        let climb = |some: &[u32], places: &mut [(u32, u32)], found: &mut Found<C>| {
+            let mut climber = Climber { bounds, stairs, below: (0, 0) };
+            some.iter().zip(places).for_each(|(&i, place)| *place = climber.climb(i, found));
+        };
+        if parallel::threads() == 1 || rest.len() <= CLIMBS {
+            return climb(rest, &mut self.places, &mut self.found);
+        }
+        let tasks = rest.chunks(CLIMBS).zip(self.places.chunks_mut(CLIMBS));
+        let found = parallel::map(tasks.collect(), |(some, places)| {
+            let mut found = Vec::new();
+            climb(some, places, &mut found);
+            found
+        });
+        found.iter().for_each(|found| self.found.extend_from_slice(found));
+    }
+
+    /// The median column of the ends within the strip, of many segments those of some, or the
+    /// strip's middle.
+    fn middle(&mut self, segments: &[Segment<C>], (left, right): (i64, i64), start: usize) -> i64 {
+        let list = &self.open[start..];
+        self.ends.clear();
+        // An odd step, for every second edge of a ring may end on one side.
+        for &i in list.iter().step_by((list.len() / SAMPLES) | 1) {
+            let s = &segments[i as usize];
+            let within = |x: &C| left < x.i64() && x.i64() <= right;
+            self.ends.extend([s.a.x, s.b.x].iter().filter(|x| within(x)));
+        }
+        if self.ends.is_empty() {
+            return left + (right - left + 1) / 2;
+        }
+        let half = self.ends.len() / 2;
+        self.ends.select_nth_unstable(half).1.i64()
     }
 }
 
-/// A strip's columns, and its borders in half columns.
-#[derive(Debug, Clone, Copy)]
-struct Columns {
+/// The borders of a strip, by their indices.
+const WEST: usize = 0;
+const EAST: usize = 1;
+
+/// A strip's columns, its borders in half columns, and the segments that are compared there.
+#[derive(Debug)]
+struct Bounds<'a, C> {
+    segments: &'a [Segment<C>],
     left: i64,
     right: i64,
-    west: i64,
-    east: i64,
+    borders: [i64; 2],
 }
 
 /// A segment that spans a strip, with its heights at the strip's borders.
 #[derive(Debug, Clone, Copy)]
 struct Stair {
     index: u32,
-    west: Height,
-    east: Height,
+    heights: [Height; 2],
 }
 
-impl Columns {
-    fn new(left: i64, right: i64) -> Self {
-        Self { left, right, west: 2 * left - 1, east: 2 * right + 1 }
+impl<'a, C: Coord> Bounds<'a, C> {
+    fn new(segments: &'a [Segment<C>], (left, right): (i64, i64)) -> Self {
+        Self { segments, left, right, borders: [2 * left - 1, 2 * right + 1] }
     }
 
-    fn are_spanned_by<C: Coord>(&self, s: &Segment<C>) -> bool {
-        s.a.x.i64() < self.left && s.b.x.i64() > self.right
+    fn are_spanned_by(&self, index: u32) -> bool {
+        let s = &self.segments[index as usize];
+        (s.a.x.i64() < self.left) & (s.b.x.i64() > self.right)
     }
 
-    fn stair<C: Coord>(&self, segments: &[Segment<C>], index: u32) -> Stair {
-        let s = &segments[index as usize];
-        Stair { index, west: s.height_at(self.west), east: s.height_at(self.east) }
+    fn stair(&self, index: u32) -> Stair {
+        let s = &self.segments[index as usize];
+        Stair { index, heights: self.borders.map(|border| s.height_at(border)) }
     }
 
-    /// Compares at the western border, then at the eastern one, then by index.
+    /// Whether two segments that span the strip, of which the first is not higher in the west, cross
+    /// in it. What they do on the eastern border belongs to it: both come that far, and in the next
+    /// strip neither would be above the other.
+    fn crosses(&self, s: &Stair, t: &Stair) -> bool {
+        let order = self.compare(EAST, s, t);
+        order.is_gt() || (order.is_eq() && self.compare(WEST, s, t).is_lt())
+    }
+
+    /// The order of two segments at a border that both span.
     #[inline]
-    fn compare<C: Coord>(&self, segments: &[Segment<C>], s: &Stair, t: &Stair) -> Ordering {
-        let exactly = |border| {
-            segments[s.index as usize].compare_exactly(&segments[t.index as usize], border)
-        };
-        let at_west = s.west.compare(t.west).unwrap_or_else(|| exactly(self.west));
-        let at_east = || s.east.compare(t.east).unwrap_or_else(|| exactly(self.east));
-        at_west.then_with(at_east).then(s.index.cmp(&t.index))
+    fn compare(&self, border: usize, s: &Stair, t: &Stair) -> Ordering {
+        s.heights[border].compare(t.heights[border]).unwrap_or_else(|| {
+            let t = &self.segments[t.index as usize];
+            self.segments[s.index as usize].compare_exactly(t, self.borders[border])
+        })
     }
 }
 
 /// Looks for what segments cross on a staircase. Neighbours mostly follow one another, so each
 /// search begins where the one before ended.
 struct Climber<'a, C> {
-    segments: &'a [Segment<C>],
-    columns: Columns,
+    bounds: &'a Bounds<'a, C>,
     stairs: &'a [Stair],
     /// How many stairs were below the start and the end of the last segment.
     below: (usize, usize),
 }
 
 impl<C: Coord> Climber<'_, C> {
-    /// Finds the stairs that a segment crosses within the strip.
-    fn climb(&mut self, index: u32, found: &mut Vec<(u32, u32, Point<C>)>) {
-        if self.stairs.is_empty() {
-            return;
-        }
-        let Self { segments, columns, stairs, below } = self;
+    /// Finds the stairs that a segment crosses within the strip. Gives its lowest and highest place:
+    /// how many stairs are below.
+    fn climb(&mut self, index: u32, found: &mut Found<C>) -> (u32, u32) {
+        let Self { bounds, stairs, below } = self;
+        let segments = bounds.segments;
         let s = &segments[index as usize];
         let under = |end: Point<C>, guess: usize| {
             partition_near(stairs, guess, |stair| {
@@ -221,30 +365,34 @@ impl<C: Coord> Climber<'_, C> {
                 cross(stair.a, stair.b, end) > C::Wide::default()
             })
         };
-        let under_border = |border: i64, guess: usize, at: fn(&Stair) -> Height| {
-            let height = s.height_at(border);
-            partition_near(stairs, guess, |stair| {
-                let order = at(stair).compare(height);
-                let stair = &segments[stair.index as usize];
-                order.unwrap_or_else(|| stair.compare_exactly(s, border)) == Ordering::Less
-            })
+        let at = |border: usize| {
+            let mut heights = [Height::default(); 2];
+            heights[border] = s.height_at(bounds.borders[border]);
+            Stair { index, heights }
         };
-        let start = if s.a.x.i64() >= columns.left {
+        let start = if s.a.x.i64() >= bounds.left {
             under(s.a, below.0)
         } else {
-            under_border(columns.west, below.0, |stair| stair.west)
+            let west = at(WEST);
+            partition_near(stairs, below.0, |stair| bounds.compare(WEST, stair, &west).is_lt())
         };
-        let end = if s.b.x.i64() <= columns.right {
-            under(s.b, below.1)
+        let (end, met) = if s.b.x.i64() <= bounds.right {
+            (under(s.b, below.1), 0)
         } else {
-            under_border(columns.east, below.1, |stair| stair.east)
+            let east = at(EAST);
+            let order = |stair: &Stair| bounds.compare(EAST, stair, &east);
+            let end = partition_near(stairs, below.1, |stair| order(stair).is_lt());
+            // What is met on the eastern border is crossed there: see `Bounds::crosses`.
+            (end, stairs[end..].iter().take_while(|stair| order(stair).is_eq()).count())
         };
         *below = (start, end);
-        for stair in &stairs[start.min(end)..start.max(end)] {
+        let (low, high) = (start.min(end), start.max(end + met));
+        for stair in &stairs[low..high] {
             if let Some(p) = segments[stair.index as usize].crossing(s) {
                 found.push((stair.index, index, p));
             }
         }
+        (low as u32, high as u32)
     }
 }
 
@@ -272,52 +420,6 @@ fn partition_near<T>(list: &[T], guess: usize, mut before: impl FnMut(&T) -> boo
     low + list[low..high.max(low)].partition_point(before)
 }
 
-/// Splits off segments that span the strip and do not cross one another in it, from low to high.
-fn staircase<C: Coord>(
-    segments: &[Segment<C>],
-    columns: Columns,
-    list: &[u32],
-) -> (Vec<Stair>, Vec<u32>) {
-    let mut spanning = Vec::new();
-    let mut rest = Vec::new();
-    for &i in list {
-        if columns.are_spanned_by(&segments[i as usize]) {
-            spanning.push(columns.stair(segments, i));
-        } else {
-            rest.push(i);
-        }
-    }
-    parallel::sort(&mut spanning, |s, t| columns.compare(segments, s, t));
-    let mut stairs: Vec<Stair> = Vec::with_capacity(spanning.len());
-    for stair in spanning {
-        let above = |top: &Stair| {
-            top.east.compare(stair.east).unwrap_or_else(|| {
-                let other = &segments[stair.index as usize];
-                segments[top.index as usize].compare_exactly(other, columns.east)
-            })
-        };
-        match stairs.last() {
-            Some(top) if above(top) == Ordering::Greater => rest.push(stair.index),
-            _ => stairs.push(stair),
-        }
-    }
-    (stairs, rest)
-}
-
-/// The median column of the ends within the strip, or its middle.
-fn middle<C: Coord>(segments: &[Segment<C>], left: i64, right: i64, list: &[u32]) -> i64 {
-    let ends = list.iter().flat_map(|&i| {
-        let s = &segments[i as usize];
-        [s.a.x.i64(), s.b.x.i64()]
-    });
-    let mut ends: Vec<i64> = ends.filter(|&x| left < x && x <= right).collect();
-    if ends.is_empty() {
-        return left + (right - left + 1) / 2;
-    }
-    let half = ends.len() / 2;
-    *ends.select_nth_unstable(half).1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -340,12 +442,16 @@ mod tests {
 
     #[test]
     fn strips_find_what_all_pairs_find() {
-        for (round, limit) in [(1u64, 40), (2, 300), (3, 1 << 28)] {
+        // On tiny grids many cross just where two strips meet.
+        let tiny = (4..60).map(|round| (round, 16, 60));
+        for (round, limit, count) in
+            [(1u64, 40, 400), (2, 300, 400), (3, 1 << 28, 400)].into_iter().chain(tiny)
+        {
             let mut seed = round;
             let mut point = |near: i64| {
                 Point::<i32>::new(near + spread(&mut seed, limit / 4), spread(&mut seed, limit))
             };
-            let segments: Vec<Segment<i32>> = (0..400)
+            let segments: Vec<Segment<i32>> = (0..count)
                 .map(|i| {
                     let (a, b) = (point(0), point(if i % 3 == 0 { 0 } else { 3 * limit / 4 }));
                     if a < b { Segment { a, b } } else { Segment { a: b, b: a } }
@@ -355,22 +461,24 @@ mod tests {
             let mut strips = Strips::default();
             strips.build(&segments, 0, limit);
             let mut found = Vec::new();
-            strips.crossings(|_, _, p| found.push(p));
+            strips.crossings(|i, j, p| found.push((i.min(j), i.max(j), p)));
             let pairs = (0..segments.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-            let mut expected: Vec<_> =
-                pairs.filter_map(|(i, j)| segments[i].crossing(&segments[j])).collect();
+            let crossing =
+                |(i, j): (usize, usize)| Some((i, j, segments[i].crossing(&segments[j])?));
+            let mut expected: Vec<_> = pairs.filter_map(crossing).collect();
             for list in [&mut found, &mut expected] {
                 list.sort_unstable();
                 list.dedup();
             }
             assert_eq!(found, expected);
-            let mut finder = strips.finder(&segments);
-            for &p in expected.iter().take(500) {
-                let mut hits = Vec::new();
-                finder.hits(p, |i| hits.push(i));
-                hits.sort_unstable();
+            let pixels: Vec<_> = expected.iter().map(|pair| pair.2).zip(0..500).collect();
+            let mut hits = Vec::new();
+            strips.hits(&segments, &pixels, |i, k| hits.push((k, i)));
+            hits.sort_unstable();
+            for &(p, k) in &pixels {
+                let hits = hits.iter().filter(|hit| hit.0 == k).map(|hit| hit.1);
                 let all = (0..segments.len()).filter(|&i| segments[i].hits_pixel(p));
-                assert_eq!(hits, all.collect::<Vec<_>>());
+                assert!(hits.eq(all));
             }
         }
     }

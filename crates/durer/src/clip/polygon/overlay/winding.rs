@@ -160,8 +160,8 @@ impl<C: Coord> Arrangement<'_, C> {
     /// its patch, what was found in each patch, and for each edge the winding on its right.
     #[inline(never)]
     fn walk(&self) -> (Vec<u32>, Vec<Walked<C>>, Vec<Winding>) {
-        let mut part_of = vec![NONE; self.nodes.len()];
-        let mut right = vec![Winding::default(); self.edges.len()];
+        let mut part_of = parallel::filled(NONE, self.nodes.len());
+        let mut right = parallel::filled(Winding::default(), self.edges.len());
         let node_ends = self.node_ends();
         let edge_ends = self.edge_ends();
         let parts = parallel::cut(&mut part_of, &node_ends).into_iter();
