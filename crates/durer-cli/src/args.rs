@@ -110,7 +110,7 @@ pub struct RenderArgs {
     ///
     /// A .png file, or a drawing as .svg, .pdf, .dxf, .hpgl or .geojson; `-` for standard output; a
     /// folder (existing, or ending in `/`) for NAME.png of each model; for --turntable also a file
-    /// name with a place for the frame's number, e.g. `frame_%04d.png`. Missing folders are made. A
+    /// name with a place for the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is made. A
     /// file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,

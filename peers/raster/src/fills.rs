@@ -24,9 +24,13 @@ fn all() -> Vec<Box<dyn Fn() -> Scene>> {
     ]
 }
 
-fn durer(scene: &Scene, overlap: Overlap, anti_alias: bool, target: &mut Pixels<[u8; 4]>) {
+/// A canvas, kept from picture to picture as vello_cpu's context is.
+fn canvas(scene: &Scene, overlap: Overlap, anti_alias: bool) -> Canvas {
     let options = Options { overlap, anti_alias, ..Options::default() };
-    let mut canvas = Canvas::new(scene.size, scene.size, options).unwrap();
+    Canvas::new(scene.size, scene.size, options).unwrap()
+}
+
+fn durer(scene: &Scene, canvas: &mut Canvas, target: &mut Pixels<[u8; 4]>) {
     canvas.clear([255; 4]);
     for s in &scene.shapes {
         let rule = if s.even_odd { FillRule::EvenOdd } else { FillRule::NonZero };
@@ -35,13 +39,19 @@ fn durer(scene: &Scene, overlap: Overlap, anti_alias: bool, target: &mut Pixels<
     canvas.render(target).unwrap();
 }
 
+/// The thread that asks does the work: nobody else has to be woken for it.
+fn one_thread() -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap()
+}
+
 /// Durer's fill alone, so often, for a profile.
 pub fn alone(filter: &str, times: usize, anti_alias: bool) {
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let one = one_thread();
     for scene in all().iter().map(|make| make()).filter(|s| s.name.contains(filter)) {
         let mut target = Pixels::new(scene.size, scene.size, [255; 4]);
+        let mut canvas = canvas(&scene, Overlap::Exact, anti_alias);
         for _ in 0..times {
-            one.install(|| durer(&scene, Overlap::Exact, anti_alias, &mut target));
+            one.install(|| durer(&scene, &mut canvas, &mut target));
         }
     }
 }
@@ -140,7 +150,7 @@ pub fn anti_aliased(filter: &str) {
         "| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads, by the clock |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let one = one_thread();
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     for make in all() {
         let scene = make();
@@ -150,6 +160,8 @@ pub fn anti_aliased(filter: &str) {
         let side = scene.size;
         let mut targets = [(); 3].map(|()| Pixels::new(side, side, [255; 4]));
         let [t0, t1, t2] = &mut targets;
+        let overlaps = [Overlap::Exact, Overlap::Accumulated, Overlap::Exact];
+        let [mut c0, mut c1, mut c2] = overlaps.map(|overlap| canvas(&scene, overlap, true));
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
@@ -164,19 +176,19 @@ pub fn anti_aliased(filter: &str) {
                     "exact",
                     Box::new(|| {
                         let start = Instant::now();
-                        one.install(|| durer(&scene, Overlap::Exact, true, t0));
+                        one.install(|| durer(&scene, &mut c0, t0));
                         wall_one.push(start.elapsed().as_secs_f64());
                     }),
                 ),
                 (
                     "accumulated",
-                    Box::new(|| one.install(|| durer(&scene, Overlap::Accumulated, true, t1))),
+                    Box::new(|| one.install(|| durer(&scene, &mut c1, t1))),
                 ),
                 (
                     "two",
                     Box::new(|| {
                         let start = Instant::now();
-                        two.install(|| durer(&scene, Overlap::Exact, true, t2));
+                        two.install(|| durer(&scene, &mut c2, t2));
                         wall_two.push(start.elapsed().as_secs_f64());
                     }),
                 ),
@@ -234,7 +246,7 @@ pub fn aliased(filter: &str) {
         "| aliased, ms | durer | vello_cpu | tiny-skia | best / durer | pixels unlike tiny-skia's |"
     );
     println!("|---|---|---|---|---|---|");
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let one = one_thread();
     for make in all() {
         let scene = make();
         if !scene.name.contains(filter) {
@@ -242,6 +254,7 @@ pub fn aliased(filter: &str) {
         }
         let side = scene.size;
         let mut target = Pixels::new(side, side, [255; 4]);
+        let mut canvas = canvas(&scene, Overlap::Exact, false);
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
@@ -252,7 +265,7 @@ pub fn aliased(filter: &str) {
             &mut [
                 (
                     "durer",
-                    Box::new(|| one.install(|| durer(&scene, Overlap::Exact, false, &mut target))),
+                    Box::new(|| one.install(|| durer(&scene, &mut canvas, &mut target))),
                 ),
                 (
                     "vello",

@@ -62,7 +62,8 @@ pub struct ClipArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Mask")]
 pub struct RegionArgs {
-    /// A rectangle: its left, lower, right and upper border, in the coordinates of the file
+    /// A rectangle: its left, lower, right and upper border, in the coordinates of the file; those of an SVG count
+    /// upwards, so that what it shows is below 0
     #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = window, conflicts_with_all = ["by", "tiles"])]
     pub window: Option<Rect>,
     /// The polygons of a file, all together

@@ -147,11 +147,40 @@ impl Area {
     fn with_values(&self, shapes: Shapes, values: Vec<Option<Zm>>) -> Self {
         let mut zm = Vec::with_capacity(values.len());
         for index in 0..shapes.ring_count() {
-            let range = shapes.ring_range(index);
-            let known = values.get(range).unwrap_or_default();
-            zm.extend(fill(shapes.ring(index), known, |p| self.nearest(p)));
+            let (range, ring) = (shapes.ring_range(index), shapes.ring(index));
+            let values = values.get(range).unwrap_or_default().iter().zip(ring);
+            // A corner of the mask may lie on an edge, which knows the value there.
+            let known: Vec<_> = values.map(|(v, &p)| v.or_else(|| self.on_border(p))).collect();
+            zm.extend(fill(ring, &known, |p| self.nearest(p)));
         }
         Self { shapes, dimensions: self.dimensions, zm }
+    }
+
+    /// The values at a place on an edge, as far as rounding lets it be there; of several the first.
+    fn on_border(&self, place: DVec2) -> Option<Zm> {
+        let bounds = self.shapes.bounds()?;
+        let near = NEAR * (bounds.max() - bounds.min()).max_element();
+        let (low, high) = (place - near, place + near);
+        let mut first = 0;
+        for ring in self.shapes.rings() {
+            for (i, (&a, &b)) in ring.iter().zip(ring.iter().cycle().skip(1)).enumerate() {
+                if a.max(b).cmplt(low).any() || a.min(b).cmpgt(high).any() {
+                    continue;
+                }
+                let (along, squared) = (b - a, a.distance_squared(b));
+                let t = if squared > 0.0 {
+                    ((place - a).dot(along) / squared).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                if place.distance(a + along * t) <= near {
+                    let value = |i: usize| self.zm.get(first + i % ring.len()).copied();
+                    return Some(mix(value(i)?, value(i + 1)?, t));
+                }
+            }
+            first += ring.len();
+        }
+        None
     }
 
     /// The values of the vertex nearest to a place.
@@ -163,6 +192,10 @@ impl Area {
             .map_or([0.0; 2], |n| *n.1)
     }
 }
+
+/// What is nearer to an edge than this share of the shape's size lies on it: some times what the overlay's
+/// grid moves a vertex by.
+const NEAR: f64 = 1e-12;
 
 /// The values at t between a (0) and b (1).
 fn mix(a: Zm, b: Zm, t: f64) -> Zm {

@@ -317,3 +317,53 @@ fn threads_change_nothing() {
     folder.must("clip in.geojson --window 0,0,3,3 -o b.geojson --threads 3");
     assert_eq!(folder.read("a.geojson"), folder.read("b.geojson"));
 }
+
+fn text(ended: Ended) -> String {
+    String::from_utf8(ended.out).unwrap()
+}
+
+#[test]
+fn heights_are_right_where_the_mask_has_corners_on_an_edge() {
+    let folder = Folder::new();
+    // The plane z = 10 y.
+    folder.write("z.wkt", "POLYGON Z((0 0 0,10 0 0,10 10 100,0 10 100,0 0 0))");
+    folder.write("m.wkt", "POLYGON((0 4,5 4,5 6,0 6,0 4))");
+    for (options, expected) in [
+        ("--window=0,5,10,8", &["0 5 50", "10 5 50", "10 8 80", "0 8 80"][..]),
+        ("--window=0,0,10,5", &["10 5 50", "0 5 50"]),
+        ("--window=0,5,10,8 --algorithm vatti", &["0 5 50", "10 5 50", "10 8 80", "0 8 80"]),
+        ("--by m.wkt", &["0 4 40", "0 6 60"]),
+        ("--by m.wkt --outside", &["0 4 40", "0 6 60"]),
+    ] {
+        let out = text(folder.must(&format!("clip z.wkt {options} -o -")));
+        assert!(expected.iter().all(|vertex| out.contains(vertex)), "{options}: {out}");
+    }
+}
+
+#[test]
+fn what_is_inside_and_what_is_outside_make_up_a_line_that_follows_the_border() {
+    let folder = Folder::new();
+    let line = "161.62928714421082 -81.69000050244662,162.4909916526778 -82.06227752067728,\
+                163.70533613510452 -82.39543547966299";
+    folder.write("l.wkt", format!("LINESTRING({line})"));
+    let mask = "161.6292871442109 -81.69000050244665,162.49099165267776 -82.06227752067727,\
+                163.70533613510455 -82.39543547966299,170 -80,161.6292871442109 -81.69000050244665";
+    folder.write("m.wkt", format!("POLYGON(({mask}))"));
+    let vertices = |op: &str| {
+        text(folder.must(&format!("clip l.wkt --by m.wkt {op} -o -"))).matches(" -8").count()
+    };
+    // Three vertices, or four where the line is parted at one of them.
+    let all = vertices("") + vertices("--op difference");
+    assert!(all == 3 || all == 4, "{all}");
+}
+
+#[test]
+fn lines_of_json_come_as_such_from_a_pipe() {
+    let folder = Folder::new();
+    let feature =
+        r#"{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,2]}}"#;
+    let input = format!("{feature}\n{feature}\n");
+    let out = text(piped(&folder, "clip - --window 0,0,5,5 -o -", input.as_bytes()));
+    assert_eq!(out.lines().count(), 2, "{out}");
+    assert!(out.lines().all(|line| line.starts_with(r#"{"type":"Feature""#)), "{out}");
+}

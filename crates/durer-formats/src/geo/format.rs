@@ -74,6 +74,7 @@ impl GeoFormat {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
             Some(0x1e) => Some(Self::GeoJsonRs),
+            Some(b'{') if has_another_object(text) => Some(Self::GeoJsonSeq),
             Some(b'{') => Some(Self::GeoJson),
             Some(b'<') => Some(Self::Svg),
             _ if wkb::sniff(bytes) => Some(Self::Wkb),
@@ -88,6 +89,27 @@ impl GeoFormat {
         let suffix = suffix.to_ascii_lowercase();
         Self::ALL.into_iter().find(|f| f.suffixes().contains(&suffix.as_str()))
     }
+}
+
+/// Whether a second JSON object begins where the first has ended.
+fn has_another_object(text: &[u8]) -> bool {
+    let (mut depth, mut in_string, mut escaped) = (0_u64, false, false);
+    for (i, byte) in text.iter().enumerate() {
+        match byte {
+            _ if std::mem::take(&mut escaped) => {}
+            b'\\' if in_string => escaped = true,
+            b'"' => in_string = !in_string,
+            b'{' if !in_string => depth += 1,
+            b'}' if !in_string => {
+                depth = depth.saturating_sub(1);
+                if depth == 0 {
+                    return text[i + 1..].trim_ascii_start().first() == Some(&b'{');
+                }
+            }
+            _ => {}
+        }
+    }
+    false
 }
 
 impl std::fmt::Display for GeoFormat {
@@ -105,6 +127,8 @@ mod tests {
         for (content, expected) in [
             (&b"\xef\xbb\xbf {"[..], Some(GeoFormat::GeoJson)),
             (b"\x1e{", Some(GeoFormat::GeoJsonRs)),
+            (b"{\"a\": {\"b\": \"}{\\\"\"}}\n{\"c\"", Some(GeoFormat::GeoJsonSeq)),
+            (b"{\"a\": {\"b\": \"}{\"}}\n", Some(GeoFormat::GeoJson)),
             (b"<svg", Some(GeoFormat::Svg)),
             (b"\n point (", Some(GeoFormat::Wkt)),
             (b"SRID=4326;POINT(1 2)", Some(GeoFormat::Wkt)),

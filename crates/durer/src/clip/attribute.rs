@@ -20,7 +20,7 @@ pub enum Source {
         /// 0 at `from`, 1 at `to`.
         t: f64,
     },
-    /// A corner of the window inside the shape; it lies on no edge of the input.
+    /// A corner of the window, inside the shape or on its border.
     Corner,
 }
 

@@ -5,6 +5,8 @@
 //! between two Bézier curves or surfaces*, 1984): a curve of degree n whose largest second
 //! difference of control points is m stays within n(n − 1)/8 · m/k² of its chain of k chords.
 
+use std::ops::Range;
+
 use super::path::{Path, PathElement};
 use crate::info::{Class, Info};
 use crate::math::DVec2;
@@ -63,6 +65,24 @@ impl Contours {
     /// All points of all contours.
     pub fn points(&self) -> &[DVec2] {
         &self.points
+    }
+
+    /// The contours that have points in a range of all points: the points of each, and which of them are in the range.
+    pub(crate) fn within(
+        &self,
+        range: Range<usize>,
+    ) -> impl Iterator<Item = (&[DVec2], Range<usize>)> {
+        let first = self.ends.partition_point(|end| end.0 <= range.start);
+        let mut start = first.checked_sub(1).and_then(|i| self.ends.get(i)).map_or(0, |end| end.0);
+        let ends = self.ends.get(first..).unwrap_or_default();
+        ends.iter().map_while(move |(end, _)| {
+            if start >= range.end {
+                return None;
+            }
+            let own = range.start.max(start) - start..range.end.min(*end) - start;
+            let points = self.points.get(std::mem::replace(&mut start, *end)..*end);
+            Some((points.unwrap_or_default(), own))
+        })
     }
 
     /// Forgets the contours and keeps the memory.

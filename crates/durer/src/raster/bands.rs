@@ -1,90 +1,175 @@
 //! Bands of rows, in which outlines are filled, and which edges each of them needs.
+//!
+//! Paths of few edges lie one after the other in a list. Those of many are made in chunks, on several threads; each
+//! chunk knows the edges of every band, and bands read chunk after chunk, so how many threads there are changes nothing.
 
 use std::ops::Range;
+
+use crate::curve::Contours;
+use crate::parallel;
 
 /// Rows of a band: small enough for its buffers to stay in the second-level cache.
 pub(crate) const BAND_ROWS: i32 = 32;
 /// Paths with fewer edges are gone through as a whole in every band.
-const FEW_EDGES: usize = 48;
-/// Which edges of a path touch each band.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct BandIndex {
-    edges: u32,
+pub(crate) const FEW_EDGES: usize = 48;
+/// Points whose edges are made at once: enough to be worth a task, and few enough for their edges to stay in the
+/// second-level cache until they are sorted.
+pub(crate) const CHUNK: usize = 4096;
+
+/// The edges of one path.
+#[derive(Debug)]
+pub(crate) enum Edges<E> {
+    /// A few, in a list that holds those of other paths too.
+    Few(Range<u32>),
+    /// Many, in the order of the path.
+    Many(Vec<Chunk<E>>),
+}
+
+/// Edges that follow each other in a path, and which of them each band needs.
+#[derive(Debug)]
+pub(crate) struct Chunk<E> {
+    pub edges: Vec<E>,
+    index: BandIndex,
+}
+
+impl<E> Chunk<E> {
+    /// With the rows of each edge, first and one past the last.
+    pub fn new(edges: Vec<E>, rows: impl Fn(&E) -> (i32, i32)) -> Self {
+        let index = BandIndex::new(edges.iter().map(rows));
+        Self { edges, index }
+    }
+}
+
+impl<E> Edges<E> {
+    /// What stands in the list from a place on, there or, if it is much, in a chunk.
+    pub fn from_list(list: &mut Vec<E>, first: usize, rows: impl Fn(&E) -> (i32, i32)) -> Self {
+        match (u32::try_from(first), u32::try_from(list.len())) {
+            (Ok(first), Ok(end)) if (end - first) as usize <= FEW_EDGES => Self::Few(first..end),
+            _ => Self::Many(vec![Chunk::new(list.split_off(first), rows)]),
+        }
+    }
+
+    /// What chunks hold, there or, if it is little, in the list.
+    pub fn from_chunks(
+        chunks: Vec<Chunk<E>>,
+        list: &mut Vec<E>,
+        rows: impl Fn(&E) -> (i32, i32),
+    ) -> Self {
+        if chunks.iter().map(|chunk| chunk.edges.len()).sum::<usize>() > FEW_EDGES {
+            return Self::Many(chunks);
+        }
+        let first = list.len();
+        list.extend(chunks.into_iter().flat_map(|chunk| chunk.edges));
+        Self::from_list(list, first, rows)
+    }
+
+    /// The edges of the band at row `top` in the order of the path, perhaps with others too.
+    #[inline(always)]
+    pub fn of_band<'a>(&'a self, list: &'a [E], top: i32) -> impl Iterator<Item = &'a [E]> {
+        let (few, chunks) = match self {
+            Self::Few(range) => (list.get(range.start as usize..range.end as usize), [].as_slice()),
+            Self::Many(chunks) => (None, chunks.as_slice()),
+        };
+        let many = chunks.iter().flat_map(move |chunk| {
+            let stretches = chunk.index.stretches(top).iter();
+            stretches.filter_map(|(from, to)| chunk.edges.get(*from as usize..*to as usize))
+        });
+        few.into_iter().chain(many)
+    }
+}
+
+/// What `make` gives for chunks of the contours' points, so many at once, in their order.
+pub(crate) fn by_chunks<M: Send>(
+    contours: &Contours,
+    size: usize,
+    make: impl Fn(Range<usize>) -> M + Sync + Send,
+) -> Vec<M> {
+    let count = contours.points().len();
+    let chunks = (0..count).step_by(size).map(|start| start..(start + size).min(count));
+    parallel::map(chunks.collect(), make)
+}
+
+/// Edges that follow each other and touch the same bands.
+struct Run {
+    edges: (u32, u32),
+    /// First and last.
+    bands: (i32, i32),
+}
+
+/// Which edges of a chunk touch each band.
+#[derive(Debug, Default)]
+struct BandIndex {
     /// The first band touched.
     base: i32,
     /// Edges that follow each other and all touch one band, first and one past the last, band after band, for those
-    /// of a band are read one after the other; empty for paths of few edges.
+    /// of a band are read one after the other.
     stretches: Vec<(u32, u32)>,
     /// Where in that list each band's begin, from the first band touched on, and the end of the last.
     starts: Vec<u32>,
 }
 
 impl BandIndex {
-    /// The index of a path from the rows of each edge, first and one past the last, all within those of the path.
-    pub fn new(path: (i32, i32), edges: impl ExactSizeIterator<Item = (i32, i32)> + Clone) -> Self {
-        let (count, base) = (edges.len(), path.0 / BAND_ROWS);
-        let mut index = Self { edges: count as u32, base, ..Self::default() };
-        if count <= FEW_EDGES {
-            return index;
-        }
-        let band = |row: i32| (row / BAND_ROWS - base) as usize;
-        let bands = band((path.1 - 1).max(path.0)) + 1;
-        // Counted first, then put in their places.
-        let mut ends = vec![u32::MAX; bands];
-        index.starts = vec![0; bands + 1];
-        each_band(edges.clone(), band, |i, band| {
-            let new = ends.get(band) != Some(&i);
-            if let (Some(end), Some(count)) = (ends.get_mut(band), index.starts.get_mut(band + 1)) {
-                *end = i + 1;
-                *count += u32::from(new);
+    /// From the rows of each edge, first and one past the last.
+    fn new(edges: impl Iterator<Item = (i32, i32)>) -> Self {
+        let mut runs: Vec<Run> = Vec::new();
+        let (mut base, mut last) = (i32::MAX, 0);
+        let mut now = (-1, -1);
+        for (i, (top, bottom)) in (0..).zip(edges) {
+            let bands = (top / BAND_ROWS, (bottom - 1).max(top) / BAND_ROWS);
+            if bands != now {
+                now = bands;
+                (base, last) = (base.min(bands.0), last.max(bands.1));
+                runs.push(Run { edges: (i, i), bands });
             }
-        });
-        for band in 0..bands {
-            index.starts[band + 1] += index.starts[band];
-        }
-        index.stretches = vec![(0, 0); index.starts[bands] as usize];
-        let mut next = index.starts.clone();
-        each_band(edges, band, |i, band| {
-            let Some(next) = next.get_mut(band) else { return };
-            let own = index.starts.get(band).is_some_and(|start| *next > *start);
-            let last = index.stretches.get_mut(next.wrapping_sub(1) as usize);
-            match last.filter(|last| own && last.1 == i) {
-                Some(last) => last.1 = i + 1,
-                None => {
-                    if let Some(stretch) = index.stretches.get_mut(*next as usize) {
-                        *stretch = (i, i + 1);
-                    }
-                    *next += 1;
-                }
+            if let Some(run) = runs.last_mut() {
+                run.edges.1 = i + 1;
             }
-        });
-        index
+        }
+        Self::from_runs(&runs, base, last)
     }
 
-    /// The stretches of edges, in the order of the path, that touch the band at row `top`; perhaps with others too.
+    /// Counted first, then put in their places.
+    fn from_runs(runs: &[Run], base: i32, last: i32) -> Self {
+        let bands = (last - base + 1).max(0) as usize;
+        let mut starts = vec![0; bands + 1];
+        let mut ends = vec![u32::MAX; bands];
+        for run in runs {
+            let range = (run.bands.0 - base) as usize..(run.bands.1 - base + 1) as usize;
+            for (at, end) in range.clone().zip(ends.get_mut(range).into_iter().flatten()) {
+                starts[at + 1] += u32::from(*end != run.edges.0);
+                *end = run.edges.1;
+            }
+        }
+        for band in 0..bands {
+            starts[band + 1] += starts[band];
+        }
+        let mut stretches = vec![(0, 0); starts.last().map_or(0, |all| *all as usize)];
+        let mut next = starts.clone();
+        for run in runs {
+            let range = (run.bands.0 - base) as usize..(run.bands.1 - base + 1) as usize;
+            for (start, next) in starts[range.clone()].iter().zip(&mut next[range]) {
+                let own = *next > *start;
+                match stretches.get_mut(next.wrapping_sub(1) as usize) {
+                    Some((_, end)) if own && *end == run.edges.0 => *end = run.edges.1,
+                    _ => {
+                        stretches[*next as usize] = run.edges;
+                        *next += 1;
+                    }
+                }
+            }
+        }
+        Self { base, stretches, starts }
+    }
+
+    /// The stretches of edges, in the order of the path, that touch the band at row `top`.
     #[inline(always)]
-    pub fn stretches(&self, top: i32) -> impl Iterator<Item = Range<usize>> {
-        let band = (top / BAND_ROWS - self.base).max(0) as usize;
-        let own = match (self.starts.get(band), self.starts.get(band + 1)) {
+    fn stretches(&self, top: i32) -> &[(u32, u32)] {
+        let Ok(band) = usize::try_from(top / BAND_ROWS - self.base) else { return &[] };
+        match (self.starts.get(band), self.starts.get(band + 1)) {
             (Some(start), Some(end)) => {
                 self.stretches.get(*start as usize..*end as usize).unwrap_or_default()
             }
             _ => &[],
-        };
-        let few = self.starts.is_empty().then_some((0, self.edges));
-        few.into_iter().chain(own.iter().copied()).map(|(a, b)| a as usize..b as usize)
-    }
-}
-
-/// Calls `f` with the number of each edge and every band that it touches.
-fn each_band(
-    edges: impl Iterator<Item = (i32, i32)>,
-    band: impl Fn(i32) -> usize,
-    mut f: impl FnMut(u32, usize),
-) {
-    for (i, (top, bottom)) in (0..).zip(edges) {
-        for at in band(top)..=band((bottom - 1).max(top)) {
-            f(i, at);
         }
     }
 }

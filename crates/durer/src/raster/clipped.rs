@@ -1,9 +1,62 @@
 //! Edges of filled outlines cut at a box, so that what they wind around inside it stays the same.
 
+use std::ops::Range;
+
 use crate::math::DVec2;
 
 /// Farther coordinates are moved here first, so that products stay finite.
 const FARTHEST: f64 = 1e15;
+
+/// Points that are looked at together.
+const BLOCK: usize = 32;
+
+/// Lines of a contour that follow each other.
+pub(crate) enum Lines<'a> {
+    /// Along points that are all inside a box, from the first on.
+    Inside(&'a DVec2, &'a [DVec2], &'a DVec2),
+    /// Others, which may reach beyond.
+    Any(&'a [DVec2], Range<usize>),
+}
+
+impl<'a> Lines<'a> {
+    /// The first lines of those of a closed contour that begin at a range of its points, which then begins after them.
+    #[inline(always)]
+    pub fn next(
+        points: &'a [DVec2],
+        own: &mut Range<usize>,
+        low: DVec2,
+        high: DVec2,
+    ) -> Option<Self> {
+        if own.start >= own.end {
+            return None;
+        }
+        let is_inside =
+            |p: &DVec2| (p.x >= low.x) & (p.x <= high.x) & (p.y >= low.y) & (p.y <= high.y);
+        let (first, end) = (own.start, own.end.min(own.start + BLOCK));
+        own.start = end;
+        match (points.get(first..end), points.get(end).or_else(|| points.first())) {
+            (Some([from, rest @ ..]), Some(next))
+                if rest
+                    .iter()
+                    .fold(is_inside(from) & is_inside(next), |all, p| all & is_inside(p)) =>
+            {
+                Some(Self::Inside(from, rest, next))
+            }
+            _ => Some(Self::Any(points, first..end)),
+        }
+    }
+}
+
+/// The lines of a closed contour that begin at a range of its points; points that are not finite are left out.
+pub(crate) fn lines(points: &[DVec2], own: Range<usize>) -> impl Iterator<Item = (DVec2, DVec2)> {
+    let begin = own.start;
+    let own = points.get(own).unwrap_or_default().iter().enumerate();
+    own.filter(|(_, from)| from.is_finite()).filter_map(move |(i, from)| {
+        let (before, after) = points.split_at_checked(begin + i + 1)?;
+        let to = after.iter().chain(before).find(|p| p.is_finite())?;
+        Some((*from, *to))
+    })
+}
 
 /// What remains of an edge within the rows of a box, in the direction of travel: up to three pieces, those left
 /// or right of the box moved onto its border, for left of it they still wind around everything in their rows.

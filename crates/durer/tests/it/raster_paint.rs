@@ -54,14 +54,53 @@ fn card(options: Options) -> Canvas {
     c
 }
 
+/// A ring of so many vertices, some of them beyond the picture.
+fn jagged(count: u32) -> Contours {
+    Contours::polygon((0..count).map(|i| {
+        let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU;
+        let radius = 85.0 + f64::from(i * 7919 % 101) * 0.2;
+        DVec2::new(150.0 + radius * angle.cos(), 100.0 + radius * angle.sin())
+    }))
+}
+
+#[test]
+fn a_cleared_canvas_is_a_new_one() {
+    let paint = |canvas: &mut Canvas, shift: f64| {
+        canvas.clear([0, 30, 60, 255]);
+        for i in 0..300 {
+            let at = DVec2::new(f64::from(i * 37 % 300) + shift, f64::from(i * 71 % 200));
+            canvas.set_anti_alias(i % 3 != 0);
+            let paint = color(i as u8, 99, 10, 200);
+            canvas.fill(&Path::circle(at, f64::from(i % 50)), FillRule::NonZero, &paint, 1.0);
+        }
+        canvas.fill_contours(&jagged(6000), FillRule::NonZero, &color(9, 9, 9, 99), 1.0);
+        let mut target = Pixels::new(300, 200, WHITE);
+        canvas.render(&mut target).unwrap();
+        target
+    };
+    let new = || Canvas::new(300, 200, Options::default()).unwrap();
+    let mut kept = new();
+    for shift in [0.0, 3.3, 90.0] {
+        assert!(paint(&mut kept, shift) == paint(&mut new(), shift), "{shift}");
+    }
+}
+
 #[test]
 fn the_number_of_threads_changes_nothing() {
     for blending in [Blending::Srgb, Blending::Linear] {
-        let card = card(Options { blending, ..Options::default() });
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let mut target = Pixels::new(300, 200, [9, 200, 77, 130]);
-            pool.install(|| card.render(&mut target)).unwrap();
+            pool.install(|| {
+                let mut card = card(Options { blending, ..Options::default() });
+                for smooth in [true, false] {
+                    card.set_anti_alias(smooth);
+                    let paint = color(80, 9, 200, 255);
+                    card.fill_contours(&jagged(20_000), FillRule::EvenOdd, &paint, 0.5);
+                }
+                card.render(&mut target)
+            })
+            .unwrap();
             target
         };
         let one = on(1);

@@ -161,6 +161,10 @@ fn clip_one(
             let inside = known.unwrap_or_else(|| {
                 cuts.on_border(start, end) || border.contains_middle(start, end)
             });
+            // Kept or not: which part is asked for has no say in it.
+            if cuts.is_empty() {
+                known = Some(inside);
+            }
             t.step(|| Step::Part { line, segment, start, end, inside });
             if inside != (options.part == Part::Inside) {
                 out.end_piece(line);
@@ -174,9 +178,6 @@ fn clip_one(
             out.points.push(end);
             out.sources.push(source(end));
             open = true;
-            if cuts.is_empty() {
-                known = Some(inside);
-            }
         }
     }
     out.end_piece(line);

@@ -1,17 +1,21 @@
 //! One path in one band of rows: add its edges, resolve shared pixels, sum the rows.
 
+use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::FillRule;
 use super::cells::{Cells, Marks};
 use super::convex;
-use super::edge::{BITS, Edge, EdgeBuilder, ONE};
+use super::edge::{BITS, Edge, ONE};
+use super::outline;
 use super::resolve::Resolver;
+use super::small::{self, SmallCells, Touched};
 use super::sweep::{Rows, Sink, alpha, sweep};
 use crate::curve::Contours;
 use crate::math::DVec2;
-use crate::raster::bands::{BAND_ROWS, BandIndex};
+use crate::raster::bands::{BAND_ROWS, Edges};
+use crate::simd::default_level;
 
 /// Paths that are not wider have cells of their own, few enough for the first-level cache.
 const NARROW: u32 = 112;
@@ -19,39 +23,29 @@ const NARROW: u32 = 112;
 /// cells do.
 const SIMPLE: usize = 3;
 /// The edges of one path and which of them each band needs.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug)]
 pub(crate) struct PathEdges {
-    edges: Vec<Edge>,
+    edges: Edges<Edge>,
     /// First row and one past the last row touched.
     pub rows: (i32, i32),
     /// First and last pixel touched.
     columns: (i32, i32),
     /// Windings cannot differ by more than one anywhere.
     convex: bool,
-    /// They are few besides, and nothing has been cut off: rows can be summed without cells.
-    pub simple: bool,
-    index: BandIndex,
+    /// They are few besides, and nothing has been cut off.
+    pub whole: bool,
 }
 
 impl PathEdges {
-    /// The edges of contours within a target of the given size.
-    pub fn new(contours: &Contours, width: u32, height: u32) -> Self {
-        let mut path = Self { rows: (i32::MAX, 0), columns: (i32::MAX, 0), ..Self::default() };
-        path.edges.reserve(contours.points().len());
-        path.convex = contours.iter().nth(1).is_none() && is_convex(contours.points());
-        let mut builder = EdgeBuilder::new(&mut path.edges, width, height);
-        builder.contours(contours, path.convex);
-        path.simple = path.convex && !builder.cut;
-        path.simple &= path.edges.len() <= SIMPLE;
-        for edge in &path.edges {
-            let (first, last) = edge.rows();
-            path.rows = (path.rows.0.min(first), path.rows.1.max(last));
-            path.columns.0 = path.columns.0.min(edge.x0.min(edge.x1));
-            path.columns.1 = path.columns.1.max(edge.x0.max(edge.x1));
-        }
-        path.columns = (path.columns.0 >> BITS, path.columns.1 >> BITS);
-        path.index = BandIndex::new(path.rows, path.edges.iter().map(Edge::rows));
-        path
+    /// The edges of contours within a target of the given size; a few are added to the list.
+    pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
+        // A triangle cannot be anything else.
+        let points = contours.points();
+        let convex = contours.iter().nth(1).is_none() && (points.len() <= 3 || is_convex(points));
+        let (edges, extent) = outline::edges(contours, (width, height), convex, list);
+        let whole = convex && !extent.cut && matches!(&edges, Edges::Few(_));
+        let [rows, columns] = extent.pixels();
+        Self { edges, rows, columns, convex, whole }
     }
 
     /// Whether the path touches no row of the band that starts at row `top`.
@@ -59,15 +53,29 @@ impl PathEdges {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
 
-    /// Calls `f` with the edges of the band at row `top` in the order of the path, moved so that pixel
-    /// `first` becomes the first one.
+    /// With the list it was made with.
+    pub fn with<'a>(&'a self, list: &'a [Edge]) -> Path<'a> {
+        Path { path: self, list }
+    }
+}
+
+/// A path and the list that its edges may be in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Path<'a> {
+    path: &'a PathEdges,
+    list: &'a [Edge],
+}
+
+impl Path<'_> {
+    /// First row and one past the last.
+    pub fn rows(&self) -> (i32, i32) {
+        self.path.rows
+    }
+
+    /// The edges of the band at row `top` in the order of the path, perhaps with others too.
     #[inline(always)]
-    fn for_each(&self, top: i32, first: usize, mut f: impl FnMut(Edge)) {
-        let first = (first as i32) << BITS;
-        for stretch in self.index.stretches(top) {
-            let edges = self.edges.get(stretch).unwrap_or_default();
-            edges.iter().for_each(|e| f(e.moved(first)));
-        }
+    fn of_band(&self, top: i32) -> impl Iterator<Item = &[Edge]> {
+        self.path.edges.of_band(self.list, top)
     }
 }
 
@@ -95,12 +103,14 @@ pub(super) fn is_convex(points: &[DVec2]) -> bool {
 }
 
 /// The buffers for filling paths in a band; used again for the next path and band.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct BandFiller {
     /// For paths of any width.
     wide: Cells,
     /// For narrow ones, wherever they are.
     narrow: Cells,
+    /// For small convex ones.
+    small: SmallCells,
     resolver: Resolver,
     width: usize,
 }
@@ -120,11 +130,13 @@ impl BandFiller {
     /// Buffers for rows of `width` pixels.
     pub fn new(width: u32) -> Self {
         let (wide, narrow) = (Cells::new(width), Cells::new(NARROW));
-        Self { wide, narrow, resolver: Resolver::default(), width: width as usize }
+        let (small, resolver) = (SmallCells::default(), Resolver::default());
+        Self { wide, narrow, small, resolver, width: width as usize }
     }
 
     /// The cells for a path, and what it touches of the band that starts at row `top`.
-    fn choose(&mut self, path: &PathEdges, top: i32) -> (&mut Cells, &mut Resolver, Extent) {
+    fn choose(&mut self, path: Path<'_>, top: i32) -> (&mut Cells, &mut Resolver, Extent) {
+        let path = path.path;
         let rows = ((path.rows.0 - top).max(0), (path.rows.1 - top).min(BAND_ROWS));
         let first = path.columns.0.max(0) as usize;
         // Edges also change the two cells after the last pixel they touch.
@@ -139,23 +151,25 @@ impl BandFiller {
     }
 
     /// Adds the edges of a path to the cells; says whether there are pixels that have to be resolved.
-    fn collect(&mut self, path: &PathEdges, top: i32, exact: bool) -> bool {
-        let (cells, resolver, Extent { rows, first, words }) = self.choose(path, top);
-        if !exact {
-            path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
-            return false;
-        }
+    #[simd]
+    fn collect<S: Simd>(simd: S, this: &mut Self, path: Path<'_>, top: i32, exact: bool) -> bool {
+        let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
+        let x = (first as i32) << BITS;
         cells.any_shared = 0;
         let mut edges = 0;
-        path.for_each(top, first, |edge| {
-            cells.add::<true>(&edge, top);
-            edges += 1;
-        });
+        for some in path.of_band(top) {
+            edges += some.len() as u32;
+            for edge in some {
+                cells.add(simd, &edge.moved(x), top, exact);
+            }
+        }
+        Cells::flush(simd, cells, exact);
         let any = cells.any_shared != 0;
         let shared = if any { resolver.begin(cells, rows, words, edges) } else { 0 };
         if shared != 0 {
             let marks = |row: i32| cells.marks_of(row);
-            path.for_each(top, first, |edge| resolver.add(&edge, top, shared, marks));
+            let edges = path.of_band(top).flatten();
+            edges.for_each(|edge| resolver.add(&edge.moved(x), top, shared, marks));
         }
         shared != 0
     }
@@ -165,16 +179,23 @@ impl BandFiller {
     pub fn fill<S: Simd, K: Sink<S>>(
         simd: S,
         this: &mut Self,
-        path: &PathEdges,
+        path: Path<'_>,
         top: i32,
         rule: FillRule,
         exact: bool,
         sink: &mut K,
     ) {
-        if path.simple {
-            return convex::fill(simd, &path.edges, path.rows, top, this.width, sink);
+        let &PathEdges { ref edges, rows, columns, convex, whole } = path.path;
+        if let (true, Edges::Few(range)) = (whole, edges) {
+            let own = path.list.get(range.start as usize..range.end as usize).unwrap_or_default();
+            if columns.1 - columns.0 <= small::WIDEST {
+                let touched = Touched { rows, columns };
+                return small::fill(simd, &mut this.small, own, touched, top, sink);
+            } else if own.len() <= SIMPLE {
+                return convex::fill(simd, own, rows, top, this.width, sink);
+            }
         }
-        let resolved = this.collect(path, top, exact && !path.convex);
+        let resolved = Self::collect(simd, this, path, top, exact && !convex);
         let width = this.width;
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
         let resolver = resolved.then_some(resolver);
@@ -183,10 +204,10 @@ impl BandFiller {
 
     /// Fills one face of a partition: calls `add(row of the band, pixel, area)` with the area of each
     /// pixel, 0 … 65,536.
-    pub fn areas(&mut self, path: &PathEdges, top: i32, mut add: impl FnMut(i32, usize, i32)) {
+    pub fn areas(&mut self, path: Path<'_>, top: i32, mut add: impl FnMut(i32, usize, i32)) {
         let width = self.width;
+        dispatch!(default_level(), simd => Self::collect(simd, self, path, top, false));
         let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
-        path.for_each(top, first, |edge| cells.add::<false>(&edge, top));
         for row in rows.0..rows.1 {
             let (cells, marks) = cells.row(row, words);
             let mut sum = 0_i32;

@@ -4,14 +4,14 @@
 //! [`super::cells`] would add up: eight pixels at a time, and eight rows at a time between two steep edges that are less
 //! than two pixels apart, as those of thin lines are.
 
+use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
-use fearless_simd::{i32x8, u32x8};
 use fearless_simd_macros::simd;
 
 use super::FillRule;
 use super::band::is_convex;
 use super::edge::{BITS, Edge, ONE, Steps, snap};
-use super::ramp::{Eight, Ramp, half_inverse};
+use super::ramp::{Eight, Ramp, area, half_inverse};
 use super::sweep::{Sink, lanes};
 use crate::math::DVec2;
 use crate::raster::bands::BAND_ROWS;
@@ -227,21 +227,6 @@ fn wide_rows<S: Simd, K: Sink<S>>(
             x += 8;
         }
     }
-}
-
-/// What an edge covers of eight pixels.
-#[inline(always)]
-fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
-    let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-    let (zero, last) = (i32x8::splat(simd, 0), i32x8::splat(simd, ramp.last - ramp.first));
-    let i = lane + i32x8::splat(simd, x - ramp.first);
-    let u: u32x8<S> = i.bitcast();
-    let area = u32x8::splat(simd, ramp.start) + u * u32x8::splat(simd, ramp.per_pixel);
-    let area: i32x8<S> = (area >> BITS).bitcast();
-    let area = i.simd_eq(zero).select(i32x8::splat(simd, ramp.head), area);
-    let area = i.simd_eq(last).select(i32x8::splat(simd, ramp.tail), area);
-    let area = i.simd_gt(last).select(i32x8::splat(simd, ramp.height), area);
-    i.simd_lt(zero).select(zero, area)
 }
 
 /// Rows between two steep edges, eight at a time.

@@ -3,10 +3,7 @@
 //! Everything here depends on the two end points alone and not on the direction of travel, so two
 //! faces that share an edge get the same integers, once with each sign.
 
-use crate::curve::Contours;
 use crate::math::DVec2;
-use crate::raster::clipped::pieces;
-use std::ops::Range;
 
 /// Bits below the pixel: fine enough that snapping moves no area by more than 2⁻¹⁷ of a pixel.
 pub(crate) const BITS: u32 = 16;
@@ -51,11 +48,16 @@ impl Steps {
 }
 
 impl Edge {
+    /// From one point in the target to another.
     #[inline(always)]
     pub(super) fn new(from: (i32, i32), to: (i32, i32)) -> Self {
-        let reversed = (to.1, to.0) < (from.1, from.0);
-        let ((x0, y0), (x1, y1)) = if reversed { (to, from) } else { (from, to) };
-        Self { x0, y0, x1, y1, flags: u32::from(reversed) * REVERSED }
+        // In one number each, so that there is nothing to be guessed.
+        let key = |(x, y): (i32, i32)| (i64::from(y) << 32) | i64::from(x as u32);
+        let (a, b) = (key(from), key(to));
+        let (upper, lower) = (a.min(b), a.max(b));
+        let flags = u32::from(b < a) * REVERSED;
+        let (x0, y0) = (upper as i32, (upper >> 32) as i32);
+        Self { x0, y0, x1: lower as i32, y1: (lower >> 32) as i32, flags }
     }
 
     /// The one division of an edge, made where it is needed.
@@ -94,28 +96,34 @@ impl Edge {
 
     /// Where the edge starts and where it ends in its path.
     #[inline(always)]
-    fn course(&self) -> [(i32, i32); 2] {
+    pub(super) fn course(&self) -> [(i32, i32); 2] {
         let (upper, lower) = ((self.x0, self.y0), (self.x1, self.y1));
         if self.flags & REVERSED != 0 { [lower, upper] } else { [upper, lower] }
     }
 
     /// Whether it stays within about a pixel.
     #[inline(always)]
-    fn is_short(&self) -> bool {
+    pub(super) fn is_short(&self) -> bool {
         share_pixel((self.x0, self.y0), (self.x1, self.y1))
     }
 
     /// Chains the end at which the edge starts, or ends, in its path. On a border of pixels the edge and
     /// its neighbour may touch different ones, so such points do not count.
-    fn chain(&mut self, start: bool) {
+    #[inline(always)]
+    pub(super) fn chain(&mut self, start: bool) {
         if !is_on_border(self.course()[usize::from(!start)]) {
             let upper = start == (self.flags & REVERSED == 0);
             self.flags |= if upper { CHAINED_UPPER } else { CHAINED_LOWER };
         }
     }
 
+    /// Takes over what has been chained of a copy.
+    pub(super) fn chain_as(&mut self, copy: &Self) {
+        self.flags |= copy.flags;
+    }
+
     /// Which of eight half-planes of directions the edge's own direction lies in.
-    fn directions(&self) -> u8 {
+    pub(super) fn directions(&self) -> u8 {
         let sign = self.sign();
         let (dx, dy) = ((self.x1 - self.x0) * sign, (self.y1 - self.y0) * sign);
         let (sum, difference) = (dx.saturating_add(dy), dx.saturating_sub(dy));
@@ -134,140 +142,16 @@ impl Edge {
 }
 
 /// Whether a 16.16 point lies on a border of pixels.
-fn is_on_border((x, y): (i32, i32)) -> bool {
+#[inline(always)]
+pub(super) fn is_on_border((x, y): (i32, i32)) -> bool {
     x & (ONE - 1) == 0 || y & (ONE - 1) == 0
 }
 
 /// Whether two 16.16 points lie in the same pixel or on its border.
-fn share_pixel(a: (i32, i32), b: (i32, i32)) -> bool {
-    let near = |a: i32, b: i32| (a >> BITS) == (b >> BITS) || (a - b).abs() <= 1;
-    near(a.0, b.0) && near(a.1, b.1)
-}
-
-/// Turns contours into edges and knows which of them run on without being able to cross.
-pub(crate) struct EdgeBuilder<'a> {
-    edges: &'a mut Vec<Edge>,
-    /// Size of the target in pixels.
-    width: f64,
-    height: f64,
-    /// Whether a line reached beyond the target.
-    pub cut: bool,
-}
-
-impl<'a> EdgeBuilder<'a> {
-    /// A builder for a target of the given size in pixels, at most [`MAX_SIDE`] each way.
-    pub fn new(edges: &'a mut Vec<Edge>, width: u32, height: u32) -> Self {
-        let (width, height) = (f64::from(width.min(MAX_SIDE)), f64::from(height.min(MAX_SIDE)));
-        Self { edges, width, height, cut: false }
-    }
-
-    /// Adds the contours, each closed; points that are not finite are left out. Nobody asks which joints of a
-    /// `convex` one are chained.
-    pub fn contours(&mut self, contours: &Contours, convex: bool) {
-        for (points, _) in contours.iter() {
-            self.contour(points, convex);
-        }
-    }
-
-    fn contour(&mut self, points: &[DVec2], convex: bool) {
-        let start = self.edges.len();
-        let mut finite = points.iter().filter(|p| p.is_finite());
-        let Some(first) = finite.next() else { return };
-        let mut from = *first;
-        for to in finite.chain(std::iter::once(first)) {
-            self.line(from, *to);
-            from = *to;
-        }
-        if !convex {
-            chain(&mut self.edges[start..]);
-        }
-    }
-
-    fn line(&mut self, a: DVec2, b: DVec2) {
-        let inside = |p: DVec2| p.x >= 0.0 && p.x <= self.width && p.y >= 0.0 && p.y <= self.height;
-        if inside(a) && inside(b) {
-            self.edge(snap(a), snap(b));
-        } else {
-            self.cut = true;
-            self.clipped(a, b);
-        }
-    }
-
-    /// The part of a line that matters: within the rows, and left of the right border.
-    fn clipped(&mut self, a: DVec2, b: DVec2) {
-        let size = DVec2::new(self.width, self.height);
-        if a.x.min(b.x) > self.width {
-            return;
-        }
-        for (p, q) in pieces(a, b, DVec2::ZERO, size).into_iter().flatten() {
-            if p != q && p.x.min(q.x) < self.width {
-                self.edge(snap(p), snap(q));
-            }
-        }
-    }
-
-    fn edge(&mut self, from: (i32, i32), to: (i32, i32)) {
-        if from != to {
-            self.edges.push(Edge::new(from, to));
-        }
-    }
-}
-
-/// Chains the joints of a contour at which edges cannot meet but where they continue each other.
-///
-/// Joints with only short edges between them make a group, with the edges that lead to it and away from
-/// it. Two edges with a common end cannot cross; more of them not while all run on in one direction. That
-/// depends neither on where the contour starts nor on which way it runs.
-fn chain(edges: &mut [Edge]) {
-    let count = edges.len();
-    let is_joint = |before: &Edge, after: &Edge| before.course()[1] == after.course()[0];
-    // Joint i is before edge i.
-    let begins = |i: &usize| {
-        let before = if *i == 0 { count - 1 } else { i - 1 };
-        !edges[*i].is_short() || !is_joint(&edges[before], &edges[*i])
-    };
-    let Some(begin) = (0..count).find(begins).filter(|_| count > 1) else { return };
-    let mut first = begin + 1;
-    let mut before = edges[begin];
-    for i in begin + 1..=begin + count {
-        let after = edges[wrapped(i, count)];
-        if !is_joint(&before, &after) {
-            chain_group(edges, first..i);
-            first = i + 1;
-        } else if i == begin + count || !after.is_short() {
-            chain_group(edges, first..i + 1);
-            first = i + 1;
-        }
-        before = after;
-    }
-}
-
-/// The number of an edge counted on beyond the last of a contour, at most once around; no division.
 #[inline(always)]
-fn wrapped(i: usize, count: usize) -> usize {
-    if i >= count { i - count } else { i }
-}
-
-/// Chains a group of joints, counted on beyond the contour's closing one.
-fn chain_group(edges: &mut [Edge], joints: Range<usize>) {
-    let count = edges.len();
-    let directions = || {
-        let around = joints.start.saturating_sub(1)..joints.end;
-        around.fold(u8::MAX, |common, i| common & edges[wrapped(i, count)].directions())
-    };
-    if joints.is_empty() || (joints.len() > 1 && directions() == 0) {
-        return;
-    }
-    let wraps = joints.contains(&count) && !is_on_border(edges[0].course()[0]);
-    for joint in joints {
-        // The edge that comes later in the order of the edges does not count at their joint, and up to
-        // the closing joint none does before which the first edge has come.
-        if wraps && joint <= count {
-            edges[joint - 1].chain(false);
-        } else {
-            edges[wrapped(joint, count)].chain(true);
-        }
-    }
+fn share_pixel(a: (i32, i32), b: (i32, i32)) -> bool {
+    let near = |a: i32, b: i32| ((a >> BITS) == (b >> BITS)) | ((a - b).abs() <= 1);
+    near(a.0, b.0) & near(a.1, b.1)
 }
 
 /// The nearest grid point to a point within the target, ties to even.

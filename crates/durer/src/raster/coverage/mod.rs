@@ -18,9 +18,13 @@ pub(crate) mod band;
 pub(crate) mod cells;
 pub(crate) mod convex;
 pub(crate) mod edge;
+mod joints;
+mod outline;
 mod partition;
+mod parts;
 mod ramp;
 mod resolve;
+mod small;
 pub(crate) mod sweep;
 
 pub use partition::{Face, INFO as PARTITION, fill_partition};
@@ -38,7 +42,7 @@ use crate::target::Pixels;
 use crate::trace::Tracer;
 use crate::{Error, Result};
 use band::{BandFiller, PathEdges};
-use edge::MAX_SIDE;
+use edge::{Edge, MAX_SIDE};
 use sweep::Sink;
 
 /// Which winding numbers are inside.
@@ -136,7 +140,9 @@ fn fill_at(
 ) -> Result<Pixels<u8>> {
     check_size(width, height)?;
     let mut mask = Pixels::new(width, height, 0);
-    fill_path(level, &PathEdges::new(contours, width, height), &mut mask, options, t);
+    let mut list = Vec::new();
+    let path = PathEdges::new(contours, width, height, &mut list);
+    fill_path(level, &path, &list, &mut mask, options, t);
     Ok(mask)
 }
 
@@ -144,6 +150,7 @@ fn fill_at(
 fn fill_path(
     level: Level,
     path: &PathEdges,
+    list: &[Edge],
     mask: &mut Pixels<u8>,
     options: &Options,
     t: &mut impl Tracer<Step>,
@@ -153,7 +160,7 @@ fn fill_path(
     for top in (0..mask.height() as i32).step_by(BAND_ROWS as usize).filter(|t| !path.misses(*t)) {
         let mut sink = Mask { mask, top, t };
         dispatch!(level, simd => {
-            BandFiller::fill(simd, &mut filler, path, top, options.rule, exact, &mut sink);
+            BandFiller::fill(simd, &mut filler, path.with(list), top, options.rule, exact, &mut sink);
         });
     }
 }

@@ -48,8 +48,9 @@ type Sums = [u32; 5];
 pub fn fill_partition(faces: &[Face], target: &mut Pixels<[u8; 4]>) -> Result<u64> {
     let (width, height) = (target.width(), target.height());
     check_size(width, height)?;
-    let paths: Vec<PathEdges> =
-        faces.iter().map(|f| PathEdges::new(&f.contours, width, height)).collect();
+    let mut list = Vec::new();
+    let edges = |face: &Face| PathEdges::new(&face.contours, width, height, &mut list);
+    let paths: Vec<PathEdges> = faces.iter().map(edges).collect();
     let mut filler = BandFiller::new(width);
     let mut full = 0;
     for top in (0..height as i32).step_by(BAND_ROWS as usize) {
@@ -57,7 +58,7 @@ pub fn fill_partition(faces: &[Face], target: &mut Pixels<[u8; 4]>) -> Result<u6
         for (face, path) in faces.iter().zip(&paths).filter(|(_, p)| !p.misses(top)) {
             let [r, g, b, a] = face.color.map(u32::from);
             let weights = [1, r * a / 255, g * a / 255, b * a / 255, a];
-            filler.areas(path, top, |row, x, area| {
+            filler.areas(path.with(&list), top, |row, x, area| {
                 let sum = &mut sums[row as usize * width as usize + x];
                 for (sum, weight) in sum.iter_mut().zip(weights) {
                     *sum = sum.saturating_add(area as u32 * weight);

@@ -3,7 +3,7 @@
 //! Both give the same integers.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, i32x8, u32x8};
 
 use super::edge::{BITS, ONE};
 
@@ -102,6 +102,45 @@ pub(super) fn narrow_deltas(a: i32, b: i32, height: i32) -> [i32; 3] {
     let [d0, _, d2] = steep_deltas(a, b, inverse);
     let (d0, d2) = (scale(d0), scale(d2));
     [d0, height - d0 - d2, d2]
+}
+
+/// [`narrow_deltas`] of eight parts at once, from `a` on and so far across; for a height of one [`steep_deltas`].
+#[inline(always)]
+pub(super) fn eight_deltas<S: Simd>(
+    simd: S,
+    a: i32x8<S>,
+    across: i32x8<S>,
+    height: i32x8<S>,
+) -> [i32x8<S>; 3] {
+    let (zero, bit, one) = (i32x8::splat(simd, 0), i32x8::splat(simd, 1), i32x8::splat(simd, ONE));
+    let b = a + across;
+    let over = simd.cvt_f32_i32x8((b - one).max(zero));
+    let half_inverse = f32x8::splat(simd, 0.5) / simd.cvt_f32_i32x8(across.max(bit));
+    let d2 = simd.cvt_i32_f32x8(over * over * half_inverse);
+    let d0 = (one + d2 - ((a + b) >> 1)).max(zero);
+    // Less than one times one, so 32 bits are enough.
+    let (u0, u2): (u32x8<S>, u32x8<S>) = (d0.bitcast(), d2.bitcast());
+    let part: u32x8<S> = height.bitcast();
+    let (part0, part2): (i32x8<S>, i32x8<S>) =
+        (((u0 * part) >> BITS).bitcast(), ((u2 * part) >> BITS).bitcast());
+    let is_whole = height.simd_eq(one);
+    let (d0, d2) = (is_whole.select(d0, part0), is_whole.select(d2, part2));
+    [d0, height - d0 - d2, d2]
+}
+
+/// What an edge covers of eight pixels.
+#[inline(always)]
+pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
+    let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let (zero, last) = (i32x8::splat(simd, 0), i32x8::splat(simd, ramp.last - ramp.first));
+    let i = lane + i32x8::splat(simd, x - ramp.first);
+    let u: u32x8<S> = i.bitcast();
+    let area = u32x8::splat(simd, ramp.start) + u * u32x8::splat(simd, ramp.per_pixel);
+    let area: i32x8<S> = (area >> BITS).bitcast();
+    let area = i.simd_eq(zero).select(i32x8::splat(simd, ramp.head), area);
+    let area = i.simd_eq(last).select(i32x8::splat(simd, ramp.tail), area);
+    let area = i.simd_gt(last).select(i32x8::splat(simd, ramp.height), area);
+    i.simd_lt(zero).select(zero, area)
 }
 
 /// A steep edge in the next eight rows.

@@ -22,7 +22,7 @@ fn every_simd_level_gives_the_same_bytes() {
 }
 
 #[test]
-fn triangles_are_summed_with_and_without_cells_alike() {
+fn convex_outlines_are_summed_with_and_without_marks_alike() {
     let mut seed = 8_u64;
     let mut random = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -31,7 +31,7 @@ fn triangles_are_summed_with_and_without_cells_alike() {
     let (width, height) = (180, 140);
     let (mut simple, mut lit) = (0, 0);
     for round in 0..600 {
-        let corners = 3;
+        let corners = if round % 2 == 0 { 3 } else { 4 + round / 2 % 7 };
         let size = [0.7, 5.0, 14.0, 60.0, 110.0][round % 5];
         let center = DVec2::new(random() * 180.0, random() * 140.0);
         let thin = if round % 4 == 0 { 0.02 } else { 0.3 + random() };
@@ -43,12 +43,13 @@ fn triangles_are_summed_with_and_without_cells_alike() {
             // Some on borders and in the middle of pixels.
             if round % 3 == 0 { (p * 2.0).round() / 2.0 } else { p }
         };
-        let mut path = PathEdges::new(&Contours::polygon((0..corners).map(point)), width, height);
-        simple += usize::from(path.simple);
+        let (contours, mut list) = (Contours::polygon((0..corners).map(point)), Vec::new());
+        let mut path = PathEdges::new(&contours, width, height, &mut list);
+        simple += usize::from(path.whole);
         let mut at = |level, simple: bool| {
-            path.simple &= simple;
+            path.whole &= simple;
             let mut mask = Pixels::new(width, height, 0);
-            fill_path(level, &path, &mut mask, &Options::default(), &mut NoTrace);
+            fill_path(level, &path, &list, &mut mask, &Options::default(), &mut NoTrace);
             mask
         };
         let (own, other) = (at(Level::new(), true), at(Level::baseline(), true));
@@ -57,4 +58,44 @@ fn triangles_are_summed_with_and_without_cells_alike() {
         lit += own.data().iter().filter(|c| **c != 0).count();
     }
     assert!(simple > 400 && lit > 100_000, "{simple} {lit}");
+}
+
+#[test]
+fn edges_and_joints_do_not_depend_on_the_chunks_they_are_made_in() {
+    let mut seed = 5_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    let (size, mut edges, mut chained) = (DVec2::new(90.0, 70.0), 0, 0);
+    for round in 0..400 {
+        // Short and long steps, some on the grid, some beyond the target, and a few points that are none.
+        let step = [0.2, 0.8, 3.0, 40.0][round % 4];
+        let mut contours = Contours::new();
+        for _ in 0..1 + round % 3 {
+            let mut p = DVec2::new(random(), random()) * size;
+            let points: Vec<DVec2> = (0..1 + (random() * 60.0) as usize)
+                .map(|i| {
+                    p += (DVec2::new(random(), random()) - 0.5) * step;
+                    match i % 23 {
+                        7 if round % 5 == 0 => DVec2::new(f64::NAN, 1.0),
+                        11 => p.round(),
+                        _ => p,
+                    }
+                })
+                .collect();
+            contours.push(points, true);
+        }
+        let made = |points: usize| {
+            let (chunks, extent) = outline::chunks(&contours, size, false, points);
+            (chunks.into_iter().flat_map(|chunk| chunk.edges).collect::<Vec<_>>(), extent)
+        };
+        let all = made(1000);
+        for points in [1, 2, 3, 7, 20] {
+            assert_eq!(made(points), all, "round {round}, {points} points at once");
+        }
+        edges += all.0.len();
+        chained += all.0.iter().filter(|edge| edge.chained() != (false, false)).count();
+    }
+    assert!(edges > 10_000 && chained > 5_000, "{edges} {chained}");
 }

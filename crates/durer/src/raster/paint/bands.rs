@@ -7,19 +7,18 @@ use fearless_simd::{Level, dispatch, u32x8};
 
 use super::color::Space;
 use super::command::{Item, Line, Prepared, sort_into_bands};
-use super::outline::{Filler, Outline};
+use super::outline::{Drawn, Filler};
 use super::source::Source;
-use super::{Canvas, Color, MaskKind};
+use super::{Canvas, Color, FillRule, MaskKind};
 use crate::raster::bands::BAND_ROWS;
-use crate::raster::coverage::Overlap;
 use crate::raster::coverage::convex;
 use crate::raster::coverage::sweep::{Sink, unpacked};
 use crate::target::Pixels;
 
 /// Paints all commands over the target.
-pub(super) fn render<P: Space>(
+pub(super) fn render<'a, P: Space>(
     level: Level,
-    canvas: &Canvas,
+    canvas: &'a Canvas,
     commands: &[Prepared<'_, P>],
     target: &mut Pixels<Color>,
 ) {
@@ -29,7 +28,7 @@ pub(super) fn render<P: Space>(
     }
     let by_band = sort_into_bands(commands, &canvas.lines, target.height(), BAND_ROWS);
     let rows_per_band = width * BAND_ROWS as usize;
-    let paint = |painter: &mut Option<Painter<P>>, (band, rows): (usize, &mut [Color])| {
+    let paint = |painter: &mut Option<Painter<'a, P>>, (band, rows): (usize, &mut [Color])| {
         let painter = painter.get_or_insert_with(|| Painter::new(canvas));
         let todo = Todo { items: &by_band[band], commands, lines: &canvas.lines };
         painter.band(level, &todo, band as i32 * BAND_ROWS, rows);
@@ -50,6 +49,15 @@ pub(super) fn render<P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
+/// Sets all pixels.
+fn clear(pixels: &mut [Color], color: Color) {
+    // Setting bytes leaves it to the system how, which for much memory does not fetch it first.
+    match color {
+        [r, g, b, a] if r == g && g == b && b == a => pixels.as_flattened_mut().fill(r),
+        _ => pixels.fill(color),
+    }
+}
+
 /// Lines are fetched so many at a time: they lie far apart in memory, and so are waited for together.
 const AT_ONCE: usize = 16;
 
@@ -61,10 +69,11 @@ struct Todo<'a, P> {
 }
 
 /// Buffers of one thread.
-struct Painter<P> {
+struct Painter<'a, P> {
+    canvas: &'a Canvas,
+    /// Lent by the canvas.
     filler: Filler,
     width: usize,
-    background: Option<Color>,
     /// A layer for each open group.
     layers: Vec<Vec<P>>,
     /// Coverage of the open clip paths, each multiplied with those below it in the same layer.
@@ -78,13 +87,18 @@ struct Painter<P> {
     near: Vec<Line>,
 }
 
-impl<P: Space> Painter<P> {
-    fn new(canvas: &Canvas) -> Self {
-        let width = canvas.width as usize;
+impl<P> Drop for Painter<'_, P> {
+    fn drop(&mut self) {
+        self.canvas.keep(std::mem::take(&mut self.filler));
+    }
+}
+
+impl<'a, P: Space> Painter<'a, P> {
+    fn new(canvas: &'a Canvas) -> Self {
         Self {
-            filler: Filler::new(canvas.width, canvas.options.overlap == Overlap::Exact),
-            width,
-            background: canvas.background,
+            canvas,
+            filler: canvas.filler(),
+            width: canvas.width as usize,
             layers: Vec::new(),
             clips: Vec::new(),
             floors: Vec::new(),
@@ -96,12 +110,13 @@ impl<P: Space> Painter<P> {
     /// Paints the commands onto the rows of one band, whose first row is `top`.
     fn band(&mut self, level: Level, todo: &Todo<'_, P>, top: i32, rows: &mut [Color]) {
         let mut copy = self.spare.pop().unwrap_or_default();
-        if let Some(color) = self.background {
-            rows.fill(color);
+        let background = self.canvas.background;
+        if let Some(color) = background {
+            clear(rows, color);
         }
         if let Some(base) = P::in_place(rows) {
             // Nothing painted over opaque pixels makes them less so.
-            let opaque = self.background.map_or_else(|| P::all_opaque(base), |c| c[3] == 255);
+            let opaque = background.map_or_else(|| P::all_opaque(base), |c| c[3] == 255);
             if !opaque {
                 base.iter_mut().for_each(|p| *p = p.premultiplied());
             }
@@ -132,10 +147,10 @@ impl<P: Space> Painter<P> {
                 Prepared::Lines { .. } => {}
                 Prepared::Fill { outline, rule, source } => {
                     let at = (top, &mut *base);
-                    dispatch!(level, simd => self.fill(simd, outline, *rule, source, at));
+                    dispatch!(level, simd => self.fill(simd, *outline, *rule, source, at));
                 }
                 Prepared::PushClip { outline, rule } => {
-                    dispatch!(level, simd => self.push_clip(simd, outline, *rule, top));
+                    dispatch!(level, simd => self.push_clip(simd, *outline, *rule, top));
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
                 Prepared::PushGroup => self.push_group(base.len()),
@@ -149,8 +164,8 @@ impl<P: Space> Painter<P> {
     fn fill<S: Simd>(
         &mut self,
         simd: S,
-        outline: &Outline,
-        rule: super::FillRule,
+        outline: Drawn<'_>,
+        rule: FillRule,
         source: &Source<P>,
         (top, base): (i32, &mut [P]),
     ) {
@@ -193,10 +208,11 @@ impl<P: Space> Painter<P> {
         }
     }
 
-    fn push_clip<S: Simd>(&mut self, simd: S, outline: &Outline, rule: super::FillRule, top: i32) {
+    fn push_clip<S: Simd>(&mut self, simd: S, outline: Drawn<'_>, rule: FillRule, top: i32) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
         let (width, below) = (self.width, clip_in_force(&self.clips, &self.floors));
-        if !outline.misses(top) {
+        let touched = outline.rows();
+        if touched.0 < top + BAND_ROWS && touched.1 > top {
             let mut sink = Clip { clip: &mut clip, width, below: below.map(Vec::as_slice) };
             Filler::fill(simd, &mut self.filler, outline, top, rule, &mut sink);
         }

@@ -57,8 +57,8 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
 }
 
 /// Straight 8-bit sRGB with an opacity.
-pub(crate) fn premultiply<P: Space>(color: [u8; 4], opacity: f64) -> P {
-    P::from_srgb(color.map(|c| f32::from(c) / 255.0), opacity as f32)
+pub(crate) fn premultiply<P: Space>(color: [u8; 4], opacity: f32) -> P {
+    P::from_srgb(color.map(|c| f32::from(c) / 255.0), opacity)
 }
 
 /// `x / 255`, rounded, for x up to 255².
@@ -151,40 +151,40 @@ impl Space for Srgb {
 
     #[inline(always)]
     fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]) {
-        let source: u8x32<S> = u32x8::splat(simd, u32::from_le_bytes(color)).bitcast();
-        // One coverage in all four bytes of its pixel.
-        let spread: u8x32<S> = (coverage * 0x0101_0101).bitcast();
-        if color.is_opaque() {
-            let pixels = below.as_flattened_mut();
-            let through = u8x32::splat(simd, 255) - spread;
-            let (s0, s1) = source.widening_mul(spread);
-            let (b0, b1) = u8x32::from_slice(simd, pixels).widening_mul(through);
-            let (d0, d1) = (div255_lanes(simd, s0 + b0), div255_lanes(simd, s1 + b1));
-            d0.saturating_narrow(d1).store_slice(pixels);
+        let source: u16x16<S> = u32x8::splat(simd, u32::from_le_bytes(color)).bitcast();
+        let coverage = twice(coverage);
+        let full = u16x16::splat(simd, 255);
+        let through = if color.is_opaque() {
+            full - coverage
         } else {
-            over_eight(simd, source, u8x32::splat(simd, color[3]), spread, below);
-        }
+            full - div255_lanes(simd, u16x16::splat(simd, u16::from(color[3])) * coverage)
+        };
+        over_eight(simd, source, coverage, through, below);
     }
 
     #[inline(always)]
     fn color_over_four<S: Simd>(simd: S, color: Self, coverage: u32, below: &mut [Self; 4]) {
         let pixels = below.as_flattened_mut();
-        let source: u8x16<S> = u32x4::splat(simd, u32::from_le_bytes(color)).bitcast();
-        // Each coverage in all four bytes of its pixel.
-        let twice: u8x16<S> = u32x4::splat(simd, coverage).bitcast();
-        let twice = twice.zip_low(twice);
-        let spread = twice.zip_low(twice);
-        let (s0, s1) = source.widening_mul(spread);
-        let full = u8x16::splat(simd, 255);
+        let source: u16x8<S> = u32x4::splat(simd, u32::from_le_bytes(color)).bitcast();
+        // Each coverage in both halves of its pixel.
+        let both: u8x16<S> = u32x4::splat(simd, coverage).bitcast();
+        let both = both.zip_low(u8x16::splat(simd, 0));
+        let both: u16x8<S> = both.bitcast();
+        let coverage = both.zip_low(both);
+        let full = u16x8::splat(simd, 255);
         let through = if color.is_opaque() {
-            full - spread
+            full - coverage
         } else {
-            let (a0, a1) = u8x16::splat(simd, color[3]).widening_mul(spread);
-            full - div255_half(simd, a0).saturating_narrow(div255_half(simd, a1))
+            full - div255_half(simd, u16x8::splat(simd, u16::from(color[3])) * coverage)
         };
-        let (b0, b1) = u8x16::from_slice(simd, pixels).widening_mul(through);
-        let (d0, d1) = (div255_half(simd, s0 + b0), div255_half(simd, s1 + b1));
-        d0.saturating_narrow(d1).store_slice(pixels);
+        let below: u8x16<S> = u8x16::from_slice(simd, pixels);
+        let below: u16x8<S> = below.bitcast();
+        let (even, half) = (u16x8::splat(simd, 255), u16x8::splat(simd, 128));
+        let d0 = (source & even) * coverage + (below & even) * through + half;
+        let d1 = (source >> 8) * coverage + (below >> 8) * through + half;
+        let (d0, d1) = ((d0 + (d0 >> 8)) >> 8, d1 + (d1 >> 8));
+        let over: u8x16<S> = (d0 | (d1 & !even)).bitcast();
+        over.store_slice(pixels);
     }
 
     #[inline(always)]
@@ -194,35 +194,42 @@ impl Space for Srgb {
         coverage: u32x8<S>,
         below: &mut [Self; 8],
     ) {
-        let mut alpha = [0_u8; 32];
-        for (quad, color) in alpha.as_chunks_mut::<4>().0.iter_mut().zip(colors) {
-            *quad = [color[3]; 4];
-        }
-        let source = u8x32::from_slice(simd, colors.as_flattened());
-        let spread: u8x32<S> = (coverage * 0x0101_0101).bitcast();
-        over_eight(simd, source, u8x32::from_slice(simd, &alpha), spread, below);
+        let source: u8x32<S> = u8x32::from_slice(simd, colors.as_flattened());
+        let words: u32x8<S> = source.bitcast();
+        let coverage = twice(coverage);
+        let alpha = twice(words >> 24);
+        let through = u16x16::splat(simd, 255) - div255_lanes(simd, alpha * coverage);
+        over_eight(simd, source.bitcast(), coverage, through, below);
     }
 }
 
-/// Eight pixels of source-over: (source · coverage + below · (255 − alpha · coverage / 255)) / 255; all
-/// operands hold one value per byte of a pixel.
+/// Numbers below 2¹⁶ in both halves of their pixels.
+#[inline(always)]
+fn twice<S: Simd>(v: u32x8<S>) -> u16x16<S> {
+    (v | (v << 16)).bitcast()
+}
+
+/// Eight pixels of source-over: (source · coverage + below · through) / 255, where what shines through is 255 − alpha ·
+/// coverage / 255. The source is no brighter than opaque, so nothing exceeds 255.
+///
+/// Bytes are taken apart by their places in pairs, for which nothing has to be moved across.
 #[inline(always)]
 fn over_eight<S: Simd>(
     simd: S,
-    source: u8x32<S>,
-    alpha: u8x32<S>,
-    coverage: u8x32<S>,
+    source: u16x16<S>,
+    coverage: u16x16<S>,
+    through: u16x16<S>,
     pixels: &mut [Srgb; 8],
 ) {
     let pixels = pixels.as_flattened_mut();
-    let below = u8x32::from_slice(simd, pixels);
-    let (a0, a1) = alpha.widening_mul(coverage);
-    let (s0, s1) = source.widening_mul(coverage);
-    let (b0, b1) = below.widen();
-    let full = u16x16::splat(simd, 255);
-    let d0 = div255_lanes(simd, s0 + b0 * (full - div255_lanes(simd, a0)));
-    let d1 = div255_lanes(simd, s1 + b1 * (full - div255_lanes(simd, a1)));
-    d0.saturating_narrow(d1).store_slice(pixels);
+    let below: u8x32<S> = u8x32::from_slice(simd, pixels);
+    let below: u16x16<S> = below.bitcast();
+    let (even, half) = (u16x16::splat(simd, 255), u16x16::splat(simd, 128));
+    let d0 = (source & even) * coverage + (below & even) * through + half;
+    let d1 = (source >> 8) * coverage + (below >> 8) * through + half;
+    let (d0, d1) = ((d0 + (d0 >> 8)) >> 8, d1 + (d1 >> 8));
+    let over: u8x32<S> = (d0 | (d1 & !even)).bitcast();
+    over.store_slice(pixels);
 }
 
 #[inline(always)]

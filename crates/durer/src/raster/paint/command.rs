@@ -1,8 +1,8 @@
 //! What a canvas has noted, in order.
 
-use super::color::Space;
-use super::outline::Outline;
-use super::source::Source;
+use super::color::{Space, premultiply};
+use super::outline::{Drawn, Lists, Outline};
+use super::source::{self, Source};
 use super::{Color, FillRule, MaskKind, Paint};
 use crate::math::DAffine2;
 use crate::raster::coverage::convex::Strip;
@@ -58,15 +58,38 @@ impl Open {
     }
 }
 
+/// What an outline is filled with; mostly small.
+#[derive(Debug)]
+pub(super) enum Brush {
+    /// One colour and its opacity 0 … 1.
+    Color(Color, f32),
+    /// Any paint, the map from its path's space to pixels, and its opacity.
+    Any(Box<(Paint, DAffine2, f64)>),
+}
+
+impl Brush {
+    pub fn new(paint: &Paint, pixel_from_path: DAffine2, opacity: f64) -> Self {
+        match paint {
+            Paint::Color(color) => Self::Color(*color, source::opacity(opacity) as f32),
+            _ => Self::Any(Box::new((paint.clone(), pixel_from_path, opacity))),
+        }
+    }
+
+    fn source<P: Space>(&self) -> Source<P> {
+        match self {
+            Self::Color(color, opacity) => Source::Solid(premultiply(*color, *opacity)),
+            Self::Any(any) => Source::new(&any.0, any.1, any.2),
+        }
+    }
+}
+
 /// One thing to do.
 #[derive(Debug)]
 pub(super) enum Command {
     Fill {
         outline: Outline,
         rule: FillRule,
-        paint: Paint,
-        opacity: f64,
-        transform: DAffine2,
+        brush: Brush,
     },
     /// Lines of the canvas, from the first to before the last.
     Lines {
@@ -89,15 +112,16 @@ pub(super) enum Command {
 }
 
 impl Command {
-    pub fn prepared<P: Space>(&self) -> Prepared<'_, P> {
+    pub fn prepared<'a, P: Space>(&'a self, lists: &'a Lists) -> Prepared<'a, P> {
         match self {
-            Self::Fill { outline, rule, paint, opacity, transform } => Prepared::Fill {
-                outline,
-                rule: *rule,
-                source: Source::new(paint, *transform, *opacity),
-            },
+            Self::Fill { outline, rule, brush } => {
+                let outline = outline.with(lists);
+                Prepared::Fill { outline, rule: *rule, source: brush.source() }
+            }
             Self::Lines { first, last } => Prepared::Lines { first: *first, last: *last },
-            Self::PushClip { outline, rule } => Prepared::PushClip { outline, rule: *rule },
+            Self::PushClip { outline, rule } => {
+                Prepared::PushClip { outline: outline.with(lists), rule: *rule }
+            }
             Self::PopClip => Prepared::PopClip,
             Self::PushGroup => Prepared::PushGroup,
             Self::PopGroup { opacity } => {
@@ -111,9 +135,9 @@ impl Command {
 
 /// A command with its paint made ready for one colour space.
 pub(super) enum Prepared<'a, P> {
-    Fill { outline: &'a Outline, rule: FillRule, source: Source<P> },
+    Fill { outline: Drawn<'a>, rule: FillRule, source: Source<P> },
     Lines { first: u32, last: u32 },
-    PushClip { outline: &'a Outline, rule: FillRule },
+    PushClip { outline: Drawn<'a>, rule: FillRule },
     PopClip,
     PushGroup,
     PopGroup { opacity: u8 },

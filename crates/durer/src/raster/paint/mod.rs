@@ -12,6 +12,8 @@ mod source;
 
 pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
 
+use std::sync::{Mutex, PoisonError};
+
 use super::coverage::convex::Strip;
 use super::coverage::{FillRule, Overlap, check_size};
 use super::line::anti_aliased;
@@ -22,8 +24,8 @@ use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
-use command::{Command, Line, Open, Prepared};
-use outline::Outline;
+use command::{Brush, Command, Line, Open, Prepared};
+use outline::{Filler, Lists, Outline};
 
 /// What of a picture becomes the coverage of a mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -103,6 +105,10 @@ pub struct Canvas {
     /// Clips, groups and masks that are open, in order of opening.
     open: Vec<Open>,
     anti_alias: bool,
+    /// Edges of the commands.
+    lists: Lists,
+    /// Buffers that threads have painted with, for the next picture.
+    fillers: Mutex<Vec<Filler>>,
 }
 
 impl Canvas {
@@ -115,6 +121,7 @@ impl Canvas {
         let transform = DAffine2::IDENTITY;
         let (background, commands, lines, open) = (None, vec![], vec![], vec![]);
         let anti_alias = options.anti_alias;
+        let (lists, fillers) = (Lists::default(), Mutex::default());
         Ok(Self {
             width,
             height,
@@ -125,6 +132,8 @@ impl Canvas {
             lines,
             open,
             anti_alias,
+            lists,
+            fillers,
         })
     }
 
@@ -144,12 +153,14 @@ impl Canvas {
     }
 
     /// Forgets what has been painted so far and sets every pixel to one colour instead, cheaper than
-    /// filling the target before.
+    /// filling the target before. Keeps the memory, so that picture after picture costs less on one canvas than on a
+    /// new one each.
     pub fn clear(&mut self, color: Color) {
         self.background = Some(color);
         self.commands.clear();
         self.lines.clear();
         self.open.clear();
+        self.lists.clear();
     }
 
     /// Sets the map from the space of paths and paints to pixels, for what follows.
@@ -216,17 +227,21 @@ impl Canvas {
         paint: &Paint,
         opacity: f64,
     ) {
-        let outline = Outline::new(contours, self.width, self.height, self.anti_alias);
+        let outline = self.outline(contours);
         if outline.rows().0 < outline.rows().1 {
-            let (paint, transform) = (paint.clone(), self.transform);
-            self.commands.push(Command::Fill { outline, rule, paint, opacity, transform });
+            let brush = Brush::new(paint, self.transform, opacity);
+            self.commands.push(Command::Fill { outline, rule, brush });
         }
+    }
+
+    fn outline(&mut self, contours: &Contours) -> Outline {
+        Outline::new(contours, (self.width, self.height), self.anti_alias, &mut self.lists)
     }
 
     /// Restricts what follows to the inside of a path, within the clip paths already in force.
     pub fn push_clip(&mut self, path: &Path, rule: FillRule) {
         let contours = self.flattened(path);
-        let outline = Outline::new(&contours, self.width, self.height, self.anti_alias);
+        let outline = self.outline(&contours);
         self.commands.push(Command::PushClip { outline, rule });
         self.open.push(Open::Clip);
     }
@@ -301,10 +316,20 @@ impl Canvas {
         Ok(())
     }
 
+    /// Buffers used before, or new ones.
+    fn filler(&self) -> Filler {
+        let spare = self.fillers.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        spare.unwrap_or_else(|| Filler::new(self.width, self.options.overlap == Overlap::Exact))
+    }
+
+    fn keep(&self, filler: Filler) {
+        self.fillers.lock().unwrap_or_else(PoisonError::into_inner).push(filler);
+    }
+
     fn prepared<P: Space>(&self) -> Vec<Prepared<'_, P>> {
         // What was left open is closed.
         let closing = self.open.iter().rev().flat_map(Open::closing);
-        self.commands.iter().map(Command::prepared).chain(closing).collect()
+        self.commands.iter().map(|command| command.prepared(&self.lists)).chain(closing).collect()
     }
 }
 

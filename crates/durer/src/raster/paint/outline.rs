@@ -5,9 +5,25 @@ use fearless_simd_macros::simd;
 
 use super::FillRule;
 use crate::curve::Contours;
-use crate::raster::coverage::band::{BandFiller, PathEdges};
+use crate::raster::coverage::band::{self, BandFiller, PathEdges};
+use crate::raster::coverage::edge::Edge;
 use crate::raster::coverage::sweep::Sink;
-use crate::raster::polygon::crossings::{CrossingEdges, CrossingFiller};
+use crate::raster::polygon::crossings::{self, CrossingEdges, CrossingFiller};
+
+/// The edges of outlines that have few.
+#[derive(Debug, Default)]
+pub(super) struct Lists {
+    smooth: Vec<Edge>,
+    hard: Vec<crossings::Edge>,
+}
+
+impl Lists {
+    /// Empties them and keeps the memory.
+    pub fn clear(&mut self) {
+        self.smooth.clear();
+        self.hard.clear();
+    }
+}
 
 /// The edges of something filled.
 #[derive(Debug)]
@@ -19,12 +35,17 @@ pub(super) enum Outline {
 }
 
 impl Outline {
-    /// The outline of contours in a target of the given size.
-    pub fn new(contours: &Contours, width: u32, height: u32, smooth: bool) -> Self {
+    /// The outline of contours in a target of the given size; a few edges are added to the lists.
+    pub fn new(
+        contours: &Contours,
+        (width, height): (u32, u32),
+        smooth: bool,
+        lists: &mut Lists,
+    ) -> Self {
         if smooth {
-            Self::Smooth(PathEdges::new(contours, width, height))
+            Self::Smooth(PathEdges::new(contours, width, height, &mut lists.smooth))
         } else {
-            Self::Hard(CrossingEdges::new(contours, width, height))
+            Self::Hard(CrossingEdges::new(contours, width, height, &mut lists.hard))
         }
     }
 
@@ -36,17 +57,34 @@ impl Outline {
         }
     }
 
-    /// Whether no row of the band that starts at row `top` is touched.
-    pub fn misses(&self, top: i32) -> bool {
+    /// With the lists it was made with.
+    pub fn with<'a>(&'a self, lists: &'a Lists) -> Drawn<'a> {
         match self {
-            Self::Smooth(path) => path.misses(top),
-            Self::Hard(path) => path.misses(top),
+            Self::Smooth(path) => Drawn::Smooth(path.with(&lists.smooth)),
+            Self::Hard(path) => Drawn::Hard(path.with(&lists.hard)),
+        }
+    }
+}
+
+/// An outline with all its edges.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Drawn<'a> {
+    Smooth(band::Path<'a>),
+    Hard(crossings::Path<'a>),
+}
+
+impl Drawn<'_> {
+    /// See [`Outline::rows`].
+    pub fn rows(&self) -> (i32, i32) {
+        match self {
+            Self::Smooth(path) => path.rows(),
+            Self::Hard(path) => path.rows(),
         }
     }
 }
 
 /// The buffers of one thread for filling outlines.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Filler {
     smooth: BandFiller,
     hard: CrossingFiller,
@@ -65,16 +103,16 @@ impl Filler {
     pub fn fill<S: Simd, K: Sink<S>>(
         simd: S,
         this: &mut Self,
-        outline: &Outline,
+        outline: Drawn<'_>,
         top: i32,
         rule: FillRule,
         sink: &mut K,
     ) {
         match outline {
-            Outline::Smooth(path) => {
+            Drawn::Smooth(path) => {
                 BandFiller::fill(simd, &mut this.smooth, path, top, rule, this.exact, sink);
             }
-            Outline::Hard(path) => {
+            Drawn::Hard(path) => {
                 CrossingFiller::fill(simd, &mut this.hard, path, top, rule, sink);
             }
         }

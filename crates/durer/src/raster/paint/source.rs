@@ -127,7 +127,7 @@ impl<P: Space> Source<P> {
     pub fn new(paint: &Paint, pixel_from_path: DAffine2, opacity: f64) -> Self {
         let opacity = self::opacity(opacity);
         match paint {
-            Paint::Color(color) => Self::Solid(premultiply(*color, opacity)),
+            Paint::Color(color) => Self::Solid(premultiply(*color, opacity as f32)),
             Paint::Gradient(g) => Self::gradient(g, pixel_from_path * g.transform, opacity),
             Paint::Pattern(p) => match inverse(pixel_from_path * p.transform) {
                 Some(image_from_pixel) if !p.image.data().is_empty() => {
@@ -148,7 +148,7 @@ impl<P: Space> Source<P> {
         };
         let inverse = inverse(pixel_from_paint);
         let (false, Some(paint_from_pixel)) = (flat || g.stops.len() == 1, inverse) else {
-            return Self::Solid(premultiply(last.1, opacity));
+            return Self::Solid(premultiply(last.1, opacity as f32));
         };
         let at =
             |i: usize| premultiply_f(stop_color(&g.stops, i as f64 / (RAMP - 1) as f64), opacity);

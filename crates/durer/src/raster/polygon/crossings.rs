@@ -4,13 +4,15 @@
 //! multiples of 1/(256 · height) of a pixel, heights in 1/256 of a pixel, so x may come out too small by less than
 //! that, and never too large.
 
+use std::ops::Range;
+
 use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 use super::{is_inside, snapped_edges};
 use crate::curve::Contours;
-use crate::raster::bands::{BAND_ROWS, BandIndex};
+use crate::raster::bands::{BAND_ROWS, CHUNK, Chunk, Edges, FEW_EDGES, by_chunks};
 use crate::raster::coverage::FillRule;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
@@ -28,7 +30,7 @@ const LISTED: usize = 32;
 
 /// An edge that crosses the centre of at least one row of the target.
 #[derive(Debug, Clone, Copy)]
-struct Edge {
+pub(crate) struct Edge {
     /// Where it crosses the first row's centre, in pixels from the centre of column 0.
     x: f64,
     /// Change of x per row.
@@ -68,33 +70,68 @@ impl Edge {
 }
 
 /// The edges of one path and which of them each band needs.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug)]
 pub(crate) struct CrossingEdges {
-    edges: Vec<Edge>,
-    index: BandIndex,
+    edges: Edges<Edge>,
     /// First row and one past the last whose centres are crossed.
     pub rows: (i32, i32),
     /// First and last pixel that anything begins or ends at.
     columns: (i32, i32),
 }
 
+/// The same of what is made so far.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    rows: (i32, i32),
+    columns: (i32, i32),
+}
+
+impl Extent {
+    const NONE: Self = Self { rows: (i32::MAX, 0), columns: (i32::MAX, 0) };
+
+    fn join(&mut self, other: Self) {
+        let join = |a: (i32, i32), b: (i32, i32)| (a.0.min(b.0), a.1.max(b.1));
+        self.rows = join(self.rows, other.rows);
+        self.columns = join(self.columns, other.columns);
+    }
+}
+
+/// Adds the edges that begin in a range of all points to the list.
+fn add(contours: &Contours, range: Range<usize>, height: i32, list: &mut Vec<Edge>) -> Extent {
+    let mut extent = Extent::NONE;
+    snapped_edges(contours, range, |a, b| {
+        if let Some(edge) = Edge::new(a, b, height) {
+            let columns = (first_center(a.0.min(b.0)), first_center(a.0.max(b.0)));
+            extent.join(Extent { rows: edge.rows, columns });
+            list.push(edge);
+        }
+    });
+    extent
+}
+
 impl CrossingEdges {
-    /// The edges of contours within a target of the given size, at most 32,767 each way.
-    pub fn new(contours: &Contours, width: u32, height: u32) -> Self {
+    /// The edges of contours within a target of the given size, at most 32,767 each way; a few are added to the list.
+    pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
         let (width, height) = (width as i32, height as i32);
-        let mut path = Self { rows: (i32::MAX, 0), columns: (i32::MAX, 0), ..Self::default() };
-        path.edges.reserve(contours.points().len());
-        snapped_edges(contours, |a, b| {
-            if let Some(edge) = Edge::new(a, b, height) {
-                path.rows = (path.rows.0.min(edge.rows.0), path.rows.1.max(edge.rows.1));
-                let columns = (first_center(a.0.min(b.0)), first_center(a.0.max(b.0)));
-                path.columns = (path.columns.0.min(columns.0), path.columns.1.max(columns.1));
-                path.edges.push(edge);
-            }
-        });
-        path.columns = (path.columns.0.clamp(0, width), path.columns.1.clamp(0, width));
-        path.index = BandIndex::new(path.rows, path.edges.iter().map(|e| e.rows));
-        path
+        let (count, rows) = (contours.points().len(), |edge: &Edge| edge.rows);
+        let mut extent = Extent::NONE;
+        let edges = if count <= FEW_EDGES {
+            let first = list.len();
+            extent = add(contours, 0..count, height, list);
+            Edges::from_list(list, first, rows)
+        } else {
+            let made = by_chunks(contours, CHUNK, |range| {
+                let mut edges = Vec::with_capacity(range.len());
+                let extent = add(contours, range, height, &mut edges);
+                (Chunk::new(edges, rows), extent)
+            });
+            made.iter().for_each(|(_, own)| extent.join(*own));
+            let chunks = made.into_iter().map(|(chunk, _)| chunk).collect();
+            Edges::from_chunks(chunks, list, rows)
+        };
+        let Extent { rows, columns } = extent;
+        let columns = (columns.0.clamp(0, width), columns.1.clamp(0, width));
+        Self { edges, rows, columns }
     }
 
     /// Whether the path crosses no row of the band that starts at row `top`.
@@ -102,13 +139,32 @@ impl CrossingEdges {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top
     }
 
+    /// With the list it was made with.
+    pub fn with<'a>(&'a self, list: &'a [Edge]) -> Path<'a> {
+        Path { path: self, list }
+    }
+}
+
+/// A path and the list that its edges may be in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Path<'a> {
+    path: &'a CrossingEdges,
+    list: &'a [Edge],
+}
+
+impl Path<'_> {
+    /// First row and one past the last.
+    pub fn rows(&self) -> (i32, i32) {
+        self.path.rows
+    }
+
     /// Calls `f(row of the band, first pixel not left of the edge, whether it goes down)` for all crossings of a
     /// band, edge by edge, until it says no. The pixel is 0 … `width`.
     #[inline(always)]
     pub fn for_each(&self, top: i32, width: usize, mut f: impl FnMut(usize, usize, bool) -> bool) {
         let width = width as i64;
-        for stretch in self.index.stretches(top) {
-            for edge in self.edges.get(stretch).unwrap_or_default() {
+        for some in self.path.edges.of_band(self.list, top) {
+            for edge in some {
                 let (first, last, mut x, slope) = edge.within(top);
                 for row in first..last {
                     if !f(row as usize, (x >> BITS).clamp(0, width) as usize, edge.down) {
@@ -122,7 +178,7 @@ impl CrossingEdges {
 }
 
 /// The buffers for filling paths in a band; used again for the next path and band.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct CrossingFiller {
     width: usize,
     /// How many crossings of each row are listed.
@@ -152,13 +208,13 @@ impl CrossingFiller {
     pub fn fill<S: Simd, K: Sink<S>>(
         simd: S,
         this: &mut Self,
-        path: &CrossingEdges,
+        path: Path<'_>,
         top: i32,
         rule: FillRule,
         sink: &mut K,
     ) {
         if this.list(path, top) {
-            this.spans(simd, (path.rows.0 - top, path.rows.1 - top), rule, sink);
+            this.spans(simd, (path.rows().0 - top, path.rows().1 - top), rule, sink);
         } else {
             this.count(path, top);
             Self::sweep(simd, this, path, top, rule, sink);
@@ -167,7 +223,7 @@ impl CrossingFiller {
 
     /// Lists the crossings of each row; `false` where there are too many.
     #[inline(never)]
-    fn list(&mut self, path: &CrossingEdges, top: i32) -> bool {
+    fn list(&mut self, path: Path<'_>, top: i32) -> bool {
         let Self { counts, lists, width, .. } = self;
         *counts = [0; BAND_ROWS as usize];
         let mut fits = true;
@@ -217,7 +273,7 @@ impl CrossingFiller {
 
     /// Adds each crossing to the cell of its pixel.
     #[inline(never)]
-    fn count(&mut self, path: &CrossingEdges, top: i32) {
+    fn count(&mut self, path: Path<'_>, top: i32) {
         let Self { cells, stride, width, .. } = self;
         cells.resize(*stride * BAND_ROWS as usize, 0);
         path.for_each(top, *width, |row, x, down| {
@@ -233,15 +289,15 @@ impl CrossingFiller {
     fn sweep<S: Simd, K: Sink<S>>(
         simd: S,
         this: &mut Self,
-        path: &CrossingEdges,
+        path: Path<'_>,
         top: i32,
         rule: FillRule,
         sink: &mut K,
     ) {
-        let (first, last) = (path.columns.0 as usize & !7, path.columns.1 as usize);
+        let (first, last) = (path.path.columns.0 as usize & !7, path.path.columns.1 as usize);
         let zero = i32x8::splat(simd, 0);
         let full = i32x8::splat(simd, 255);
-        for row in (path.rows.0 - top).max(0)..(path.rows.1 - top).min(BAND_ROWS) {
+        for row in (path.rows().0 - top).max(0)..(path.rows().1 - top).min(BAND_ROWS) {
             let start = row as usize * this.stride;
             let cells = this.cells.get_mut(start + first..=(start + last) | 7).unwrap_or_default();
             let mut carry = zero;

@@ -151,7 +151,7 @@ pub fn fill(
 
 fn edge_table(contours: &Contours, height: u32) -> Vec<Edge> {
     let mut table = Vec::new();
-    snapped_edges(contours, |a, b| {
+    snapped_edges(contours, 0..contours.points().len(), |a, b| {
         table.extend(Edge::new(a, b, 0).filter(|e| i64::from(e.rows.0) < i64::from(height)));
     });
     table

@@ -20,12 +20,14 @@ pub(crate) mod crossings;
 pub mod edge_table;
 pub mod ordered_edge_list;
 
+use std::ops::Range;
+
 use super::coverage::FillRule;
 use super::fixed::snap;
 use super::span::Span;
 use crate::curve::Contours;
 use crate::math::DVec2;
-use crate::raster::clipped::pieces;
+use crate::raster::clipped::{Lines, lines, pieces};
 use crate::trace::NoTrace;
 
 crate::info::family! {
@@ -71,20 +73,37 @@ pub struct Options {
 /// [`super::coverage`]'s largest target in the middle, x of an edge is exact enough in f64.
 const REACH: (f64, f64) = (-32_768.0, 65_536.0);
 
-/// Calls `f` with the edges of the contours, each closed, snapped to the grid of [`super::fixed`] and directed as
-/// in the contour. Both faces of a shared edge get the same points.
-fn snapped_edges(contours: &Contours, mut f: impl FnMut((i32, i32), (i32, i32))) {
+/// Calls `f` with the edges of the contours, each closed, that begin in a range of all points, snapped to the grid of
+/// [`super::fixed`] and directed as in the contour. Both faces of a shared edge get the same points.
+fn snapped_edges(
+    contours: &Contours,
+    range: Range<usize>,
+    mut f: impl FnMut((i32, i32), (i32, i32)),
+) {
     let grid = |p: DVec2| (snap(p.x), snap(p.y));
     let (low, high) = (DVec2::splat(REACH.0), DVec2::splat(REACH.1));
     let within = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
-    for (points, _) in contours.iter() {
-        let finite = || points.iter().filter(|p| p.is_finite()).copied();
-        for (a, b) in finite().zip(finite().skip(1).chain(finite().take(1))) {
-            if within(a) && within(b) {
-                f(grid(a), grid(b));
-            } else {
-                for (p, q) in pieces(a, b, low, high).into_iter().flatten() {
-                    f(grid(p), grid(q));
+    for (points, mut own) in contours.within(range) {
+        while let Some(some) = Lines::next(points, &mut own, low, high) {
+            match some {
+                Lines::Inside(from, rest, next) => {
+                    let mut from = grid(*from);
+                    for i in 0..=rest.len() {
+                        let to = grid(*rest.get(i).unwrap_or(next));
+                        f(from, to);
+                        from = to;
+                    }
+                }
+                Lines::Any(points, own) => {
+                    for (a, b) in lines(points, own) {
+                        if within(a) && within(b) {
+                            f(grid(a), grid(b));
+                            continue;
+                        }
+                        for (p, q) in pieces(a, b, low, high).into_iter().flatten() {
+                            f(grid(p), grid(q));
+                        }
+                    }
                 }
             }
         }

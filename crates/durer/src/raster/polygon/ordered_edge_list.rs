@@ -16,7 +16,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{dispatch, u32x8};
 
 pub use super::Options;
-use super::crossings::{CrossingEdges, CrossingFiller};
+use super::crossings::{CrossingEdges, CrossingFiller, Path};
 use crate::curve::Contours;
 use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
@@ -77,19 +77,20 @@ fn fill_at(
 ) {
     const LARGEST: u32 = crate::raster::coverage::edge::MAX_SIDE;
     let (width, height) = (width.min(LARGEST), height.min(LARGEST));
-    let path = CrossingEdges::new(contours, width, height);
+    let mut list = Vec::new();
+    let path = CrossingEdges::new(contours, width, height, &mut list);
     let mut filler = CrossingFiller::new(width);
     for top in (0..height as i32).step_by(BAND_ROWS as usize).filter(|top| !path.misses(*top)) {
-        trace_crossings(&path, top, width as usize, t);
+        trace_crossings(path.with(&list), top, width as usize, t);
         let mut sink = Spans { top, width: width as i32, open: NONE, emit, t };
         dispatch!(level, simd => {
-            CrossingFiller::fill(simd, &mut filler, &path, top, options.rule, &mut sink);
+            CrossingFiller::fill(simd, &mut filler, path.with(&list), top, options.rule, &mut sink);
         });
         sink.close();
     }
 }
 
-fn trace_crossings(path: &CrossingEdges, top: i32, width: usize, t: &mut impl Tracer<Step>) {
+fn trace_crossings(path: Path<'_>, top: i32, width: usize, t: &mut impl Tracer<Step>) {
     path.for_each(top, width, |row, x, down| {
         let mut listens = false;
         t.step(|| {
