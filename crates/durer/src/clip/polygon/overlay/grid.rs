@@ -16,6 +16,10 @@ const SMALL_LEAF: usize = 24;
 /// sixteenths; long parallel segments do not come apart in squares.
 const GROWTH: usize = 40;
 
+/// All divisions of a square together may make at most this many times its segments: edges that lie on
+/// one another never come apart, and each division would double them, down to single pixels.
+const MOST_GROWTH: f64 = 16.0;
+
 /// Segments per square if they were spread evenly; curves leave most squares empty, and the full
 /// ones are divided again.
 const PER_SQUARE: f64 = 8.0;
@@ -474,17 +478,19 @@ impl Band {
                 continue;
             }
             let block = frame.square(band.rows.start * frame.columns + square);
-            band.divide(segments, square, block, list, &mut scratch);
+            band.divide(segments, (square, block), list, MOST_GROWTH, &mut scratch);
         }
         band
     }
 
+    /// Divides a square where that parts its segments; `most` is how many times as many the divisions may
+    /// still make of them.
     fn divide<C: Coord>(
         &mut self,
         segments: &[Segment<C>],
-        node: usize,
-        block: Block,
+        (node, block): (usize, Block),
         items: &[u32],
+        most: f64,
         scratch: &mut Vec<(u32, u32)>,
     ) {
         let frame = match items.len() {
@@ -494,8 +500,12 @@ impl Band {
         let parts = frame.map(|frame| {
             (frame, frame.distribute(segments, &(0..frame.rows), items.iter(), scratch))
         });
+        let growth = |lists: &[u32]| lists.len() as f64 / items.len() as f64;
         match parts {
-            Some((frame, (starts, lists))) if lists.len() * 16 <= items.len() * GROWTH => {
+            Some((frame, (starts, lists)))
+                if lists.len() * 16 <= items.len() * GROWTH && growth(&lists) <= most =>
+            {
+                let most = most / growth(&lists).max(1.0);
                 let first = self.nodes.len();
                 self.nodes[node] = Node(Node::FIRST_SPLIT + self.splits.len() as u32);
                 self.splits.push((frame, first as u32));
@@ -503,7 +513,8 @@ impl Band {
                 for square in 0..starts.len() - 1 {
                     let list = &lists[starts[square] as usize..starts[square + 1] as usize];
                     if !list.is_empty() {
-                        self.divide(segments, first + square, frame.square(square), list, scratch);
+                        let part = (first + square, frame.square(square));
+                        self.divide(segments, part, list, most, scratch);
                     }
                 }
             }

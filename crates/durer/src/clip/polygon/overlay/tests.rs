@@ -105,3 +105,16 @@ fn long_rings_keep_their_points() {
     let out = run(&shapes, &Shapes::new(), BooleanOp::Union, FillRule::NonZero).shapes;
     assert_eq!((out.points().len(), out.ring_count()), (500, 1));
 }
+
+/// Edges that lie on one another come never apart, however often the plane is divided.
+#[test]
+fn many_copies_of_a_ring_are_one_ring() {
+    let square = [(0.0, 0.0), (30.0, 0.0), (30.0, 30.0), (0.0, 30.0)];
+    let slanted = [(0.0, 0.0), (29.0, 3.0), (26.0, 30.0), (-3.0, 27.0)];
+    for (ring, count) in [(square, 26), (slanted, 26), (square, 400), (slanted, 400)] {
+        let ring = ring.map(DVec2::from);
+        let shapes = Shapes::from_rings(std::iter::repeat_n(ring, count));
+        let out = run(&shapes, &Shapes::new(), BooleanOp::Union, FillRule::NonZero).shapes;
+        assert_eq!((out.points().len(), out.area()), (4, Shapes::from_rings([ring]).area()));
+    }
+}
