@@ -62,7 +62,7 @@ pub fn shade_points<S: Simd>(
     [color.x.into(), color.y.into(), color.z.into()]
 }
 
-/// [`shade_points`] for sixteen samples; where eight lanes are native, for eight twice.
+/// [`shade_points`] for sixteen samples; where fewer than eight lanes are native, for eight twice.
 #[simd]
 pub fn shade_points_x16<S: Simd>(
     simd: S,
@@ -71,7 +71,8 @@ pub fn shade_points_x16<S: Simd>(
     lights: &PreparedLights,
     shading: Shading,
 ) -> [[f32; 16]; 3] {
-    if has_sixteen_lanes::<S>() {
+    // Two chains of divisions and roots side by side, which one waits for, take little longer than one.
+    if has_eight_lanes::<S>() {
         let color = shade_lanes(points, material, lights, shading);
         return [color.x.into(), color.y.into(), color.z.into()];
     }
@@ -85,10 +86,10 @@ pub fn shade_points_x16<S: Simd>(
     colors
 }
 
-/// Whether sixteen numbers fit one of the machine's registers.
+/// Whether eight numbers fit one of the machine's registers.
 #[inline(always)]
-fn has_sixteen_lanes<S: Simd>() -> bool {
-    size_of::<S::f32s>() >= size_of::<[f32; 16]>()
+fn has_eight_lanes<S: Simd>() -> bool {
+    size_of::<S::f32s>() >= size_of::<[f32; 8]>()
 }
 
 #[inline(always)]

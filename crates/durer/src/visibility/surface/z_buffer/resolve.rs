@@ -17,6 +17,9 @@ use fearless_simd_macros::simd;
 /// Samples that a pixel has at most.
 pub(super) const MOST_SAMPLES: usize = 16;
 
+/// Rows of a tile, and one more: rows are taken in pairs.
+const ROWS: usize = TILE as usize + 1;
+
 /// Lets the fragments of masked surfaces pass where they are.
 pub struct MaskTest<'t, 'a> {
     pub lit: &'t mut Lit<'a>,
@@ -73,11 +76,14 @@ fn resolve_opaque<S: Simd>(
     area: &Area<'_>,
     output: &mut Output<'_>,
 ) {
-    let mut rows = [(Vec4::ZERO, [0; 4]); TILE as usize];
-    for (y, row) in (0..area.size[1]).zip(&mut rows) {
-        let behind = premultiply((area.background)(area.tile[1] + y));
-        *row = (behind, encode(behind));
+    // What is behind each row, linear and encoded, apart: pairs of them would be copied piece by piece.
+    let (mut behind, mut encoded) = ([Vec4::ZERO; ROWS], [0; ROWS]);
+    for (y, (behind, encoded)) in (0..area.size[1]).zip(behind.iter_mut().zip(&mut encoded)) {
+        *behind = premultiply((area.background)(area.tile[1] + y));
+        *encoded = u32::from_le_bytes(encode(*behind));
     }
+    // Filled anew for each block, but not cleared.
+    let mut samples = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
     // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
         let width = 8.min(area.size[0] - x) as usize;
@@ -85,14 +91,16 @@ fn resolve_opaque<S: Simd>(
         for y in (0..area.size[1]).step_by(2) {
             let at = [area.tile[0] + x, area.tile[1] + y];
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
-            let behind = [y as usize, y as usize + 1].map(|y| rows[y.min(rows.len() - 1)]);
-            let (pixels, differs) = match resolve_block(simd, planes, first, lit, behind, at) {
+            let row = y as usize % TILE as usize;
+            let count = samples_of_block(simd, planes, first, &mut samples);
+            let both = [behind[row], behind[row + 1]];
+            let (pixels, differs) = match resolve_block(simd, &samples[..count], lit, both, at) {
                 Some(pixels) => (pixels, [[0; 8]; 2]),
                 None => {
                     let (above, differs) = whole_pixels(simd, planes, first);
                     let (below, differs_below) = whole_pixels(simd, planes, second);
                     let whole = simd.combine_u32x8(above, below);
-                    let encoded = behind.map(|(_, encoded)| encoded);
+                    let encoded = [encoded[row], encoded[row + 1]];
                     let pixels = resolve_sixteen(simd, lit, whole, encoded, at);
                     (pixels, [differs, differs_below])
                 }
@@ -101,7 +109,7 @@ fn resolve_opaque<S: Simd>(
                 let start = (y as usize + i) * output.stride + x as usize;
                 put(&mut output.color[start..start + width], &pixels.as_chunks::<8>().0[i]);
                 if differs[i] != [0; 8] {
-                    let (behind, _) = behind[i];
+                    let behind = behind[row + i];
                     let (differs, at) = (&differs[i][..width], [at[0], at[1] + i as i32]);
                     add_mixed(simd, planes, [first, second][i], differs, mixed, lit, behind, at);
                 }
@@ -157,29 +165,41 @@ fn whole_pixels<S: Simd>(simd: S, planes: &[SamplePlane], index: usize) -> (u32x
     (same.select(first, u32x8::splat(simd, NO_ITEM)), differs.into())
 }
 
-/// Sixteen pixels, eight in each of two rows, with several samples each, where they show few items of plain
-/// materials on something opaque: each item is lit at all of them, and weighted by its samples.
+/// Of sixteen pixels, eight in each of two rows, the item at each sample; how many samples there are, none
+/// where pixels have but one.
 #[inline(always)]
-fn resolve_block<S: Simd>(
+fn samples_of_block<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
     index: usize,
-    lit: &mut Lit<'_>,
-    [above, below]: [(Vec4, [u8; 4]); 2],
-    at: [i32; 2],
-) -> Option<[[u8; 4]; 16]> {
-    let none = u32x16::splat(simd, NO_ITEM);
-    let (mut samples, mut count) = ([none; MOST_SAMPLES], 0);
-    for plane in planes.iter().filter(|plane| plane.shift > 0) {
+    samples: &mut [u32x16<S>; MOST_SAMPLES],
+) -> usize {
+    let fours = planes.iter().filter(|plane| plane.shift > 0);
+    let (chunks, _) = samples.as_chunks_mut::<4>();
+    let mut count = 0;
+    for (plane, to) in fours.zip(chunks) {
         let above = plane.four_of_eight(simd, index);
         let below = plane.four_of_eight(simd, index + TILE as usize);
-        for (above, below) in above.into_iter().zip(below) {
-            samples[count] = simd.combine_u32x8(above, below);
-            count += 1;
+        for i in 0..4 {
+            to[i] = simd.combine_u32x8(above[i], below[i]);
         }
+        count += 4;
     }
-    let samples = &samples[..count];
-    if count == 0 || above.0.w < 1.0 || below.0.w < 1.0 || !are_few(simd, samples[0]) {
+    count
+}
+
+/// Sixteen pixels with the given samples each, where they show few items of plain materials on something
+/// opaque: each item is lit at all of them, and weighted by its samples.
+#[inline(always)]
+fn resolve_block<S: Simd>(
+    simd: S,
+    samples: &[u32x16<S>],
+    lit: &mut Lit<'_>,
+    [above, below]: [Vec4; 2],
+    at: [i32; 2],
+) -> Option<[[u8; 4]; 16]> {
+    let (first, count) = (samples.first()?, samples.len());
+    if above.w < 1.0 || below.w < 1.0 || !are_few(simd, *first) {
         return None;
     }
     let zero = f32x16::splat(simd, 0.0);
@@ -199,7 +219,7 @@ fn resolve_block<S: Simd>(
         }
         let mut colors = [zero; 3];
         if item == NO_ITEM {
-            let (above, below) = (above.0.to_array(), below.0.to_array());
+            let (above, below) = (above.to_array(), below.to_array());
             for (i, to) in colors.iter_mut().enumerate() {
                 let (above, below) = (simd.splat_f32x8(above[i]), simd.splat_f32x8(below[i]));
                 *to = simd.combine_f32x8(above, below);
@@ -226,11 +246,10 @@ fn resolve_sixteen<S: Simd>(
     simd: S,
     lit: &mut Lit<'_>,
     whole: u32x16<S>,
-    behind: [[u8; 4]; 2],
+    [above, below]: [u32; 2],
     at: [i32; 2],
 ) -> [[u8; 4]; 16] {
-    let [above, below] = behind.map(|behind| simd.splat_u32x8(u32::from_le_bytes(behind)));
-    let behind = simd.combine_u32x8(above, below);
+    let behind = simd.combine_u32x8(simd.splat_u32x8(above), simd.splat_u32x8(below));
     let there = whole.simd_ne(u32x16::splat(simd, NO_ITEM));
     let mut pixels: [u32; 16] = behind.into();
     if there.any_true() {
