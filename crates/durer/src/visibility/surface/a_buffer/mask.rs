@@ -24,8 +24,31 @@ pub struct MaskTable {
     centers: Vec<[f32; 2]>,
     /// The same, eight at a time.
     centers_x8: Vec<[[f32; 8]; 2]>,
-    /// By direction, then distance; upper half plane of directions only.
-    masks: Box<[u64; ENTRIES]>,
+    masks: Masks,
+}
+
+/// Masks by direction, then distance; upper half plane of directions only. As small as they can be, for those of
+/// sixteen bits fit the first-level cache.
+enum Masks {
+    Sixteen(Box<[u16; ENTRIES]>),
+    SixtyFour(Box<[u64; ENTRIES]>),
+}
+
+impl Masks {
+    fn new(masks: Box<[u64; ENTRIES]>, side: u32) -> Self {
+        if side * side > 16 {
+            return Self::SixtyFour(masks);
+        }
+        Self::Sixteen(Box::new(masks.map(|mask| mask as u16)))
+    }
+
+    #[inline(always)]
+    fn get(&self, index: usize) -> u64 {
+        match self {
+            Self::Sixteen(masks) => u64::from(masks[index % ENTRIES]),
+            Self::SixtyFour(masks) => masks[index % ENTRIES],
+        }
+    }
 }
 
 /// The last place among a direction's masks. The first mask has no bits and the last has all of them,
@@ -75,7 +98,7 @@ impl MaskTable {
         let centers: Vec<[f32; 2]> = centers(side).collect();
         let (eights, _) = centers.as_chunks::<8>();
         let centers_x8 = eights.iter().map(|c| [0, 1].map(|axis| c.map(|p| p[axis]))).collect();
-        Self { side, centers, centers_x8, masks }
+        Self { side, centers, centers_x8, masks: Masks::new(masks, side) }
     }
 
     /// The mask with all bits.
@@ -105,7 +128,7 @@ impl MaskTable {
     /// A mask of a direction.
     #[inline(always)]
     pub fn mask(&self, direction: &Direction, distance: i32) -> u64 {
-        let mask = self.masks[(direction.start as usize + distance as usize) % ENTRIES];
+        let mask = self.masks.get(direction.start as usize + distance as usize);
         let turned = if direction.scale < 0.0 { self.full() } else { 0 };
         mask ^ turned
     }
@@ -179,8 +202,9 @@ mod tests {
     fn the_outermost_masks_are_empty_and_full() {
         for mask in [Mask::M16, Mask::M64] {
             let table = MaskTable::new(mask);
-            for masks in table.masks.chunks(DISTANCES) {
-                assert_eq!((masks[0], masks[DISTANCES - 1]), (0, table.full()));
+            for first in (0..ENTRIES).step_by(DISTANCES) {
+                let outermost = [first, first + DISTANCES - 1].map(|i| table.masks.get(i));
+                assert_eq!(outermost, [0, table.full()]);
             }
         }
     }
