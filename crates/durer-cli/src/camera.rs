@@ -132,19 +132,19 @@ fn of_file(name: &str, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
         };
         Failure::Data(format!("--camera: no camera `{name}`; {there}"))
     })?;
-    let pivot = fit::center(scene).unwrap_or(DVec3::ZERO);
-    Ok(turned(found.camera, pivot, scene, shot))
+    Ok(turned(found.camera, || fit::center(scene).unwrap_or(DVec3::ZERO), scene, shot))
 }
 
 /// A camera in a given place, turned around its target.
 fn at(eye: DVec3, args: &ViewArgs, scene: &Scene, shot: &Shot) -> Camera {
     let front = NamedView::Front.direction(scene.up_axis);
-    let center = fit::center(scene).unwrap_or(DVec3::ZERO);
-    let ahead = if center == eye { eye - front.to_eye() } else { center };
-    let target = args.target.unwrap_or(ahead);
+    let target = args.target.unwrap_or_else(|| {
+        let center = fit::center(scene).unwrap_or(DVec3::ZERO);
+        if center == eye { eye - front.to_eye() } else { center }
+    });
     let up = args.up.unwrap_or_else(|| fit::up_for(target - eye, scene.up_axis));
     let camera = Camera { eye, target, up, projection: projection(args), near: 1.0, far: 2.0 };
-    let camera = turned(camera, target, scene, shot);
+    let camera = turned(camera, || target, scene, shot);
     let (near, far) = fit::depth_range(&camera, scene);
     Camera { near, far, ..camera }
 }
@@ -157,11 +157,12 @@ fn projection(args: &ViewArgs) -> Projection {
 }
 
 /// The camera after the share of a full turn around the up axis through the pivot.
-fn turned(camera: Camera, pivot: DVec3, scene: &Scene, shot: &Shot) -> Camera {
+fn turned(camera: Camera, pivot: impl FnOnce() -> DVec3, scene: &Scene, shot: &Shot) -> Camera {
     let half = shot.turned().to_radians() * 0.5;
     if half == 0.0 {
         return camera;
     }
+    let pivot = pivot();
     let (sin, cos) = libm::sincos(half);
     let axis = NamedView::Front.direction(scene.up_axis).up() * sin;
     let turn = DQuat::from_xyzw(axis.x, axis.y, axis.z, cos);

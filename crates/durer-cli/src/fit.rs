@@ -2,7 +2,9 @@
 
 use durer::math::DVec3;
 use durer::scene::{Camera, Mesh, Projection, Scene, UpAxis};
-use durer::view::projection::{FitOptions, NamedView, ViewDirection, fit_points, fit_scene};
+use durer::view::projection::{
+    FitOptions, NamedView, ViewDirection, drawn_bounds, drawn_ends, fit_points, fit_scene,
+};
 use std::f64::consts::TAU;
 
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
@@ -101,26 +103,14 @@ fn for_each_point(scene: &Scene, f: impl FnMut(DVec3)) {
 
 /// The middle of the box around what is drawn; `None` where that is nothing.
 pub fn center(scene: &Scene) -> Option<DVec3> {
-    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for_each_point(scene, |p| {
-        min = min.min(p);
-        max = max.max(p);
-    });
-    (min.x <= max.x).then(|| min + (max - min) * 0.5)
+    drawn_bounds(scene).map(|bounds| bounds.center())
 }
 
 /// Near and far planes around what a camera in a given place can see of the model.
 pub fn depth_range(camera: &Camera, scene: &Scene) -> (f64, f64) {
     let back = (camera.eye - camera.target).normalize_or_zero();
-    let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for_each_point(scene, |p| {
-        let depth = (camera.eye - p).dot(back);
-        nearest = nearest.min(depth);
-        farthest = farthest.max(depth);
-    });
-    if nearest > farthest {
-        return (0.1, 100.0);
-    }
+    let Some(ends) = drawn_ends(scene, back) else { return (0.1, 100.0) };
+    let [nearest, farthest] = ends.map(|p| (camera.eye - p).dot(back));
     match camera.projection {
         Projection::Perspective { .. } => perspective_range(nearest, farthest),
         Projection::Orthographic { height } => {

@@ -243,6 +243,26 @@ pub fn fit_scene(scene: &Scene, direction: &ViewDirection, options: &FitOptions)
     fit_outermost(&outermost, direction, options)
 }
 
+/// The box around all finite vertices that a scene draws something with, in world space; `None` where there
+/// are none.
+///
+/// Cost: O(vertices), a few operations each.
+pub fn drawn_bounds(scene: &Scene) -> Option<Aabb> {
+    let mut outermost = Outermost::new([]);
+    outermost.add_scene(scene);
+    outermost.bounds()
+}
+
+/// Of all finite vertices that a scene draws something with, in world space, those furthest along a direction
+/// and against it; `None` where there are none.
+///
+/// Cost: O(vertices), a few operations each.
+pub fn drawn_ends(scene: &Scene, direction: DVec3) -> Option<[DVec3; 2]> {
+    let mut outermost = Outermost::new([direction, -direction]);
+    outermost.add_scene(scene);
+    outermost.bounds().map(|_| outermost.points())
+}
+
 fn fit_outermost(
     outermost: &Outermost<10>,
     direction: &ViewDirection,

@@ -147,6 +147,11 @@ proptest! {
         let mesh = Mesh { positions, indices, topology: Topology::Points, ..Mesh::default() };
         let instance = Instance { mesh: 0, world_from_mesh: place, name: String::new() };
         let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
+        let finite = || world.iter().copied().filter(|p| p.is_finite());
+        let bounds = Aabb::around(finite());
+        prop_assert_eq!(drawn_bounds(&scene), bounds);
+        let [nearest, farthest] = drawn_ends(&scene, d.to_eye()).unwrap().map(|p| p.dot(d.to_eye()));
+        prop_assert!(finite().all(|p| (farthest..=nearest).contains(&p.dot(d.to_eye()))));
         prop_assert_eq!(fit_scene(&scene, &d, &o).unwrap(), fit_points(world, &d, &o).unwrap());
     }
 }
