@@ -283,7 +283,7 @@ pub struct LookArgs {
     #[arg(long, value_name = "HOW", default_value = "none")]
     pub shadows: Shadows,
     /// Texels along the side of a shadow map
-    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384), requires = "shadows")]
     pub shadow_map: u32,
     /// How often rays are reflected by mirrors and refracted by what blends
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]

@@ -3,7 +3,9 @@
 use crate::args::ReadingArgs;
 use crate::failure::{Failure, in_words};
 use crate::resources::Folder;
-use durer_formats::{Limits, Model, NoResources, Pose, ReadOptions, Resources, read_model, stl};
+use durer_formats::{
+    Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, read_model, stl,
+};
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read;
@@ -47,9 +49,18 @@ pub fn read_options(args: &ReadingArgs) -> ReadOptions {
 
 /// Reads a model.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
-    if let Some(model) = streamed(path, options) {
-        return model;
+    let mut model = streamed(path, options).unwrap_or_else(|| read_whole(path, options))?;
+    // Of a format that has them the reader says so itself.
+    if options.pose.is_some() && !model.format.starts_with("glTF") {
+        let message =
+            format!("{} has no animations; --animation and --time do nothing", model.format);
+        model.warn(Place::Whole, message);
     }
+    Ok(model)
+}
+
+/// Reads a model from all of its bytes.
+fn read_whole(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
     let bytes = bytes(path, options.limits.decoded_bytes)?;
     let folder = Folder::of(path);
     let resources: &dyn Resources = match &folder {

@@ -60,6 +60,7 @@ fn options_that_exclude_each_other_are_refused() {
         "--viewports front,top --view top",
         "--eye 1,2,3 --ortho fit",
         "--quiet --verbose",
+        "--shadow-map 512",
     ] {
         let ended = folder.run(&format!("render cube.obj -o out.png {options}"));
         assert_eq!(ended.code, 2, "{options}: {ended:?}");
@@ -78,6 +79,21 @@ fn negative_numbers_are_values() {
          --up -1,2,-1 --ortho 3 --near -5 --far 20",
     );
     folder.must("render cube.obj -o b.png --size 8x8 --azimuth -30 --elevation -20.5");
+}
+
+#[test]
+fn options_that_a_format_has_nothing_for_are_named() {
+    let folder = Folder::with_models();
+    folder.write("map.csv", "1,2\n3,4\n");
+    for (arguments, message) in [
+        ("render cube.obj -o a.png --size 8x8 --time 1", "OBJ has no animations"),
+        ("plot map.csv -o a.svg --array heights", "CSV has no arrays with names"),
+    ] {
+        let ended = folder.must(arguments);
+        assert!(ended.err.contains(message), "{arguments}: {}", ended.err);
+    }
+    let quiet = folder.must("render cube.obj -o b.png --size 8x8");
+    assert!(!quiet.err.contains("animations"), "{}", quiet.err);
 }
 
 #[test]

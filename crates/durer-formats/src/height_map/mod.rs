@@ -133,7 +133,7 @@ pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<Heig
     let format = HeightMapFormat::of_content(bytes)
         .or_else(|| HeightMapFormat::of_name(name).filter(|f| *f == HeightMapFormat::Table))
         .or_else(|| table::looks_like_one(bytes).then_some(HeightMapFormat::Table));
-    let grid = match format {
+    let mut grid = match format {
         Some(HeightMapFormat::Esri) => esri::read(bytes, options)?,
         Some(HeightMapFormat::Npy) => npy::read(bytes, options)?,
         Some(HeightMapFormat::Npz) => npz::read(bytes, options)?,
@@ -142,6 +142,12 @@ pub fn read(bytes: &[u8], name: &str, options: &HeightMapOptions) -> Result<Heig
         Some(HeightMapFormat::Png) => picture::read(bytes, options)?,
         None => return Err(Error::Unknown(unknown(bytes))),
     };
+    let has_names = matches!(format, Some(HeightMapFormat::Npz | HeightMapFormat::Json));
+    if let Some(name) = options.array.as_ref().filter(|_| !has_names) {
+        let message =
+            format!("{} has no arrays with names; `{name}` is not looked for", grid.format);
+        grid.warnings.push(Warning { place: Place::Whole, message });
+    }
     finish(grid, options)
 }
 
