@@ -18,6 +18,7 @@ pub fn run(options: &Options) -> Result<()> {
     let models = models(options, temp.path())?;
     table::head(&[
         "model",
+        "work",
         "who",
         "CPU s",
         "wall s",
@@ -28,31 +29,109 @@ pub fn run(options: &Options) -> Result<()> {
     let mut pictures = Vec::new();
     for model in &models {
         let name = model.file_name().unwrap_or_default().to_string_lossy().replace('.', "-");
-        let ours = folder.join(format!("{name}-durer.png"));
-        let theirs = folder.join(format!("{name}-f3d.png"));
-        let mut costs = [Vec::new(), Vec::new()];
-        for _ in 0..options.rounds {
-            costs[0].push(child::run(&mut render(&durer, model, &ours))?);
-            if let Some(display) = &display {
-                costs[1].push(child::run(&mut display.f3d(model, &theirs))?);
+        let camera = Camera::of(&durer, model, &folder.join("camera.png"))?;
+        for work in Work::ALL {
+            let picture = |who| folder.join(format!("{name}-{}-{who}.png", work.name()));
+            let (ours, theirs) = (picture("durer"), picture("f3d"));
+            let mut costs = [Vec::new(), Vec::new()];
+            for _ in 0..options.rounds {
+                costs[0].push(child::run(&mut work.durer(&durer, model, &ours))?);
+                if let Some(display) = &display {
+                    let mut f3d = work.f3d(display.f3d(model, &theirs), &camera);
+                    costs[1].push(child::run(&mut f3d)?);
+                }
             }
-        }
-        print(&name, "durer", &costs[0], &costs[0]);
-        pictures.push(ours);
-        if display.is_some() {
-            print(&name, "f3d", &costs[1], &costs[0]);
-            pictures.push(theirs);
+            print(&[&name, work.name(), "durer"], &costs[0], &costs[0]);
+            pictures.push(ours);
+            if display.is_some() {
+                print(&[&name, work.name(), "f3d"], &costs[1], &costs[0]);
+                pictures.push(theirs);
+            }
         }
     }
     // Only now, as what this process holds would count as its children's peak.
     pictures.iter().try_for_each(|p| check(p))
 }
 
-fn print(model: &str, who: &str, costs: &[Cost], ours: &[Cost]) {
+/// What both have to do.
+#[derive(Clone, Copy)]
+enum Work {
+    /// What each does without being told more: other views, and durer alone smooths edges.
+    Defaults,
+    /// The view that durer chooses, edges not smoothed.
+    OneSample,
+    /// The same view, edges smoothed: durer by four samples per pixel, f3d by FXAA.
+    Smoothed,
+}
+
+impl Work {
+    const ALL: [Self; 3] = [Self::Defaults, Self::OneSample, Self::Smoothed];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Defaults => "defaults",
+            Self::OneSample => "one sample",
+            Self::Smoothed => "smoothed",
+        }
+    }
+
+    fn durer(self, durer: &Path, model: &Path, picture: &Path) -> Command {
+        let mut command = render(durer, model, picture);
+        if let Self::OneSample = self {
+            command.args(["--aa", "1"]);
+        }
+        command
+    }
+
+    fn f3d(self, mut command: Command, camera: &Camera) -> Command {
+        match self {
+            Self::Defaults => return command,
+            Self::OneSample => {}
+            Self::Smoothed => {
+                command.arg("--fxaa");
+            }
+        }
+        let Camera { eye, target, up, fov } = camera;
+        command.arg(format!("--camera-position={eye}"));
+        command.arg(format!("--camera-focal-point={target}"));
+        command.arg(format!("--camera-view-up={up}"));
+        command.arg(format!("--camera-view-angle={fov}"));
+        command
+    }
+}
+
+/// A camera as durer reports it.
+struct Camera {
+    eye: String,
+    target: String,
+    up: String,
+    fov: String,
+}
+
+impl Camera {
+    /// The one that durer chooses for a model.
+    fn of(durer: &Path, model: &Path, picture: &Path) -> Result<Self> {
+        let output = render(durer, model, picture).arg("--json").output()?;
+        let report = String::from_utf8(output.stdout)?;
+        let of = |key: &str, ends: [char; 2]| -> Result<String> {
+            let key = format!("\"{key}\":");
+            let value = report.split_once(&key).and_then(|(_, rest)| rest.split_once(ends));
+            let (value, _) = value.ok_or_else(|| format!("no {key} in the report of durer"))?;
+            Ok(value.split_whitespace().collect::<String>().replace('[', ""))
+        };
+        let point = |key| of(key, [']', ']']);
+        let fov = of("fov", [',', '}'])?;
+        Ok(Self { eye: point("eye")?, target: point("target")?, up: point("up")?, fov })
+    }
+}
+
+fn print(what: &[&str; 3], costs: &[Cost], ours: &[Cost]) {
     let cost = median_cost(costs);
+    let [model, work, who] = what.map(str::to_owned);
     table::row(&[
-        model.to_owned(),
-        who.to_owned(),
+        model,
+        work,
+        who,
         format!("{:.3}", cost.cpu),
         format!("{:.3}", cost.wall),
         format!("{:.1}", cost.memory / 1e6),
