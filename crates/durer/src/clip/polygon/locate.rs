@@ -1,7 +1,7 @@
 //! Where a point lies of rings, and which ring lies in which: exact, by looking at every edge.
 
 use super::{Ring, Shapes, signed_area};
-use crate::math::{DVec2, Orientation, orient2d};
+use crate::math::{DVec2, Orientation, Rect, orient2d};
 
 /// Where a point lies of a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,11 +45,24 @@ fn within(inner: &Ring, outer: &Ring) -> bool {
     places.into_iter().find(|&place| place != Place::Border) == Some(Place::Inside)
 }
 
+/// Whether all points of a ring lie on one line; exact.
+pub(super) fn is_flat(ring: &Ring) -> bool {
+    let Some(&a) = ring.first() else { return true };
+    let Some(&b) = ring.iter().find(|&&b| b != a) else { return true };
+    ring.iter().all(|&c| orient2d(a, b, c) == Orientation::Collinear)
+}
+
 /// Groups rings into polygons: a ring within an odd number of others is a hole of the innermost of
 /// them. Outer rings come out counter-clockwise, holes clockwise.
 pub(super) fn group(rings: Vec<Vec<DVec2>>) -> Shapes {
+    let boxes: Vec<Option<Rect>> =
+        rings.iter().map(|ring| Rect::around(ring.iter().copied())).collect();
+    let holds = |j: usize, i: usize| match (boxes[j], boxes[i]) {
+        (Some(outer), Some(inner)) => outer.contains(inner.min()) && outer.contains(inner.max()),
+        _ => false,
+    };
     let around = |i: usize| {
-        let others = (0..rings.len()).filter(move |&j| j != i);
+        let others = (0..rings.len()).filter(|&j| j != i && holds(j, i));
         others.filter(|&j| within(&rings[i], &rings[j])).collect::<Vec<usize>>()
     };
     let parents: Vec<Vec<usize>> = (0..rings.len()).map(around).collect();
