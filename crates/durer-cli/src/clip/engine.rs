@@ -256,6 +256,12 @@ impl Cutter {
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
         let mask = &self.mask.shapes;
         Ok(match (clipper, self.mask.window) {
+            (PolygonClipper::Rectangle, Some(_)) if !is_valid(&area.shapes, Touching::No) => {
+                return Err(durer::Error::Unsupported {
+                    what: "a polygon whose rings touch, cross or overlap by the rectangle clip",
+                    instead: "choose another algorithm, or none",
+                });
+            }
             (PolygonClipper::Rectangle, Some(window)) => clip_area(&window, area)?,
             (PolygonClipper::Overlay, _) => {
                 self.rules.overlay(area, mask, self.op, self.rules.fill)?

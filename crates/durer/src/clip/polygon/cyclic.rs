@@ -122,8 +122,13 @@ fn tidy(shapes: &Shapes) -> Shapes {
 /// Links two sets of rings for an operation.
 ///
 /// # Errors
-/// [`Error::Unsupported`] where rings of one operand cross or overlap themselves or one another.
+/// [`Error::NonFinite`] for a point with a NaN or infinite coordinate; [`Error::Unsupported`] where
+/// rings of one operand cross or overlap themselves or one another.
 pub(super) fn link(subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Linked> {
+    let mut points = subject.points().iter().chain(clip.points());
+    if let Some(index) = points.position(|p| !p.is_finite()) {
+        return Err(Error::NonFinite { what: "point", index });
+    }
     let rings = [tidy(subject), tidy(clip)];
     let mut linked = Linked { lists: [Lists::new(&rings[0]), Lists::new(&rings[1])], rings };
     linked.divide()?;
@@ -300,7 +305,8 @@ fn crossing_point(e: [DVec2; 2], f: [DVec2; 2]) -> DVec2 {
     let ([a, b], [c, d]) = if first { (e, f) } else { (f, e) };
     let (left, right) = ((d - c).perp_dot(a - c), (d - c).perp_dot(b - c));
     let t = left / (left - right);
-    if t.is_finite() { a + (b - a) * t.clamp(0.0, 1.0) } else { a }
+    let point = a + (b - a) * t.clamp(0.0, 1.0);
+    if point.is_finite() { point } else { a }
 }
 
 /// Which of two segments, which do not cross each other, crosses a → b first; exact. Of two that do

@@ -41,8 +41,9 @@ pub const INFO: Info = Info {
 /// ```
 ///
 /// # Errors
-/// [`Error::Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap
-/// themselves or one another, or turn back on themselves.
+/// [`NonFinite`](crate::Error::NonFinite) for a point with a NaN or infinite coordinate;
+/// [`Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap themselves or
+/// one another, or turn back on themselves.
 pub fn greiner_hormann(
     subject: &Shapes,
     clip: &Shapes,

@@ -1,7 +1,9 @@
 //! The textbook algorithms on valid polygons whose rings touch one another, and the other's borders,
 //! wherever they can: small whole coordinates leave them no other way.
 
+use durer::clip::polygon::greiner_hormann::greiner_hormann;
 use durer::clip::polygon::overlay::{Options, overlay};
+use durer::clip::polygon::weiler_atherton::weiler_atherton;
 use durer::clip::polygon::{BooleanOp, PolygonClipper, Shapes, signed_area};
 use durer::math::{DVec2, Orientation, orient2d};
 use durer::trace::NoTrace;
@@ -162,5 +164,20 @@ fn polygons_that_are_not_valid_are_refused() {
                 assert!(clipper.clip(&mask, &shapes, op).is_err(), "{clipper} {op} {rings:?}");
             }
         }
+    }
+}
+
+#[test]
+fn points_that_are_not_finite_are_refused() {
+    let bad = [(0., 0.), (4., f64::NAN), (f64::INFINITY, 4.), (1., 9.)].map(DVec2::from);
+    let (bad, none) = (Shapes::from_rings([bad]), Shapes::new());
+    for (a, b, index) in [(&bad, &none, 1), (&none, &bad, 1)] {
+        let expected = Err(durer::Error::NonFinite { what: "point", index });
+        let options = Default::default();
+        assert_eq!(weiler_atherton(a, b, BooleanOp::Union, &options, &mut NoTrace), expected);
+        assert_eq!(
+            greiner_hormann(a, b, BooleanOp::Union, &Default::default(), &mut NoTrace),
+            expected
+        );
     }
 }
