@@ -247,9 +247,9 @@ impl Cutter {
         }
         let near = self.mask.near(bounds)?;
         let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
-        // Rings that touch at vertices are valid, but nothing for the rectangle clip.
+        // Rings that touch in points are valid, but nothing for the rectangle clip.
         let even_odd = self.rules.fill == FillRule::EvenOdd;
-        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtVertices);
+        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtPoints);
         Ok(Cut { geometry: cut.into_geometry(), repaired })
     }
 

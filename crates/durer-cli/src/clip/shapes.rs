@@ -40,9 +40,12 @@ impl Area {
 
     fn add_polygon(&mut self, rings: &[Points]) {
         for ring in rings {
-            self.shapes.push_ring(ring.xy.iter().copied());
+            // Of a position that is repeated on the spot one is enough.
+            let last = |&i: &usize| ring.xy[i] != ring.xy[(i + 1) % ring.len()];
+            let kept: Vec<usize> = (0..ring.len()).filter(last).collect();
+            self.shapes.push_ring(kept.iter().map(|&i| ring.xy[i]));
             if self.dimensions != Dimensions::Xy {
-                self.zm.extend((0..ring.len()).map(|i| ring.zm(i)));
+                self.zm.extend(kept.iter().map(|&i| ring.zm(i)));
             }
         }
         self.shapes.end_polygon();

@@ -216,6 +216,22 @@ fn a_mask_without_polygons_takes_nothing_away() {
 }
 
 #[test]
+fn repeated_positions_and_touching_rings_are_no_fault() {
+    let folder = Folder::new();
+    folder.write("twice.wkt", "POLYGON((0 0,9 0,9 0,9 9,0 9,0 0,0 0))");
+    folder.write("touch.wkt", "POLYGON((0 0,9 0,9 9,0 9,0 0),(0 4,3 3,3 5,0 4))");
+    for name in ["twice", "touch"] {
+        for arguments in ["--window 1,1,5,5", "--window=-1,-1,99,99", "--window 1,1,5,5 --outside"]
+        {
+            let ended = folder.must(&format!("clip {name}.wkt {arguments} -o o.wkt"));
+            assert_eq!(ended.err, "", "{name} {arguments}");
+        }
+    }
+    folder.must("clip twice.wkt --window 1,1,5,5 --algorithm rectangle -o o.wkt");
+    assert_eq!(folder.read("o.wkt"), b"POLYGON ((1 1, 5 1, 5 5, 1 5, 1 1))\n");
+}
+
+#[test]
 fn textbook_algorithms_refuse_what_they_cannot_do() {
     let folder = Folder::new();
     folder.write("bow.wkt", "POLYGON((0 0,4 4,4 0,0 4,0 0))");
