@@ -256,13 +256,18 @@ impl Cutter {
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
         let mask = &self.mask.shapes;
         Ok(match (clipper, self.mask.window) {
-            (PolygonClipper::Rectangle, Some(_)) if !is_valid(&area.shapes, Touching::No) => {
-                return Err(durer::Error::Unsupported {
-                    what: "a polygon whose rings touch, cross or overlap by the rectangle clip",
-                    instead: "choose another algorithm, or none",
-                });
+            (PolygonClipper::Rectangle, Some(window)) => {
+                let cut = clip_area(&window, area)?;
+                // Where rings touch, what is left of them may be one ring that touches itself.
+                let valid = |shapes: &Shapes| is_valid(shapes, Touching::AtPoints);
+                if !valid(&area.shapes) || !valid(&cut.shapes) {
+                    return Err(durer::Error::Unsupported {
+                        what: "a polygon whose rings cross, overlap or touch there by the rectangle clip",
+                        instead: "choose another algorithm, or none",
+                    });
+                }
+                cut
             }
-            (PolygonClipper::Rectangle, Some(window)) => clip_area(&window, area)?,
             (PolygonClipper::Overlay, _) => {
                 self.rules.overlay(area, mask, self.op, self.rules.fill)?
             }

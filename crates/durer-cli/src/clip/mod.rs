@@ -219,8 +219,8 @@ fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Repo
     let mut found = Vec::new();
     if report.repaired > 0 {
         found.push(format!(
-            "polygons of {} features crossed or overlapped themselves or one another; made valid by \
-             the even-odd rule",
+            "polygons of {} features crossed, pinched or overlapped themselves or one another; made \
+             valid by the even-odd rule",
             report.repaired
         ));
     }

@@ -14,7 +14,7 @@ pub enum Touching {
     No,
     /// A vertex of both.
     AtVertices,
-    /// A point that is a vertex of one of them.
+    /// Where they are of different rings, a point that is a vertex of one of them: what the OGC allows.
     AtPoints,
 }
 
@@ -110,15 +110,21 @@ fn meet(p: &Edge, q: &Edge, size: usize, touching: Touching) -> bool {
         let end_to_end = shared == 1 && (to <= low || from >= high);
         return !(apart || end_to_end && allowed(p, q, size, touching));
     }
-    let touch = touching == Touching::AtPoints && (qa * qb == 0 || pa * pb == 0);
-    !(touch || shared == 1 && allowed(p, q, size, touching))
+    // The signs say that they do not cross, or that an end of one lies on the other.
+    let crosses = qa * qb != 0 && pa * pb != 0;
+    let vertex_is_enough = touching == Touching::AtPoints || shared == 1;
+    crosses || !vertex_is_enough || !allowed(p, q, size, touching)
 }
 
 /// Whether edges that share one vertex may.
 fn allowed(p: &Edge, q: &Edge, size: usize, touching: Touching) -> bool {
     let neighbours =
         p.ring == q.ring && ((p.index + 1) % size == q.index || (q.index + 1) % size == p.index);
-    neighbours || touching != Touching::No
+    match touching {
+        Touching::No => neighbours,
+        Touching::AtVertices => true,
+        Touching::AtPoints => neighbours || p.ring != q.ring,
+    }
 }
 
 /// Whether holes lie in their outer rings, not in one another, and polygons not in one another;
@@ -238,6 +244,9 @@ mod tests {
             let outside = shapes(&[&[SQUARE], &[hole]]);
             assert!(!is_valid(&outside, Touching::AtPoints));
         }
+        let pinched: &[(f64, f64)] =
+            &[(0.0, 0.0), (4.0, 0.0), (2.0, 2.0), (4.0, 4.0), (0.0, 4.0), (2.0, 2.0)];
+        assert!(!is_valid(&shapes(&[&[pinched]]), Touching::AtPoints));
         let across = shapes(&[&[SQUARE, &[(8.0, 4.0), (10.0, 4.0), (8.0, 5.0)]]]);
         assert!(!is_valid(&across, Touching::AtPoints));
     }

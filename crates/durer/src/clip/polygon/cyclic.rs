@@ -194,6 +194,7 @@ impl Linked {
             }
         });
         found.sort_unstable();
+        found.dedup();
         found
     }
 

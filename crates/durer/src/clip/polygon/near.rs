@@ -1,39 +1,60 @@
-//! Which boxes meet: sorted by their left sides, in horizontal slabs.
+//! Which segments may meet: those whose parts in a horizontal slab are near each other.
 
 use crate::math::DVec2;
 
-/// Tells each pair of closed boxes, given by two opposite corners, that have a point in common, once.
-/// About O(n log n) time where boxes are small against the whole, O(n²) at worst.
-pub(super) fn pairs(boxes: &[[DVec2; 2]], mut tell: impl FnMut(usize, usize)) {
-    let low = |i: usize| boxes[i][0].min(boxes[i][1]);
-    let high = |i: usize| boxes[i][0].max(boxes[i][1]);
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&i, &j| low(i).x.total_cmp(&low(j).x));
-    let bottom = boxes.iter().flatten().fold(f64::INFINITY, |y, p| y.min(p.y));
-    let top = boxes.iter().flatten().fold(f64::NEG_INFINITY, |y, p| y.max(p.y));
-    let count = libm::sqrt(boxes.len() as f64) as usize + 1;
-    // Halves, because the height of the whole may overflow.
-    let slab = |y: f64| {
-        let part = (y * 0.5 - bottom * 0.5) / (top * 0.5 - bottom * 0.5) * count as f64;
-        (part.max(0.0) as usize).min(count - 1)
-    };
-    let mut slabs: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for i in order {
-        slabs[slab(low(i).y)..=slab(high(i).y)].iter_mut().for_each(|slab| slab.push(i));
-    }
-    let mut active: Vec<usize> = Vec::new();
-    for (k, members) in slabs.iter().enumerate() {
+/// How far a part is taken beyond its slab, in slabs: more than rounding moves a height by.
+const MARGIN: f64 = 1e-6;
+
+/// A segment's part in a slab.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    low: f64,
+    high: f64,
+    segment: usize,
+}
+
+/// Tells all pairs of closed segments that have a point in common, and others that are near each
+/// other, some of them several times. About O(n √n) time for n segments and O(n √n) memory where
+/// all are long, near O(n log n) and O(n) where they are short.
+pub(super) fn pairs(segments: &[[DVec2; 2]], mut tell: impl FnMut(usize, usize)) {
+    let mut active: Vec<Part> = Vec::new();
+    for mut parts in slabs(segments) {
+        parts.sort_by(|p, q| p.low.total_cmp(&q.low));
         active.clear();
-        for &i in members {
-            active.retain(|&j| high(j).x >= low(i).x);
-            for &j in &active {
-                let from = low(i).y.max(low(j).y);
-                // Boxes that share several slabs meet in the first of them.
-                if from <= high(i).y.min(high(j).y) && slab(from) == k {
-                    tell(i, j);
-                }
+        for part in parts {
+            active.retain(|other| other.high >= part.low);
+            for other in &active {
+                tell(part.segment, other.segment);
             }
-            active.push(i);
+            active.push(part);
         }
     }
+}
+
+/// The parts of all segments in slabs of equal height.
+fn slabs(segments: &[[DVec2; 2]]) -> Vec<Vec<Part>> {
+    let bottom = segments.iter().flatten().fold(f64::INFINITY, |y, p| y.min(p.y));
+    let top = segments.iter().flatten().fold(f64::NEG_INFINITY, |y, p| y.max(p.y));
+    let count = libm::sqrt(segments.len() as f64) as usize + 1;
+    // Halves, because the height of the whole may overflow.
+    let place = |y: f64| (y * 0.5 - bottom * 0.5) / (top * 0.5 - bottom * 0.5) * count as f64;
+    let slab = |y: f64| (place(y).max(0.0) as usize).min(count - 1);
+    let mut slabs = vec![Vec::new(); count];
+    for (segment, &[a, b]) in segments.iter().enumerate() {
+        let (low, high) = (a.min(b), a.max(b));
+        for k in slab(low.y)..=slab(high.y) {
+            // Where the segment's x is as it comes into the slab, and as it leaves it.
+            let across = |edge: f64| {
+                let t = (edge - place(a.y)) / (place(b.y) - place(a.y));
+                a.x + (b.x - a.x) * t.clamp(0.0, 1.0)
+            };
+            let ends = [across(k as f64 - MARGIN), across((k + 1) as f64 + MARGIN)];
+            let rounding = (a.x.abs() + b.x.abs()) * (8.0 * f64::EPSILON);
+            let (from, to) = (ends[0].min(ends[1]) - rounding, ends[0].max(ends[1]) + rounding);
+            let told = ends.iter().all(|x| x.is_finite());
+            let (low, high) = if told { (from, to) } else { (low.x, high.x) };
+            slabs[k].push(Part { low, high, segment });
+        }
+    }
+    slabs
 }
