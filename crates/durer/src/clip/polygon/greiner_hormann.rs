@@ -1,7 +1,8 @@
 //! Greiner–Hormann: walk forwards on entering the other polygon, backwards on leaving it.
 //!
 //! G. Greiner, K. Hormann, *Efficient clipping of arbitrary polygons*, ACM Transactions on Graphics
-//! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019.
+//! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019; where
+//! several borders pass one point, each pair of them is linked there (`node.rs`).
 
 use super::cyclic::{Linked, Lists};
 use super::walk::walk_all;
@@ -21,7 +22,8 @@ pub const INFO: Info = Info {
     year: 1998,
     source: "Efficient clipping of arbitrary polygons, ACM Transactions on Graphics 17(2)",
     class: Class::ObjectSpace,
-    cost: "O(n m) time for n and m edges, O(n + m + k) memory for k crossings",
+    cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
+           O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
     limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
              Crossings are rounded to f64: rings nearer than that may come out crossing",
 };

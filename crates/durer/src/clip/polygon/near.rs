@@ -42,7 +42,8 @@ fn slabs(segments: &[[DVec2; 2]]) -> Vec<Vec<Part>> {
     let mut slabs = vec![Vec::new(); count];
     for (segment, &[a, b]) in segments.iter().enumerate() {
         let (low, high) = (a.min(b), a.max(b));
-        for k in slab(low.y)..=slab(high.y) {
+        let (first, last) = (slab(low.y), slab(high.y));
+        for (k, parts) in (first..).zip(&mut slabs[first..=last]) {
             // Where the segment's x is as it comes into the slab, and as it leaves it.
             let across = |edge: f64| {
                 let t = (edge - place(a.y)) / (place(b.y) - place(a.y));
@@ -53,8 +54,50 @@ fn slabs(segments: &[[DVec2; 2]]) -> Vec<Vec<Part>> {
             let (from, to) = (ends[0].min(ends[1]) - rounding, ends[0].max(ends[1]) + rounding);
             let told = ends.iter().all(|x| x.is_finite());
             let (low, high) = if told { (from, to) } else { (low.x, high.x) };
-            slabs[k].push(Part { low, high, segment });
+            parts.push(Part { low, high, segment });
         }
     }
     slabs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Orientation, orient2d};
+
+    /// Whether two segments have a point in common, told by the signs of their ends.
+    fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+        let side = |a, b, p| match orient2d(a, b, p) {
+            Orientation::CounterClockwise => 1,
+            Orientation::Clockwise => -1,
+            Orientation::Collinear => 0,
+        };
+        let apart = a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any();
+        let across = side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
+        !apart && across
+    }
+
+    #[test]
+    fn no_pair_that_meets_is_left_out() {
+        let mut state = 3_u64;
+        let mut random = |range: u64| {
+            let step = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
+            state = state.wrapping_mul(step.0).wrapping_add(step.1);
+            ((state >> 33) % range) as f64
+        };
+        for case in 0..2000 {
+            let scale = [1.0, 1e-100, 1e100, 0.1][case % 4];
+            let far = [0.0, 1e9 / 3.0][case / 4 % 2] * scale;
+            let mut point = || DVec2::new(random(40), random(40)) * scale + DVec2::splat(far);
+            let segments: Vec<[DVec2; 2]> = (0..30).map(|_| [point(), point()]).collect();
+            let mut told = vec![[false; 30]; 30];
+            pairs(&segments, |i, j| (told[i][j], told[j][i]) = (true, true));
+            for i in 0..30 {
+                for j in 0..i {
+                    let missed = meet(segments[i], segments[j]) && !told[i][j];
+                    assert!(!missed, "{case}: {:?} {:?}", segments[i], segments[j]);
+                }
+            }
+        }
+    }
 }

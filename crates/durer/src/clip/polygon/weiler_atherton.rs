@@ -23,7 +23,8 @@ pub const INFO: Info = Info {
     year: 1977,
     source: "Hidden surface removal using polygon area sorting, Computer Graphics 11(2)",
     class: Class::ObjectSpace,
-    cost: "O(n m) time for n and m edges, O(n + m + k) memory for k crossings",
+    cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
+           O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
     limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
              Crossings are rounded to f64: rings nearer than that may come out crossing",
 };
