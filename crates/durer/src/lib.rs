@@ -75,8 +75,8 @@
 //! | algorithm | takes | gives |
 //! |---|---|---|
 //! | [Sutherland–Hodgman](clip::polygon::sutherland_hodgman) | any ring, convex window | one ring, bridged |
-//! | [Weiler–Atherton](clip::polygon::weiler_atherton) | simple polygons with holes | separate rings |
-//! | [Greiner–Hormann](clip::polygon::greiner_hormann) | simple polygons | separate rings |
+//! | [Weiler–Atherton](clip::polygon::weiler_atherton) | polygons with holes | valid polygons |
+//! | [Greiner–Hormann](clip::polygon::greiner_hormann) | polygons with holes | valid polygons |
 //! | [Vatti](clip::polygon::vatti) | anything | valid polygons, swept |
 //! | [Overlay](mod@clip::polygon::overlay) | anything | valid polygons: the robust door |
 //! | [Rectangle](clip::polygon::rectangle) | polygons and polylines, a rectangle | the fast path for map tiles |

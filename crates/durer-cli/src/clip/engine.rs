@@ -1,6 +1,6 @@
 //! Cutting one geometry with the mask.
 
-use super::shapes::{Area, pieces};
+use super::shapes::{Area, oriented, pieces};
 use super::validity::{Touching, contains, edges_are_apart, is_valid};
 use durer::clip::line::polyline::{self, Part};
 use durer::clip::line::{LineClipper, Segment};
@@ -17,7 +17,8 @@ type Result<T> = durer::Result<T>;
 pub struct Mask {
     /// Valid polygons.
     shapes: Shapes,
-    bounds: Rect,
+    /// None where there are no polygons.
+    bounds: Option<Rect>,
     /// Where the mask is a rectangle.
     window: Option<Rect>,
 }
@@ -25,13 +26,18 @@ pub struct Mask {
 impl Mask {
     /// A window.
     pub fn window(window: Rect) -> Self {
-        Self { shapes: rectangle_shape(&window), bounds: window, window: Some(window) }
+        Self { shapes: rectangle_shape(&window), bounds: Some(window), window: Some(window) }
     }
 
-    /// Valid polygons; `None` where there are none.
-    pub fn polygons(shapes: Shapes) -> Option<Self> {
-        let bounds = shapes.bounds()?;
-        Some(Self { shapes, bounds, window: None })
+    /// Valid polygons, or none.
+    pub fn polygons(shapes: Shapes) -> Self {
+        let bounds = shapes.bounds();
+        Self { shapes, bounds, window: None }
+    }
+
+    /// Whether it may have a point in common with what lies in a box.
+    fn meets(&self, bounds: &Rect) -> bool {
+        self.bounds.is_some_and(|own| own.overlaps(bounds))
     }
 
     /// Its polygons.
@@ -42,7 +48,7 @@ impl Mask {
     fn contains(&self, p: DVec2) -> bool {
         match self.window {
             Some(window) => window.contains(p),
-            None => self.bounds.contains(p) && contains(&self.shapes, p),
+            None => self.bounds.is_some_and(|b| b.contains(p)) && contains(&self.shapes, p),
         }
     }
 
@@ -145,7 +151,7 @@ impl Cutter {
     pub fn cut(&self, geometry: &Geometry) -> Result<Cut> {
         let inside = self.op == BooleanOp::Intersection;
         let Some(bounds) = geometry.bounds() else { return Ok(Cut::default()) };
-        if inside && !bounds.overlaps(&self.mask.bounds) {
+        if inside && !self.mask.meets(&bounds) {
             return Ok(Cut::default());
         }
         Ok(match geometry {
@@ -214,7 +220,7 @@ impl Cutter {
         match self.algorithm {
             None | Some(Algorithm::Line(_)) => self.production(geometry, &area, bounds),
             Some(Algorithm::Polygon(clipper)) => {
-                let geometry = self.by_name(clipper, &area)?.into_geometry();
+                let geometry = self.by_name(clipper, &area)?.into_geometry().map(oriented);
                 Ok(Cut { geometry, repaired: false })
             }
         }
@@ -228,26 +234,40 @@ impl Cutter {
         let covers = |window: &Rect| window.contains(bounds.min()) && window.contains(bounds.max());
         match self.mask.window {
             Some(window) if inside && valid && covers(&window) => {
-                return Ok(Cut::of(Some(geometry.clone())));
+                return Ok(Cut::of(Some(oriented(geometry.clone()))));
             }
-            Some(window) if inside && valid => return Ok(Cut::of(clip_to(&window, area)?)),
-            _ if !inside && valid && !bounds.overlaps(&self.mask.bounds) => {
-                return Ok(Cut::of(Some(geometry.clone())));
+            Some(window) if inside && valid => {
+                let cut = clip_area(&window, area)?.into_geometry();
+                return Ok(Cut::of(cut.map(oriented)));
+            }
+            _ if !inside && valid && !self.mask.meets(bounds) => {
+                return Ok(Cut::of(Some(oriented(geometry.clone()))));
             }
             _ => {}
         }
         let near = self.mask.near(bounds)?;
         let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
-        // Rings that touch at vertices are valid, but nothing for the rectangle clip.
+        // Rings that touch in points are valid, but nothing for the rectangle clip.
         let even_odd = self.rules.fill == FillRule::EvenOdd;
-        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtVertices);
+        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtPoints);
         Ok(Cut { geometry: cut.into_geometry(), repaired })
     }
 
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
         let mask = &self.mask.shapes;
         Ok(match (clipper, self.mask.window) {
-            (PolygonClipper::Rectangle, Some(window)) => clip_area(&window, area)?,
+            (PolygonClipper::Rectangle, Some(window)) => {
+                let cut = clip_area(&window, area)?;
+                // Where rings touch, what is left of them may be one ring that touches itself.
+                let valid = |shapes: &Shapes| is_valid(shapes, Touching::AtPoints);
+                if !valid(&area.shapes) || !valid(&cut.shapes) {
+                    return Err(durer::Error::Unsupported {
+                        what: "a polygon whose rings cross, overlap or touch there by the rectangle clip",
+                        instead: "choose another algorithm, or none",
+                    });
+                }
+                cut
+            }
             (PolygonClipper::Overlay, _) => {
                 self.rules.overlay(area, mask, self.op, self.rules.fill)?
             }
@@ -281,10 +301,6 @@ fn clip_area(window: &Rect, area: &Area) -> Result<Area> {
     let (shapes, sources) =
         rectangle::clip_with_sources(window, &area.shapes, &options, &mut NoTrace)?;
     Ok(area.cut(shapes, &sources))
-}
-
-fn clip_to(window: &Rect, area: &Area) -> Result<Option<Geometry>> {
-    clip_area(window, area).map(Area::into_geometry)
 }
 
 /// Polylines cut segment by segment; pieces go on where a segment's end is inside.
@@ -389,14 +405,15 @@ impl Rules {
     }
 
     /// The same region by polygons that are valid, with outer rings counter-clockwise.
-    pub fn clean(&self, area: &Area) -> Result<Area> {
+    pub fn clean(&self, geometry: &Geometry) -> Result<Area> {
+        let area = Area::of_geometry(geometry);
         if self.fill == FillRule::EvenOdd
             && self.grid.is_none()
             && is_valid(&area.shapes, Touching::No)
         {
-            return Ok(area.oriented());
+            return Ok(Area::of_geometry(&oriented(geometry.clone())));
         }
-        self.overlay(area, &Shapes::new(), BooleanOp::Union, self.fill)
+        self.overlay(&area, &Shapes::new(), BooleanOp::Union, self.fill)
     }
 }
 

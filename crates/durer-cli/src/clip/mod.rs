@@ -7,6 +7,7 @@ mod shapes;
 mod sink;
 mod tiles;
 mod validity;
+mod values;
 
 pub use args::{ClipArgs, EXAMPLES, format, window};
 
@@ -47,7 +48,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let rules = Rules { fill: args.cutting.fill_rule, grid: args.cutting.grid };
     let mask = match (&args.region.window, &args.region.by) {
         (Some(window), _) => Some(Mask::window(*window)),
-        (_, Some(path)) => Some(read_mask(path, rules, &messages)?),
+        (_, Some(path)) => Some(read_mask(path, args, rules, &messages)?),
         _ => None,
     };
     let (from, mut reader) = open(&args.input, args.from)?;
@@ -175,20 +176,35 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
 }
 
 /// All polygons of a file as one mask.
-fn read_mask(path: &Path, rules: Rules, messages: &Messages) -> Result<Mask, Failure> {
+///
+/// Without a polygon there is nothing to keep the inside of; else it takes away or adds nothing.
+fn read_mask(
+    path: &Path,
+    args: &ClipArgs,
+    rules: Rules,
+    messages: &Messages,
+) -> Result<Mask, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let (_, mut reader) = open(path, None)?;
     let mut all = Area::default();
     while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
         if let Some(geometry) = &feature.geometry {
-            let clean = rules.clean(&Area::of_geometry(geometry));
+            let clean = rules.clean(geometry);
             all.append(&clean.map_err(|e| fail(e.to_string()))?);
         }
     }
     messages.warnings(&display_name(path), reader.warnings());
     let union = rules.overlay(&all, &Shapes::new(), BooleanOp::Union, FillRule::Positive);
     let union = union.map_err(|e| fail(e.to_string()))?;
-    Mask::polygons(union.shapes).ok_or_else(|| fail("there is no polygon to cut with".to_owned()))
+    if union.shapes.is_empty() {
+        if !args.region.outside && args.cutting.op == BooleanOp::Intersection {
+            return Err(fail("there is no polygon to cut with".to_owned()));
+        }
+        let message = "there is no polygon in it; nothing is cut away".to_owned();
+        let warning = durer_formats::Warning { place: Default::default(), message };
+        messages.warnings(&display_name(path), &[warning]);
+    }
+    Ok(Mask::polygons(union.shapes))
 }
 
 /// Warnings of reading and of cutting.
@@ -203,8 +219,8 @@ fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Repo
     let mut found = Vec::new();
     if report.repaired > 0 {
         found.push(format!(
-            "polygons of {} features crossed or overlapped themselves or one another; made valid by \
-             the even-odd rule",
+            "polygons of {} features crossed, pinched or overlapped themselves or one another; made \
+             valid by the even-odd rule",
             report.repaired
         ));
     }
@@ -213,6 +229,12 @@ fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Repo
         let op = args.cutting.op;
         found
             .push(format!("left out: {lines} lines and {points} points; --op {op} joins polygons"));
+    }
+    if report.replaced > 0 {
+        let features = report.replaced;
+        found.push(format!(
+            "the member \"tile\" of {features} features gives way to the tile's name"
+        ));
     }
     for message in found {
         let warning = durer_formats::Warning { place: Default::default(), message };
@@ -334,7 +356,7 @@ impl Job<'_> {
             let areas: Vec<_> = features
                 .par_iter()
                 .filter_map(|f| f.geometry.as_ref())
-                .map(|g| self.rules.clean(&Area::of_geometry(g)))
+                .map(|g| self.rules.clean(g))
                 .collect();
             for (i, area) in areas.into_iter().enumerate() {
                 all.append(&area.map_err(|e| self.of_feature(first + i as u64, &e))?);
@@ -379,6 +401,8 @@ impl Job<'_> {
                 let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 let (pieces, repaired) = cut.unwrap_or_default();
                 self.report.repaired += u64::from(repaired);
+                let own = feature.members.iter().any(|member| member.name == TILE);
+                self.report.replaced += u64::from(one_file && own && !pieces.is_empty());
                 for (tile, geometry) in pieces {
                     feature.geometry = Some(geometry);
                     if one_file {
@@ -420,11 +444,14 @@ impl Job<'_> {
     }
 }
 
+/// The member that names a feature's tile, as JSON writes it.
+const TILE: &str = "\"tile\"";
+
 /// The feature with a member that names the tile.
 fn with_tile(feature: &Feature, tile: Tile) -> Feature {
     let mut feature = feature.clone();
-    feature.members.retain(|member| member.name != "\"tile\"");
+    feature.members.retain(|member| member.name != TILE);
     let value = format!("\"{tile}\"");
-    feature.members.push(Member { name: "\"tile\"".to_owned(), value });
+    feature.members.push(Member { name: TILE.to_owned(), value });
     feature
 }

@@ -24,6 +24,9 @@ pub struct Report {
     pub out: Counts,
     /// Features whose polygons crossed themselves or one another and were made valid.
     pub repaired: u64,
+    /// Features whose own member was replaced by the name of their tile.
+    #[serde(skip)]
+    pub replaced: u64,
     /// Tiles that are not empty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tiles: Option<u64>,

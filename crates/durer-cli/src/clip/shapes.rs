@@ -1,13 +1,11 @@
 //! Between the geometry of files and the library's polygons.
 
+use super::values::{Values, Zm, mix};
 use durer::clip::attribute::Source;
 use durer::clip::polygon::overlay::{Operand, Origin, Output};
 use durer::clip::polygon::{Shapes, signed_area};
 use durer::math::DVec2;
 use durer_formats::geo::{Dimensions, Geometry, Points};
-
-/// Height and measure of a vertex.
-type Zm = [f64; 2];
 
 /// Polygons with the heights and measures of their vertices.
 #[derive(Debug, Clone, Default)]
@@ -42,9 +40,12 @@ impl Area {
 
     fn add_polygon(&mut self, rings: &[Points]) {
         for ring in rings {
-            self.shapes.push_ring(ring.xy.iter().copied());
+            // Of a position that is repeated on the spot one is enough.
+            let last = |&i: &usize| ring.xy[i] != ring.xy[(i + 1) % ring.len()];
+            let kept: Vec<usize> = (0..ring.len()).filter(last).collect();
+            self.shapes.push_ring(kept.iter().map(|&i| ring.xy[i]));
             if self.dimensions != Dimensions::Xy {
-                self.zm.extend((0..ring.len()).map(|i| ring.zm(i)));
+                self.zm.extend(kept.iter().map(|&i| ring.zm(i)));
             }
         }
         self.shapes.end_polygon();
@@ -62,24 +63,6 @@ impl Area {
         } else {
             (self.dimensions, self.zm) = (Dimensions::Xy, Vec::new());
         }
-    }
-
-    /// The same region with outer rings counter-clockwise and holes clockwise.
-    pub fn oriented(&self) -> Self {
-        let mut out = Self { dimensions: self.dimensions, ..Self::default() };
-        for polygon in self.shapes.polygons() {
-            for (k, index) in polygon.ring_indices().enumerate() {
-                let range = self.shapes.ring_range(index);
-                let wrong = (signed_area(self.shapes.ring(index)) < 0.0) == (k == 0);
-                let order: Vec<usize> = if wrong { range.rev().collect() } else { range.collect() };
-                out.shapes.push_ring(order.iter().map(|&i| self.shapes.points()[i]));
-                if !self.zm.is_empty() {
-                    out.zm.extend(order.iter().map(|&i| self.zm[i]));
-                }
-            }
-            out.shapes.end_polygon();
-        }
-        out
     }
 
     /// A polygon, or several, or nothing.
@@ -144,62 +127,20 @@ impl Area {
         self.with_values(shapes, values)
     }
 
-    fn with_values(&self, shapes: Shapes, values: Vec<Option<Zm>>) -> Self {
+    fn with_values(&self, shapes: Shapes, mut values: Vec<Option<Zm>>) -> Self {
+        values.resize(shapes.points().len(), None);
+        let of = Values { shapes: &self.shapes, zm: &self.zm };
+        // Corners of the mask may lie on edges, which know the values there.
+        of.on_edges(shapes.points(), &mut values);
+        let by_x = std::cell::OnceCell::new();
+        let nearest = |p: DVec2| of.nearest(by_x.get_or_init(|| of.by_x()), p);
         let mut zm = Vec::with_capacity(values.len());
         for index in 0..shapes.ring_count() {
-            let (range, ring) = (shapes.ring_range(index), shapes.ring(index));
-            let values = values.get(range).unwrap_or_default().iter().zip(ring);
-            // A corner of the mask may lie on an edge, which knows the value there.
-            let known: Vec<_> = values.map(|(v, &p)| v.or_else(|| self.on_border(p))).collect();
-            zm.extend(fill(ring, &known, |p| self.nearest(p)));
+            let known = values.get(shapes.ring_range(index)).unwrap_or_default();
+            zm.extend(fill(shapes.ring(index), known, nearest));
         }
         Self { shapes, dimensions: self.dimensions, zm }
     }
-
-    /// The values at a place on an edge, as far as rounding lets it be there; of several the first.
-    fn on_border(&self, place: DVec2) -> Option<Zm> {
-        let bounds = self.shapes.bounds()?;
-        let near = NEAR * (bounds.max() - bounds.min()).max_element();
-        let (low, high) = (place - near, place + near);
-        let mut first = 0;
-        for ring in self.shapes.rings() {
-            for (i, (&a, &b)) in ring.iter().zip(ring.iter().cycle().skip(1)).enumerate() {
-                if a.max(b).cmplt(low).any() || a.min(b).cmpgt(high).any() {
-                    continue;
-                }
-                let (along, squared) = (b - a, a.distance_squared(b));
-                let t = if squared > 0.0 {
-                    ((place - a).dot(along) / squared).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
-                if place.distance(a + along * t) <= near {
-                    let value = |i: usize| self.zm.get(first + i % ring.len()).copied();
-                    return Some(mix(value(i)?, value(i + 1)?, t));
-                }
-            }
-            first += ring.len();
-        }
-        None
-    }
-
-    /// The values of the vertex nearest to a place.
-    fn nearest(&self, place: DVec2) -> Zm {
-        let points = self.shapes.points().iter().zip(&self.zm);
-        let distance = |p: &DVec2| p.distance_squared(place);
-        points
-            .min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)))
-            .map_or([0.0; 2], |n| *n.1)
-    }
-}
-
-/// What is nearer to an edge than this share of the shape's size lies on it: some times what the overlay's
-/// grid moves a vertex by.
-const NEAR: f64 = 1e-12;
-
-/// The values at t between a (0) and b (1).
-fn mix(a: Zm, b: Zm, t: f64) -> Zm {
-    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
 }
 
 /// Values where none is known, such as at the window's corners: along the ring, by length, between
@@ -227,6 +168,32 @@ fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -
         start = end;
     }
     values
+}
+
+/// The same geometry with outer rings counter-clockwise and holes clockwise, each from its first vertex.
+pub fn oriented(mut geometry: Geometry) -> Geometry {
+    orient_all(&mut geometry);
+    geometry
+}
+
+fn orient_all(geometry: &mut Geometry) {
+    match geometry {
+        Geometry::Polygon(rings) => orient(rings),
+        Geometry::MultiPolygon(polygons) => polygons.iter_mut().for_each(|rings| orient(rings)),
+        Geometry::Collection(parts) => parts.iter_mut().for_each(orient_all),
+        _ => {}
+    }
+}
+
+fn orient(rings: &mut [Points]) {
+    for (k, ring) in rings.iter_mut().enumerate() {
+        if !ring.is_empty() && (signed_area(&ring.xy) < 0.0) == (k == 0) {
+            ring.xy[1..].reverse();
+            if let Some(rest) = ring.zm.get_mut(1..) {
+                rest.reverse();
+            }
+        }
+    }
 }
 
 /// The pieces of lines, from the sources of their vertices.

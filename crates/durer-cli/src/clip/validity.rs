@@ -14,6 +14,8 @@ pub enum Touching {
     No,
     /// A vertex of both.
     AtVertices,
+    /// Where they are of different rings, a point that is a vertex of one of them: what the OGC allows.
+    AtPoints,
 }
 
 /// Whether all rings are simple and, but for what is allowed, apart from one another, holes lie in
@@ -108,14 +110,21 @@ fn meet(p: &Edge, q: &Edge, size: usize, touching: Touching) -> bool {
         let end_to_end = shared == 1 && (to <= low || from >= high);
         return !(apart || end_to_end && allowed(p, q, size, touching));
     }
-    !(shared == 1 && allowed(p, q, size, touching))
+    // The signs say that they do not cross, or that an end of one lies on the other.
+    let crosses = qa * qb != 0 && pa * pb != 0;
+    let vertex_is_enough = touching == Touching::AtPoints || shared == 1;
+    crosses || !vertex_is_enough || !allowed(p, q, size, touching)
 }
 
 /// Whether edges that share one vertex may.
 fn allowed(p: &Edge, q: &Edge, size: usize, touching: Touching) -> bool {
     let neighbours =
         p.ring == q.ring && ((p.index + 1) % size == q.index || (q.index + 1) % size == p.index);
-    neighbours || touching == Touching::AtVertices
+    match touching {
+        Touching::No => neighbours,
+        Touching::AtVertices => true,
+        Touching::AtPoints => neighbours || p.ring != q.ring,
+    }
 }
 
 /// Whether holes lie in their outer rings, not in one another, and polygons not in one another;
@@ -124,14 +133,12 @@ fn nests(shapes: &Shapes) -> bool {
     let polygons: Vec<Polygon<'_>> = shapes.polygons().collect();
     let boxes: Vec<Option<Rect>> =
         polygons.iter().map(|p| Rect::around(p.outer().iter().copied())).collect();
-    let inside =
-        |ring: &[DVec2], p: Option<&DVec2>| p.is_some_and(|&p| crossings(ring, p) % 2 == 1);
     for (i, polygon) in polygons.iter().enumerate() {
         let holes: Vec<&[DVec2]> = polygon.holes().collect();
         for (k, hole) in holes.iter().enumerate() {
             let others = holes.iter().enumerate().filter(|(j, _)| *j != k);
-            let nested = others.into_iter().any(|(_, other)| inside(other, hole.first()));
-            if nested || !inside(polygon.outer(), hole.first()) {
+            let nested = others.into_iter().any(|(_, other)| lies_in(hole, other));
+            if nested || !lies_in(hole, polygon.outer()) {
                 return false;
             }
         }
@@ -139,13 +146,31 @@ fn nests(shapes: &Shapes) -> bool {
             |j: usize| matches!((boxes[i], boxes[j]), (Some(a), Some(b)) if a.overlaps(&b));
         for j in (0..polygons.len()).filter(|&j| j != i && overlap(j)) {
             let rings = polygons[j].rings();
-            let depth: usize = rings.filter(|ring| inside(ring, polygon.outer().first())).count();
+            let depth: usize = rings.filter(|ring| lies_in(polygon.outer(), ring)).count();
             if depth % 2 == 1 {
                 return false;
             }
         }
     }
     true
+}
+
+/// Whether a ring lies in another, which it may touch: told by a vertex, or else the middle of an
+/// edge, that is not on its border.
+fn lies_in(inner: &[DVec2], outer: &[DVec2]) -> bool {
+    let ends = inner.iter().zip(inner.iter().cycle().skip(1));
+    let middles = ends.map(|(&a, &b)| a * 0.5 + b * 0.5);
+    let free = inner.iter().copied().chain(middles).find(|&p| !on_border(outer, p));
+    free.is_some_and(|p| crossings(outer, p) % 2 == 1)
+}
+
+/// Whether a point lies on a ring.
+fn on_border(ring: &[DVec2], p: DVec2) -> bool {
+    let on_edge = |a: DVec2, b: DVec2| {
+        let (low, high) = (a.min(b), a.max(b));
+        p.cmpge(low).all() && p.cmple(high).all() && orient2d(a, b, p) == Orientation::Collinear
+    };
+    ring.iter().zip(ring.iter().cycle().skip(1)).any(|(a, b)| on_edge(*a, *b))
 }
 
 /// How many edges of a ring a ray from a point to the right crosses.
@@ -161,14 +186,8 @@ fn crossings(ring: &[DVec2], p: DVec2) -> usize {
 
 /// Whether a point lies in the closed polygons, by the even-odd rule.
 pub fn contains(shapes: &Shapes, p: DVec2) -> bool {
-    let on_edge = |a: DVec2, b: DVec2| {
-        let (low, high) = (a.min(b), a.max(b));
-        p.cmpge(low).all() && p.cmple(high).all() && orient2d(a, b, p) == Orientation::Collinear
-    };
-    let on_border =
-        |ring: &[DVec2]| ring.iter().zip(ring.iter().cycle().skip(1)).any(|(a, b)| on_edge(*a, *b));
     shapes.rings().map(|ring| crossings(ring, p)).sum::<usize>() % 2 == 1
-        || shapes.rings().any(on_border)
+        || shapes.rings().any(|ring| on_border(ring, p))
 }
 
 #[cfg(test)]
@@ -214,6 +233,22 @@ mod tests {
         let pair = shapes(&[&[SQUARE], &[&[(9.0, 9.0), (12.0, 9.0), (12.0, 12.0)]]]);
         assert!(!edges_are_apart(&pair, Touching::No));
         assert!(edges_are_apart(&pair, Touching::AtVertices));
+        // The hole begins on its outer ring: at a vertex, or on an edge.
+        let pointed = &[(0.0, 0.0), (3.0, 1.0), (1.0, 3.0)];
+        let leaning = &[(9.0, 4.0), (7.0, 5.0), (7.0, 3.0)];
+        for (hole, at_vertices) in [(pointed, true), (leaning, false)] {
+            let touching = shapes(&[&[SQUARE, hole]]);
+            assert!(!is_valid(&touching, Touching::No));
+            assert_eq!(is_valid(&touching, Touching::AtVertices), at_vertices);
+            assert!(is_valid(&touching, Touching::AtPoints));
+            let outside = shapes(&[&[SQUARE], &[hole]]);
+            assert!(!is_valid(&outside, Touching::AtPoints));
+        }
+        let pinched: &[(f64, f64)] =
+            &[(0.0, 0.0), (4.0, 0.0), (2.0, 2.0), (4.0, 4.0), (0.0, 4.0), (2.0, 2.0)];
+        assert!(!is_valid(&shapes(&[&[pinched]]), Touching::AtPoints));
+        let across = shapes(&[&[SQUARE, &[(8.0, 4.0), (10.0, 4.0), (8.0, 5.0)]]]);
+        assert!(!is_valid(&across, Touching::AtPoints));
     }
 
     #[test]

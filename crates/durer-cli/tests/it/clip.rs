@@ -153,6 +153,101 @@ fn lines_that_leave_at_a_vertex_end_there_once() {
 }
 
 #[test]
+fn lines_get_no_vertex_where_they_only_touch_the_mask() {
+    assert_eq!(
+        clipped("LINESTRING(0 2,2 0)", "--window 1,1,4,4 --outside"),
+        ["LINESTRING (0 2, 2 0)"]
+    );
+}
+
+#[test]
+fn outer_rings_run_counter_clockwise_and_holes_clockwise() {
+    // Clockwise, with a counter-clockwise hole that touches it; and a second polygon, the other way round.
+    let wkt =
+        "MULTIPOLYGON(((0 0,0 9,9 9,9 0,0 0),(0 4,3 3,3 5,0 4)),((20 0,29 0,29 9,20 9,20 0)))";
+    let expected = [
+        "MULTIPOLYGON (((0 0, 9 0, 9 9, 0 9, 0 0), (0 4, 3 5, 3 3, 0 4)), ((20 0, 29 0, 29 9, 20 9, 20 0)))",
+    ];
+    let far = "POLYGON((50 0,51 0,51 1,50 0))";
+    let folder = Folder::new();
+    folder.write("a.wkt", wkt.replace("0 4", "1 4"));
+    folder.write("far.wkt", far);
+    for arguments in ["--window=-9,-9,99,99", "--by far.wkt --outside"] {
+        folder.must(&format!("clip a.wkt {arguments} -o o.wkt"));
+        let found = String::from_utf8(folder.read("o.wkt")).unwrap();
+        assert_eq!(found.lines().collect::<Vec<_>>(), expected.map(|e| e.replace("0 4", "1 4")));
+    }
+    for algorithm in
+        ["overlay", "vatti", "weiler-atherton", "greiner-hormann", "sutherland-hodgman"]
+    {
+        let found = clipped(wkt, &format!("--window=-9,-9,99,99 --algorithm {algorithm}"));
+        let turns: Vec<f64> = found[0].split("), (").map(turn).collect();
+        assert!(turns[0] > 0.0 && turns[1] < 0.0 && turns[2] > 0.0, "{algorithm}: {found:?}");
+    }
+}
+
+/// Twice the signed area of a ring as WKT writes it.
+fn turn(ring: &str) -> f64 {
+    let ring = ring.trim_matches(|c: char| !c.is_ascii_digit());
+    let points: Vec<Vec<f64>> = ring
+        .split(", ")
+        .map(|p| p.split(' ').map(|n| n.trim_matches(['(', ')']).parse().unwrap()).collect())
+        .collect();
+    points.windows(2).map(|w| w[0][0] * w[1][1] - w[0][1] * w[1][0]).sum()
+}
+
+#[test]
+fn a_mask_without_polygons_takes_nothing_away() {
+    let folder = folder();
+    folder.write("empty.geojson", r#"{"type":"FeatureCollection","features":[]}"#);
+    folder.write("line.wkt", "LINESTRING(0 0,9 9)");
+    for mask in ["empty.geojson", "line.wkt"] {
+        let ended =
+            folder.must(&format!("clip in.geojson --by {mask} --outside -o o.geojson --json"));
+        assert!(ended.err.contains("there is no polygon in it"), "{}", ended.err);
+        let report = ended.json();
+        for measure in ["area", "length", "points"] {
+            assert_eq!(report["in"][measure], report["out"][measure], "{mask} {measure}");
+        }
+        folder
+            .run(&format!("clip in.geojson --by {mask} -o p.geojson"))
+            .fails(1, "no polygon to cut with");
+    }
+}
+
+#[test]
+fn repeated_positions_and_touching_rings_are_no_fault() {
+    let folder = Folder::new();
+    folder.write("twice.wkt", "POLYGON((0 0,9 0,9 0,9 9,0 9,0 0,0 0))");
+    folder.write("touch.wkt", "POLYGON((0 0,9 0,9 9,0 9,0 0),(0 4,3 3,3 5,0 4))");
+    for name in ["twice", "touch"] {
+        for arguments in ["--window 1,1,5,5", "--window=-1,-1,99,99", "--window 1,1,5,5 --outside"]
+        {
+            let ended = folder.must(&format!("clip {name}.wkt {arguments} -o o.wkt"));
+            assert_eq!(ended.err, "", "{name} {arguments}");
+        }
+    }
+    folder.must("clip twice.wkt --window 1,1,5,5 --algorithm rectangle -o o.wkt");
+    assert_eq!(folder.read("o.wkt"), b"POLYGON ((1 1, 5 1, 5 5, 1 5, 1 1))\n");
+}
+
+#[test]
+fn textbook_algorithms_refuse_what_they_cannot_do() {
+    let folder = Folder::new();
+    folder.write("bow.wkt", "POLYGON((0 0,4 4,4 0,0 4,0 0))");
+    // The hole touches the outer ring in the window, and is cut open.
+    folder.write("touch.wkt", "POLYGON((0 0,9 0,9 9,0 9,0 0),(4 9,3 3,5 3,4 9))");
+    for algorithm in ["weiler-atherton", "greiner-hormann", "rectangle"] {
+        let run = |window| format!("--window {window} --algorithm {algorithm} -o o.wkt");
+        let wrong = folder.run(&format!("clip bow.wkt {}", run("1,1,5,5")));
+        wrong.fails(1, "feature 1 (from 1): a polygon whose rings");
+        let opened = folder.run(&format!("clip touch.wkt {}", run("1,5,8,10")));
+        assert_eq!(opened.code == 0, algorithm != "rectangle", "{algorithm}: {}", opened.err);
+        folder.must(&format!("clip touch.wkt {}", run("1,1,8,10")));
+    }
+}
+
+#[test]
 fn heights_go_on_along_lines_and_round_corners() {
     let cut = clipped("LINESTRING Z (-1 1 0,3 1 8)", "--window 0,0,8,8");
     assert_eq!(cut, ["LINESTRING Z (0 1 2, 3 1 8)"]);
@@ -278,6 +373,8 @@ fn tiles_are_files_or_a_sequence() {
     folder.must("clip a.geojson --tiles 3 --tile-coordinates mercator -o m.geojsonl");
     assert_eq!(String::from_utf8(folder.read("m.geojsonl")).unwrap().lines().count(), 4);
     folder.run("clip a.geojson --tiles 2 -o t.geojson").fails(2, "a file per tile");
+    let again = folder.must("clip t.geojsonl --tiles 3 -o u.geojsonl");
+    assert!(again.err.contains("the member \"tile\" of 4 features"), "{}", again.err);
 }
 
 #[test]

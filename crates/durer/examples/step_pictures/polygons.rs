@@ -89,7 +89,7 @@ fn walks() -> durer::Result<String> {
     let [subject, clip] = pair().map(|ring| Shapes::from_rings([ring]));
     let mut steps = Recorder::default();
     let op = BooleanOp::Intersection;
-    weiler_atherton::weiler_atherton(&subject, &clip, op, &Default::default(), &mut steps);
+    weiler_atherton::weiler_atherton(&subject, &clip, op, &Default::default(), &mut steps)?;
     let mut turns = Panel::new((0.0, -2.0), (13.0, 11.0))?;
     both(&mut turns, &pair());
     let mut rings = Vec::new();
@@ -98,7 +98,7 @@ fn walks() -> durer::Result<String> {
             weiler_atherton::Step::Turn { at, to_subject } => {
                 turns.dot(*at, if *to_subject { "#1f6fb4" } else { "#d1495b" });
             }
-            weiler_atherton::Step::Ring { points, .. } => rings.push(points.clone()),
+            weiler_atherton::Step::Ring { points } => rings.push(points.clone()),
             weiler_atherton::Step::Crossing { .. } => {}
         }
     }
@@ -113,7 +113,7 @@ fn entries() -> durer::Result<String> {
     let [subject, clip] = pair().map(|ring| Shapes::from_rings([ring]));
     let mut steps = Recorder::default();
     let op = BooleanOp::Difference;
-    greiner_hormann::greiner_hormann(&subject, &clip, op, &Default::default(), &mut steps);
+    greiner_hormann::greiner_hormann(&subject, &clip, op, &Default::default(), &mut steps)?;
     let mut crossings = Panel::new((0.0, -2.0), (13.0, 11.0))?;
     both(&mut crossings, &pair());
     let mut rings = Vec::new();
@@ -122,7 +122,7 @@ fn entries() -> durer::Result<String> {
             greiner_hormann::Step::Crossing { at, entry } => {
                 crossings.dot(*at, if *entry { "#2b7a48" } else { "#d1495b" });
             }
-            greiner_hormann::Step::Ring { points, .. } => rings.push(points.clone()),
+            greiner_hormann::Step::Ring { points } => rings.push(points.clone()),
             greiner_hormann::Step::Turn { .. } => {}
         }
     }

@@ -157,6 +157,8 @@ fn clip_one(
         if !cuts.is_empty() {
             known = None;
         }
+        // Parts on the same side are one: where the border is only touched, nothing is cut.
+        let mut parts: Vec<(DVec2, DVec2, bool)> = Vec::new();
         for (start, end) in cuts.parts(a, b) {
             let inside = known.unwrap_or_else(|| {
                 cuts.on_border(start, end) || border.contains_middle(start, end)
@@ -165,6 +167,12 @@ fn clip_one(
             if cuts.is_empty() {
                 known = Some(inside);
             }
+            match parts.last_mut() {
+                Some(last) if last.2 == inside => last.1 = end,
+                _ => parts.push((start, end, inside)),
+            }
+        }
+        for (start, end, inside) in parts {
             t.step(|| Step::Part { line, segment, start, end, inside });
             if inside != (options.part == Part::Inside) {
                 out.end_piece(line);
@@ -375,6 +383,19 @@ mod tests {
             let part = Part::Outside;
             let outside = clip(&frame(), &line, &[2], &Options { part }, &mut NoTrace).unwrap();
             assert_eq!(outside.ends.len(), if line[0].y == 0.0 { 2 } else { 0 });
+        }
+    }
+
+    #[test]
+    fn what_only_touches_the_border_is_not_cut() {
+        // Past a corner of the frame; within it, past corners of its hole and along an edge of it.
+        for (line, part) in [
+            ([p(-1, 1), p(1, -1)], Part::Outside),
+            ([p(1, 3), p(3, 1)], Part::Inside),
+            ([p(2, 1), p(2, 5)], Part::Inside),
+        ] {
+            let out = clip(&frame(), &line, &[2], &Options { part }, &mut NoTrace).unwrap();
+            assert_eq!(out.points, line, "{part:?}");
         }
     }
 

@@ -1,12 +1,13 @@
 //! Greiner–Hormann: walk forwards on entering the other polygon, backwards on leaving it.
 //!
 //! G. Greiner, K. Hormann, *Efficient clipping of arbitrary polygons*, ACM Transactions on Graphics
-//! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019.
+//! 17(2), 1998. Touching vertices and common edges after Foster, Hormann and Popa, 2019; where
+//! several borders pass one point, each pair of them is linked there (`node.rs`).
 
-use super::cyclic::{Lists, finish, link};
-use super::locate::{Place, locate};
-use super::walk::with_xor;
+use super::cyclic::{Linked, Lists};
+use super::walk::walk_all;
 use super::{BooleanOp, Shapes};
+use crate::Result;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
@@ -21,9 +22,10 @@ pub const INFO: Info = Info {
     year: 1998,
     source: "Efficient clipping of arbitrary polygons, ACM Transactions on Graphics 17(2)",
     class: Class::ObjectSpace,
-    cost: "O(n m) time for n and m edges, O(n + m + k) memory for k crossings",
-    limits: "polygons whose rings are simple and do not touch one another; \
-             crossings are rounded to f64",
+    cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
+           O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
+    limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
+             Crossings are rounded to f64: rings nearer than that may come out crossing",
 };
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
@@ -35,33 +37,29 @@ pub const INFO: Info = Info {
 ///
 /// let square = |x: f64| [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(|(u, v)| DVec2::new(x + u, x + v));
 /// let (a, b) = (Shapes::from_rings([square(0.0)]), Shapes::from_rings([square(1.0)]));
-/// let union = greiner_hormann(&a, &b, BooleanOp::Union, &Default::default(), &mut NoTrace);
+/// let union = greiner_hormann(&a, &b, BooleanOp::Union, &Default::default(), &mut NoTrace)?;
 /// assert_eq!(union.area(), 7.0);
+/// # Ok::<(), durer::Error>(())
 /// ```
+///
+/// # Errors
+/// [`NonFinite`](crate::Error::NonFinite) for a point with a NaN or infinite coordinate;
+/// [`Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap themselves or
+/// one another, or turn back on themselves.
 pub fn greiner_hormann(
     subject: &Shapes,
     clip: &Shapes,
     op: BooleanOp,
     _options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Shapes {
-    with_xor([subject, clip], op, |[a, b], op, swapped| walk(a, b, op, swapped, t))
+) -> Result<Shapes> {
+    walk_all([subject, clip], op, t, walk)
 }
 
-fn walk(
-    subject: &Shapes,
-    clip: &Shapes,
-    op: BooleanOp,
-    swapped: bool,
-    t: &mut impl Tracer<Step>,
-) -> Shapes {
-    let linked = link(subject, clip);
-    let mut entries = [
-        entries(&linked.subject, &linked.clip_rings),
-        entries(&linked.clip, &linked.subject_rings),
-    ];
-    for (vertex, &entry) in linked.subject.vertices.iter().zip(&entries[0]) {
-        if vertex.crosses {
+fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DVec2>> {
+    let mut entries = [entries(&linked.lists[0]), entries(&linked.lists[1])];
+    for (vertex, &entry) in linked.lists[0].vertices.iter().zip(&entries[0]) {
+        if vertex.twin.is_some() {
             t.step(|| Step::Crossing { at: vertex.at, entry });
         }
     }
@@ -70,43 +68,36 @@ fn walk(
     for (list, inverted) in entries.iter_mut().zip(inverted) {
         list.iter_mut().for_each(|entry| *entry ^= inverted);
     }
-    let lists = [&linked.subject, &linked.clip];
-    let mut visited = vec![false; linked.subject.vertices.len()];
+    let subject = &linked.lists[0].vertices;
+    let mut visited = vec![false; subject.len()];
     let mut found = Vec::new();
-    for start in 0..visited.len() {
-        if linked.subject.vertices[start].crosses && !visited[start] {
-            found.push(trace(lists, &entries, start, &mut visited));
+    for (start, vertex) in subject.iter().enumerate() {
+        if vertex.twin.is_some() && !visited[start] {
+            let mut ring = trace(&linked.lists, &entries, start, &mut visited);
+            // The result lies where the subject does, on the left of its border.
+            if !entries[0][start] {
+                ring.reverse();
+            }
+            found.push(ring);
         }
     }
-    found.extend(linked.whole_rings(op));
-    finish(found, |points| t.step(|| Step::Ring { points: points.to_vec(), swapped }))
+    found
 }
 
 /// For each vertex that crosses: whether its list enters the other's region there. The first of a
-/// ring is told by a point on the ring, the others alternate.
-fn entries(lists: &Lists, other: &[Vec<DVec2>]) -> Vec<bool> {
+/// ring is told by where the ring starts, the others alternate.
+fn entries(lists: &Lists) -> Vec<bool> {
     let mut entries = vec![false; lists.vertices.len()];
-    for &start in &lists.starts {
-        let ring: Vec<usize> = lists.ring(start).collect();
-        let Some(first) = ring.iter().position(|&v| lists.vertices[v].crosses) else { continue };
-        // Between this crossing and the one before, some piece is off the other's border.
-        let before = ring[..first].iter().rev().chain(ring[first..].iter().rev());
-        let mut pieces = Vec::new();
-        for &v in before {
-            pieces.push((lists.vertices[v].at + lists.vertices[lists.vertices[v].next].at) * 0.5);
-            if lists.vertices[v].crosses {
-                break;
+    for start in &lists.starts {
+        let mut inside = start.inside;
+        for v in lists.ring(lists.leaves(start.vertex)).skip(1) {
+            if lists.vertices[v].twin.is_some() {
+                inside = !inside;
+                entries[v] = inside;
             }
         }
-        let places = pieces.iter().map(|&p| locate(other.iter().map(Vec::as_slice), p));
-        let inside = places.into_iter().find(|&p| p != Place::Border) == Some(Place::Inside);
-        let mut entry = !inside;
-        for &v in ring[first..].iter().chain(&ring[..first]) {
-            if lists.vertices[v].crosses {
-                entries[v] = entry;
-                entry = !entry;
-            }
-        }
+        let v = lists.leaves(start.vertex);
+        entries[v] = start.inside;
     }
     entries
 }
@@ -114,7 +105,7 @@ fn entries(lists: &Lists, other: &[Vec<DVec2>]) -> Vec<bool> {
 /// Walks from a crossing of the subject until it comes back. Rings that are not simple may lead a walk
 /// into a circle without crossings: then there is no ring.
 fn trace(
-    lists: [&Lists; 2],
+    lists: &[Lists; 2],
     entries: &[Vec<bool>; 2],
     start: usize,
     visited: &mut [bool],
@@ -136,7 +127,7 @@ fn trace(
             points.push(lists[k].vertices[v].at);
             let vertex = &lists[k].vertices[v];
             v = if forward { vertex.next } else { vertex.previous };
-            if lists[k].vertices[v].crosses {
+            if lists[k].vertices[v].twin.is_some() {
                 break;
             }
         }

@@ -1,7 +1,7 @@
 //! Where a point lies of rings, and which ring lies in which: exact, by looking at every edge.
 
 use super::{Ring, Shapes, signed_area};
-use crate::math::{DVec2, Orientation, orient2d};
+use crate::math::{DVec2, Orientation, Rect, orient2d};
 
 /// Where a point lies of a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,15 +45,49 @@ fn within(inner: &Ring, outer: &Ring) -> bool {
     places.into_iter().find(|&place| place != Place::Border) == Some(Place::Inside)
 }
 
+/// Whether all points of a ring lie on one line; exact.
+pub(super) fn is_flat(ring: &Ring) -> bool {
+    let Some(&a) = ring.first() else { return true };
+    let Some(&b) = ring.iter().find(|&&b| b != a) else { return true };
+    ring.iter().all(|&c| orient2d(a, b, c) == Orientation::Collinear)
+}
+
+/// For each ring those that it lies within; boxes decide first, in the order of their left sides.
+fn parents(rings: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
+    let mut parents = vec![Vec::new(); rings.len()];
+    let boxes = rings.iter().map(|ring| Rect::around(ring.iter().copied()));
+    let mut order: Vec<(Rect, usize)> =
+        boxes.enumerate().filter_map(|(i, around)| Some((around?, i))).collect();
+    order.sort_by(|(a, _), (b, _)| a.min().x.total_cmp(&b.min().x));
+    let mut active: Vec<(Rect, usize)> = Vec::new();
+    for (inner, i) in order {
+        active.retain(|(outer, _)| outer.max().x >= inner.min().x);
+        for &(outer, j) in &active {
+            let mut look = |outer: Rect, j: usize, inner: Rect, i: usize| {
+                let holds = outer.contains(inner.min()) && outer.contains(inner.max());
+                if holds && within(&rings[i], &rings[j]) {
+                    parents[i].push(j);
+                }
+            };
+            look(outer, j, inner, i);
+            look(inner, i, outer, j);
+        }
+        active.push((inner, i));
+    }
+    parents
+}
+
 /// Groups rings into polygons: a ring within an odd number of others is a hole of the innermost of
 /// them. Outer rings come out counter-clockwise, holes clockwise.
 pub(super) fn group(rings: Vec<Vec<DVec2>>) -> Shapes {
-    let around = |i: usize| {
-        let others = (0..rings.len()).filter(move |&j| j != i);
-        others.filter(|&j| within(&rings[i], &rings[j])).collect::<Vec<usize>>()
-    };
-    let parents: Vec<Vec<usize>> = (0..rings.len()).map(around).collect();
-    let is_hole = |i: usize| parents[i].len() % 2 == 1;
+    let parents = parents(&rings);
+    let depth = |i: usize| parents[i].len();
+    let mut holes: Vec<Vec<usize>> = vec![Vec::new(); rings.len()];
+    for hole in (0..rings.len()).filter(|&i| depth(i) % 2 == 1) {
+        if let Some(&outer) = parents[hole].iter().find(|&&j| depth(j) + 1 == depth(hole)) {
+            holes[outer].push(hole);
+        }
+    }
     let oriented = |i: usize, positive: bool| {
         let mut ring = rings[i].clone();
         if (signed_area(&ring) > 0.0) != positive {
@@ -62,13 +96,10 @@ pub(super) fn group(rings: Vec<Vec<DVec2>>) -> Shapes {
         ring
     };
     let mut shapes = Shapes::new();
-    for outer in (0..rings.len()).filter(|&i| !is_hole(i)) {
+    for outer in (0..rings.len()).filter(|&i| depth(i) % 2 == 0) {
         shapes.push_ring(oriented(outer, true));
-        for hole in (0..rings.len()).filter(|&i| is_hole(i)) {
-            let depth = parents[outer].len() + 1;
-            if parents[hole].len() == depth && parents[hole].contains(&outer) {
-                shapes.push_ring(oriented(hole, false));
-            }
+        for &hole in &holes[outer] {
+            shapes.push_ring(oriented(hole, false));
         }
         shapes.end_polygon();
     }

@@ -7,7 +7,10 @@ mod cyclic;
 pub mod greiner_hormann;
 mod locate;
 pub mod naive;
+mod near;
 mod nesting;
+mod node;
+mod outline;
 pub mod overlay;
 pub mod rectangle;
 mod shapes;
@@ -50,9 +53,9 @@ impl PolygonClipper {
     /// Runs the algorithm with its default options, by the even-odd rule.
     ///
     /// # Errors
-    /// As [`overlay()`]; the walks of Weiler–Atherton and Greiner–Hormann take only finite points
-    /// too, and are right only where their limits are kept. [`Error::Unsupported`] for the rectangle
-    /// clip and Sutherland–Hodgman with an operation other than intersection, and where the clip is
+    /// As [`overlay()`]; all take only finite points. [`Error::Unsupported`] for Weiler–Atherton and
+    /// Greiner–Hormann where rings of one operand cross or overlap; for the rectangle clip and
+    /// Sutherland–Hodgman with an operation other than intersection, and where the clip is
     /// not one rectangle, or one ring; [`Error::Parameter`] where that ring is not convex.
     pub fn clip(self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {
         let t = &mut NoTrace;
@@ -88,11 +91,11 @@ impl PolygonClipper {
                 }
             },
             Self::WeilerAtherton => {
-                weiler_atherton::weiler_atherton(subject, clip, op, &Default::default(), t)
+                weiler_atherton::weiler_atherton(subject, clip, op, &Default::default(), t)?
             }
             Self::Vatti => vatti::vatti(subject, clip, op, &Default::default(), t)?.shapes,
             Self::GreinerHormann => {
-                greiner_hormann::greiner_hormann(subject, clip, op, &Default::default(), t)
+                greiner_hormann::greiner_hormann(subject, clip, op, &Default::default(), t)?
             }
             Self::Overlay => overlay(subject, clip, op, &Default::default(), t)?.shapes,
         })

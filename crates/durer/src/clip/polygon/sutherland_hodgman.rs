@@ -13,7 +13,8 @@
 //! Which side of a border a vertex is on is decided exactly. Cuts are computed from the
 //! lexicographically smaller end of an edge, so polygons that share an edge share its cuts.
 
-use super::Shapes;
+use super::locate::is_flat;
+use super::{Shapes, signed_area};
 use crate::clip::line::border::Canonical;
 use crate::clip::line::convex::{self, HalfSpace};
 use crate::clip::line::{ClipBox, ConvexPolygon, HalfPlane};
@@ -276,7 +277,8 @@ pub fn clip_polygon<V: Vertex<2>>(
     run(window.edges(), ring, t)
 }
 
-/// The parts of all rings in a rectangle; rings of which nothing is left are left out.
+/// The parts of all rings in a rectangle; rings of which no area is left are left out, and so are the
+/// holes of such an outer ring.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
@@ -288,7 +290,8 @@ pub fn clip_shapes(
     map_rings(shapes, |ring| clip(window, ring, t))
 }
 
-/// The parts of all rings in a convex polygon; rings of which nothing is left are left out.
+/// The parts of all rings in a convex polygon; rings of which no area is left are left out, and so are
+/// the holes of such an outer ring.
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a point with a NaN or infinite coordinate.
@@ -306,15 +309,26 @@ fn map_rings(
 ) -> Result<Shapes> {
     let mut out = Shapes::new();
     for polygon in shapes.polygons() {
-        for ring in polygon.rings() {
+        for (k, ring) in polygon.rings().enumerate() {
             let ring = clip(ring)?;
-            if ring.len() > 2 {
+            // What only touches the window from outside comes out flat, along its border.
+            if has_area(&ring) {
                 out.push_ring(ring);
+            } else if k == 0 {
+                break;
             }
         }
         out.end_polygon();
     }
     Ok(out)
+}
+
+/// Whether a ring encloses more than rounding of its coordinates could.
+fn has_area(ring: &[DVec2]) -> bool {
+    let Some(around) = Rect::around(ring.iter().copied()) else { return false };
+    let reach = around.min().abs().max(around.max().abs());
+    let rounding = f64::EPSILON * (reach.x * around.size().y + reach.y * around.size().x);
+    !is_flat(ring) && signed_area(ring).abs() > rounding
 }
 
 /// The part of a planar polygon of space in a box: left, right, bottom, top, and the two planes in
@@ -366,7 +380,6 @@ fn run<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::polygon::signed_area;
     use crate::trace::{NoTrace, Recorder};
     use proptest::prelude::*;
 

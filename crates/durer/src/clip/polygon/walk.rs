@@ -1,8 +1,12 @@
 //! What the clippers that walk along linked borders share: steps, and xor as two differences.
 
+use super::cyclic::{Linked, link};
 use super::locate::group;
+use super::outline::simple_rings;
 use super::{BooleanOp, Shapes};
+use crate::Result;
 use crate::math::DVec2;
+use crate::trace::Tracer;
 
 /// There is nothing to choose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,38 +31,44 @@ pub enum Step {
     },
     /// A ring of the result is complete.
     Ring {
-        /// Its points, in the order of the walk.
+        /// Its points, the inside on the left.
         points: Vec<DVec2>,
-        /// Whether it is of the second half of an xor: clip without subject.
-        swapped: bool,
     },
 }
 
 /// Rebuilds the result from its steps.
 pub fn replay(steps: &[Step]) -> Shapes {
-    let half = |second: bool| {
-        let rings = steps.iter().filter_map(move |step| match step {
-            Step::Ring { points, swapped } if *swapped == second => Some(points.clone()),
-            _ => None,
-        });
-        group(rings.collect())
-    };
-    let mut shapes = half(false);
-    shapes.append(&half(true));
-    shapes
+    let rings = steps.iter().filter_map(|step| match step {
+        Step::Ring { points } => Some(points.clone()),
+        _ => None,
+    });
+    group(rings.collect())
 }
 
-/// Runs a walk that knows all operations but xor, which is both differences side by side; the flag
-/// tells the walk that subject and clip are exchanged.
-pub(super) fn with_xor(
+/// Runs a walk that knows all operations but xor, which is both differences side by side, and makes
+/// polygons of what it finds.
+pub(super) fn walk_all<T: Tracer<Step>>(
     [subject, clip]: [&Shapes; 2],
     op: BooleanOp,
-    mut walk: impl FnMut([&Shapes; 2], BooleanOp, bool) -> Shapes,
-) -> Shapes {
-    if op != BooleanOp::Xor {
-        return walk([subject, clip], op, false);
+    t: &mut T,
+    mut walk: impl FnMut(&Linked, BooleanOp, &mut T) -> Vec<Vec<DVec2>>,
+) -> Result<Shapes> {
+    let mut once = |subject, clip, op| -> Result<Vec<Vec<DVec2>>> {
+        let linked = link(subject, clip, op)?;
+        let mut found = walk(&linked, op, t);
+        found.extend(linked.whole_rings(op));
+        Ok(found)
+    };
+    let found = if op == BooleanOp::Xor {
+        let mut found = once(subject, clip, BooleanOp::Difference)?;
+        found.extend(once(clip, subject, BooleanOp::Difference)?);
+        found
+    } else {
+        once(subject, clip, op)?
+    };
+    let rings = simple_rings(&found);
+    for ring in &rings {
+        t.step(|| Step::Ring { points: ring.clone() });
     }
-    let mut shapes = walk([subject, clip], BooleanOp::Difference, false);
-    shapes.append(&walk([clip, subject], BooleanOp::Difference, true));
-    shapes
+    Ok(group(rings))
 }

@@ -5,9 +5,10 @@
 //! (SIGGRAPH) 11(2), 1977. We tell touching vertices and common edges from crossings by the rule of
 //! Foster, Hormann and Popa (2019), and give union and difference by the same lists.
 
-use super::cyclic::{Linked, finish, link};
-use super::walk::with_xor;
+use super::cyclic::Linked;
+use super::walk::walk_all;
 use super::{BooleanOp, Shapes};
+use crate::Result;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
@@ -22,9 +23,10 @@ pub const INFO: Info = Info {
     year: 1977,
     source: "Hidden surface removal using polygon area sorting, Computer Graphics 11(2)",
     class: Class::ObjectSpace,
-    cost: "O(n m) time for n and m edges, O(n + m + k) memory for k crossings",
-    limits: "polygons whose rings are simple and do not touch one another; \
-             crossings are rounded to f64",
+    cost: "O(n log n + p) time for n edges of both and p pairs that are near each other, \
+           O(n² + r²) at worst for r rings; O(n + k) memory for k crossings",
+    limits: "polygons whose rings neither cross nor overlap, refused otherwise; they may touch in points. \
+             Crossings are rounded to f64: rings nearer than that may come out crossing",
 };
 
 /// Clips polygons with polygons; both with holes, by the even-odd rule.
@@ -36,39 +38,37 @@ pub const INFO: Info = Info {
 ///
 /// let square = |x: f64| [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(|(u, v)| DVec2::new(x + u, x + v));
 /// let (a, b) = (Shapes::from_rings([square(0.0)]), Shapes::from_rings([square(1.0)]));
-/// let both = weiler_atherton(&a, &b, BooleanOp::Intersection, &Default::default(), &mut NoTrace);
+/// let both = weiler_atherton(&a, &b, BooleanOp::Intersection, &Default::default(), &mut NoTrace)?;
 /// assert_eq!(both.area(), 1.0);
+/// # Ok::<(), durer::Error>(())
 /// ```
+///
+/// # Errors
+/// [`NonFinite`](crate::Error::NonFinite) for a point with a NaN or infinite coordinate;
+/// [`Unsupported`](crate::Error::Unsupported) where rings of an operand cross or overlap themselves or
+/// one another, or turn back on themselves.
 pub fn weiler_atherton(
     subject: &Shapes,
     clip: &Shapes,
     op: BooleanOp,
     _options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Shapes {
-    with_xor([subject, clip], op, |[a, b], op, swapped| walk(a, b, op, swapped, t))
+) -> Result<Shapes> {
+    walk_all([subject, clip], op, t, walk)
 }
 
-fn walk(
-    subject: &Shapes,
-    clip: &Shapes,
-    op: BooleanOp,
-    swapped: bool,
-    t: &mut impl Tracer<Step>,
-) -> Shapes {
-    let linked = link(subject, clip);
+fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DVec2>> {
     // Intersection follows the subject where it has come in, the others where it has gone out.
     let starts_in = op == BooleanOp::Intersection;
-    let mut visited = vec![false; linked.subject.vertices.len()];
+    let subject = &linked.lists[0].vertices;
+    let mut visited = vec![false; subject.len()];
     let mut found = Vec::new();
-    for start in 0..visited.len() {
-        let vertex = &linked.subject.vertices[start];
-        if vertex.crosses && vertex.enters == starts_in && !visited[start] {
-            found.push(trace(&linked, op, start, &mut visited, t));
+    for (start, vertex) in subject.iter().enumerate() {
+        if vertex.twin.is_some() && vertex.enters == starts_in && !visited[start] {
+            found.push(trace(linked, op, start, &mut visited, t));
         }
     }
-    found.extend(linked.whole_rings(op));
-    finish(found, |points| t.step(|| Step::Ring { points: points.to_vec(), swapped }))
+    found
 }
 
 /// Walks from a crossing of the subject until it comes back. Orientation is the same all around,
@@ -81,7 +81,7 @@ fn trace(
     visited: &mut [bool],
     t: &mut impl Tracer<Step>,
 ) -> Vec<DVec2> {
-    let (subject, clip) = (&linked.subject.vertices, &linked.clip.vertices);
+    let [subject, clip] = [&linked.lists[0].vertices, &linked.lists[1].vertices];
     let all = subject.len() + clip.len();
     let mut points = Vec::new();
     let mut v = start;
@@ -94,7 +94,7 @@ fn trace(
             if points.len() > all {
                 return Vec::new();
             }
-            if subject[v].crosses {
+            if subject[v].twin.is_some() {
                 break;
             }
         }
@@ -106,7 +106,7 @@ fn trace(
                 return Vec::new();
             }
             w = if op == BooleanOp::Difference { clip[w].previous } else { clip[w].next };
-            if clip[w].crosses {
+            if clip[w].twin.is_some() {
                 break;
             }
         }

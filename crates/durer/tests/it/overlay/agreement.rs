@@ -96,11 +96,11 @@ proptest! {
     #[test]
     fn steps_rebuild_the_results(a in star(), b in star()) {
         let mut steps = Recorder::default();
-        let traced = weiler_atherton::weiler_atherton(&a, &b, BooleanOp::Xor, &Default::default(), &mut steps);
+        let traced = weiler_atherton::weiler_atherton(&a, &b, BooleanOp::Xor, &Default::default(), &mut steps).expect("valid");
         prop_assert_eq!(&traced, &weiler_atherton::replay(steps.steps()));
         prop_assert_eq!(&traced, &PolygonClipper::WeilerAtherton.clip(&a, &b, BooleanOp::Xor).expect("finite"));
         let mut steps = Recorder::default();
-        let traced = greiner_hormann::greiner_hormann(&a, &b, BooleanOp::Union, &Default::default(), &mut steps);
+        let traced = greiner_hormann::greiner_hormann(&a, &b, BooleanOp::Union, &Default::default(), &mut steps).expect("valid");
         prop_assert_eq!(&traced, &greiner_hormann::replay(steps.steps()));
         prop_assert_eq!(&traced, &PolygonClipper::GreinerHormann.clip(&a, &b, BooleanOp::Union).expect("finite"));
     }
@@ -129,7 +129,7 @@ fn what_an_algorithm_cannot_do_is_an_error() {
             let able = op == BooleanOp::Intersection || !clipper.keeps_inside_only();
             assert_eq!(clipper.clip(&square, &square, op).is_ok(), able, "{clipper} {op}");
         }
-        let able = !clipper.keeps_inside_only();
+        let able = matches!(clipper, PolygonClipper::Overlay | PolygonClipper::Vatti);
         assert_eq!(clipper.clip(&square, &two, BooleanOp::Intersection).is_ok(), able, "{clipper}");
     }
 }

@@ -5,6 +5,7 @@ pub mod cases;
 pub mod distance;
 mod hard;
 mod laws;
+mod touching;
 pub mod tree;
 pub mod validity;
 mod whole;

@@ -11,7 +11,8 @@
 //! and reject first.
 //!
 //! Input polygons must be valid (simple rings, holes inside the outer ring, interiors connected);
-//! direction of rings does not matter. On others nothing panics, but the region is unspecified.
+//! direction of rings does not matter. On others nothing panics, but the region is unspecified. Where
+//! rings of valid polygons touch one another the region is right, but a ring may touch itself there.
 //! Polygons that lie wholly in the closed window are copied bit for bit; those that are cut come out
 //! with counter-clockwise outer rings and clockwise holes (y up).
 
@@ -38,7 +39,7 @@ pub const INFO: Info = Info {
     source: "Hidden surface removal using polygon area sorting, SIGGRAPH; clip polygon a rectangle",
     class: Class::ObjectSpace,
     cost: "O(n + k log k), n vertices, k border crossings",
-    limits: "axis-parallel windows; valid polygons",
+    limits: "axis-parallel windows; valid polygons, whose rings do not touch one another",
 };
 
 /// There is nothing to choose.
