@@ -209,7 +209,7 @@ pub fn no_glyphs(letters: impl Iterator<Item = char>) -> Option<String> {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let message = format!("no font has the letters {named}{rest}; they are drawn as empty boxes");
+    let message = format!("no font has the letters {named}{rest}; they are left blank or boxes");
     (!letters.is_empty()).then_some(message)
 }
 
