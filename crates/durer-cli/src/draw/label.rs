@@ -140,11 +140,11 @@ impl Parts<'_> {
 pub struct Drawn {
     /// For each layer how many found room, and how many did not.
     pub counts: Vec<(u64, u64)>,
-    /// Letters that no font has.
+    /// Letters that the fonts of their labels do not have.
     pub missing: BTreeSet<char>,
 }
 
-/// Draws as many labels as find room, each in the first font that has all its letters, or else the first of all.
+/// Draws as many labels as find room, each in the font that has most of its letters, the first of those.
 pub fn draw(
     canvas: &mut Canvas,
     seen: &Rect,
@@ -156,23 +156,21 @@ pub fn draw(
     let fonts = opened.collect::<durer::Result<Vec<_>>>();
     let fonts = fonts.map_err(|e| Failure::Data(e.to_string()))?;
     let no_font = || Failure::Data("there is no font for labels".to_owned());
-    let first = fonts.first().ok_or_else(no_font)?;
     // The sort is stable: what is equal stays in the order of the file.
     labels.sort_by(|a, b| b.layer.cmp(&a.layer).then(b.anchor.size.total_cmp(&a.anchor.size)));
     let mut placer = Placer::new(*seen);
     let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
     for label in &labels {
         let style = styles[label.layer];
-        let font = fonts.iter().find(|font| label.text.chars().all(|c| font.has(c)));
-        let line = font.unwrap_or(first).line(&label.text, style.label_size);
+        let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
+        let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
+        let line = font.line(&label.text, style.label_size);
         let places = places(&label.anchor, &line, style);
         let boxes = places.iter().filter_map(|corner| taken(*corner, &line, style));
         match placer.place(boxes) {
             Some(number) => {
                 drawn.counts[label.layer].0 += 1;
-                if font.is_none() {
-                    drawn.missing.extend(label.text.chars().filter(|c| !first.has(*c)));
-                }
+                drawn.missing.extend(label.text.chars().filter(|c| !font.has(*c)));
                 write(canvas, &line, places[number], style)
                     .map_err(|e| Failure::Usage(e.to_string()))?;
             }

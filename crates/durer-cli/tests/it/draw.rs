@@ -264,7 +264,7 @@ fn styles_and_letters_that_no_font_has_are_told() {
         assert!(told.contains(&message), "{told}");
     }
     assert_eq!(told("font-family='sans-serif'", "ab"), "");
-    let message = "no font has the letters 中 (U+4E2D), 文 (U+6587)";
+    let message = "there is no glyph for 中 (U+4E2D), 文 (U+6587)";
     let missing = told("font-family='sans-serif'", "a 中文 b");
     assert!(missing.contains(message), "{missing}");
 
@@ -274,7 +274,7 @@ fn styles_and_letters_that_no_font_has_are_told() {
             "geometry": {"type": "Point", "coordinates": [0, 0]}}"#,
     );
     let told = folder.must("draw a.json -o a.png --label name --size 99").err;
-    assert!(told.contains("no font has the letters 中 (U+4E2D)"), "{told}");
+    assert!(told.contains("there is no glyph for 中 (U+4E2D)"), "{told}");
 }
 
 #[test]

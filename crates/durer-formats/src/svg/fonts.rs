@@ -200,7 +200,7 @@ pub(super) fn missing_letters(tree: &usvg::Tree) -> Option<String> {
     no_glyphs(missing.into_iter().filter(|c| !c.is_control() && !c.is_whitespace()))
 }
 
-/// The warning that there are no glyphs for some letters, if there are any.
+/// The warning that there are no glyphs for some letters, if there are such letters.
 pub fn no_glyphs(letters: impl Iterator<Item = char>) -> Option<String> {
     let letters: Vec<char> = letters.collect();
     let named = letters.iter().take(NAMED).map(|c| format!("{c} (U+{:04X})", u32::from(*c)));
@@ -209,7 +209,7 @@ pub fn no_glyphs(letters: impl Iterator<Item = char>) -> Option<String> {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let message = format!("no font has the letters {named}{rest}; they are left blank or boxes");
+    let message = format!("there is no glyph for {named}{rest}: left blank, or a box");
     (!letters.is_empty()).then_some(message)
 }
 
