@@ -11,6 +11,7 @@ use durer::math::DVec2;
 use durer::raster::seed_fill::{self, SeedFill, boundary_fill, flood_fill};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
+use durer_formats::image::Orientation;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -38,7 +39,7 @@ pub struct FillArgs {
     /// A .png file, or `-` for standard output. A file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// A pixel to start from, counted from 0 at the upper left; may be given several times
+    /// A pixel to start from, counted from 0 at the upper left of the picture as viewers show it; may be given several times
     ///
     /// The fills are done one after the other, each on what the one before has left.
     #[arg(long, value_name = "X,Y", required = true, allow_hyphen_values = true, value_parser = values::point)]
@@ -98,6 +99,7 @@ struct Report {
     width: u32,
     height: u32,
     fills: Vec<Fill>,
+    warnings: Vec<String>,
     fill_seconds: f64,
     total_seconds: f64,
     peak_memory_bytes: Option<u64>,
@@ -128,7 +130,9 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let name = display_name(&args.image);
     messages.progress.stage(|| format!("reading {name}"));
-    let mut pixels = read(args, &name)?;
+    let mut warnings = Vec::new();
+    let mut pixels = read(args, &name, &mut warnings)?;
+    warnings.iter().for_each(|warning| messages.warning(&name, warning));
     messages.progress.stage(|| format!("filling {name}"));
     let filling = Instant::now();
     let mut fills = Vec::new();
@@ -154,18 +158,30 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
         width: pixels.width(),
         height: pixels.height(),
         fills,
+        warnings,
         fill_seconds,
         total_seconds: start.elapsed().as_secs_f64(),
         peak_memory_bytes: report::peak_memory(),
     })
 }
 
-fn read(args: &FillArgs, name: &str) -> Result<Pixels<[u8; 4]>, Failure> {
+/// The picture as viewers show it.
+fn read(
+    args: &FillArgs,
+    name: &str,
+    warnings: &mut Vec<String>,
+) -> Result<Pixels<[u8; 4]>, Failure> {
     let fail = |what: String| Failure::Data(format!("{name}: {what}"));
     let bytes = input::bytes(&args.image, args.max_bytes)?;
     let limits =
         Limits { decoded_bytes: args.max_bytes, image_side: u16::MAX.into(), ..Limits::default() };
     let image = image::decode(&bytes, name, &limits).map_err(|e| fail(e.to_string()))?;
+    let bits = image::bits_per_sample(&bytes);
+    if bits > 8 {
+        warnings
+            .push(format!("its {bits} bits per channel are rounded to 8, which the result has"));
+    }
+    let image = Orientation::of(&bytes).turned(image);
     Pixels::from_data(image.width, image.height, image.data).map_err(|e| fail(e.to_string()))
 }
 

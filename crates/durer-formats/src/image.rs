@@ -3,6 +3,10 @@
 //! What a file is, is told by its first bytes. Sizes are checked before anything is allocated, also
 //! against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
 
+mod orientation;
+
+pub use orientation::Orientation;
+
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
 use std::io::Cursor;
@@ -24,7 +28,7 @@ const JPEG_PIXELS_PER_BYTE: u64 = 8 * 64;
 ///
 /// Palettes, greys, CMYK (inverted, as Adobe writes it) and transparency become RGBA with straight
 /// alpha; 16-bit samples are rounded to 8. Of an animation the first picture is taken. Colour
-/// profiles are not applied. `name` names the picture in the result and in messages.
+/// profiles are not applied, nor is the [`Orientation`]. `name` names the picture in the result and in messages.
 ///
 /// # Errors
 /// [`Error::Limit`] where a side is above `limits.image_side` or the pixels above
@@ -45,6 +49,13 @@ pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
         return Err(broken(name, "is neither PNG nor JPEG"));
     };
     Ok(Image { name: name.to_owned(), width, height, data })
+}
+
+/// How many bits each sample of a PNG has, at least 8; JPEG files have 8 always.
+pub fn bits_per_sample(bytes: &[u8]) -> u8 {
+    // After the signature: the length and the name of the first chunk, width and height.
+    let depth = bytes.get(24).filter(|_| bytes.starts_with(PNG));
+    depth.map_or(8, |depth| (*depth).max(8))
 }
 
 /// The name of a picture format that is known but not read.
@@ -207,6 +218,10 @@ mod tests {
         // 0x00ff rounds to 1 and its high byte is 0.
         let deep = decoded(&png_row(2, Grayscale, Sixteen, &[0x80, 0x7f, 0x00, 0xff]));
         assert_eq!(deep, [[128, 128, 128, 255], [1, 1, 1, 255]]);
+        let bits = |depth| {
+            bits_per_sample(&png_row(if depth == One { 16 } else { 1 }, Grayscale, depth, &[0; 2]))
+        };
+        assert_eq!((bits(Sixteen), bits(One)), (16, 8));
     }
 
     /// A baseline JPEG of one 8 × 8 block per component, all samples of a component alike: its two

@@ -2,6 +2,7 @@
 
 use crate::medians;
 use crate::scenes::{self, Scene};
+use cpu_time::ProcessTime;
 use durer::raster::coverage::{FillRule, Overlap};
 use durer::raster::paint::{Canvas, Options, Paint};
 use durer::target::Pixels;
@@ -44,14 +45,32 @@ fn one_thread() -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap()
 }
 
-/// Durer's fill alone, so often, for a profile.
+/// Durer's fill alone, so often, for a profile or beside another build: the median and the least of the times, and a
+/// number that is the same for the same pixels.
 pub fn alone(filter: &str, times: usize, anti_alias: bool) {
     let one = one_thread();
     for scene in all().iter().map(|make| make()).filter(|s| s.name.contains(filter)) {
         let mut target = Pixels::new(scene.size, scene.size, [255; 4]);
-        let mut canvas = canvas(&scene, Overlap::Exact, anti_alias);
-        for _ in 0..times {
-            one.install(|| durer(&scene, &mut canvas, &mut target));
+        for overlap in [Overlap::Exact, Overlap::Accumulated] {
+            let mut canvas = canvas(&scene, overlap, anti_alias);
+            let mut run = || {
+                let start = ProcessTime::now();
+                one.install(|| durer(&scene, &mut canvas, &mut target));
+                start.elapsed().as_secs_f64() * 1e3
+            };
+            let mut all: Vec<f64> = (0..times).map(|_| run()).collect();
+            all.sort_by(f64::total_cmp);
+            let bytes = target.data().as_flattened().iter();
+            // FNV-1a.
+            let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
+                (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3)
+            });
+            println!(
+                "{} {overlap:?}: {:.3} ({:.3}) ms, {hash:016x}",
+                scene.name,
+                all[times / 2],
+                all[0]
+            );
         }
     }
 }
@@ -145,7 +164,7 @@ pub fn skia(
     }
 }
 
-pub fn anti_aliased(filter: &str) {
+pub fn anti_aliased(filter: &str, rounds: usize) {
     println!(
         "| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads, by the clock |"
     );
@@ -166,7 +185,7 @@ pub fn anti_aliased(filter: &str) {
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
         let slow = scene.name.starts_with("spikes");
-        let rounds = if slow { 3 } else { 9 };
+        let rounds = if slow { 3 } else { rounds };
         let mut walls = [Vec::new(), Vec::new()];
         let [wall_one, wall_two] = &mut walls;
         let m = medians(
@@ -241,7 +260,7 @@ pub fn anti_aliased(filter: &str) {
 }
 
 /// Fills by pixels' centres. vello_cpu decides by half-covered pixels, the others by centres; differences are counted.
-pub fn aliased(filter: &str) {
+pub fn aliased(filter: &str, rounds: usize) {
     println!(
         "| aliased, ms | durer | vello_cpu | tiny-skia | best / durer | pixels unlike tiny-skia's |"
     );
@@ -259,7 +278,7 @@ pub fn aliased(filter: &str) {
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();
         let slow = scene.name.starts_with("spikes");
-        let rounds = if slow { 3 } else { 9 };
+        let rounds = if slow { 3 } else { rounds };
         let m = medians(
             rounds,
             &mut [

@@ -30,16 +30,17 @@ pub fn medians(rounds: usize, contestants: &mut [(&str, Box<dyn FnMut() + '_>)])
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let filter = args.get(2).cloned().unwrap_or_default();
+    let times = |default| args.get(3).and_then(|a| a.parse().ok()).unwrap_or(default);
     match args.get(1).map(String::as_str) {
-        Some("fill") => fills::anti_aliased(&filter),
-        Some("aliased") => fills::aliased(&filter),
-        Some("profile") => fills::alone(&filter, 20, true),
-        Some("profile-aliased") => fills::alone(&filter, 20, false),
+        Some("fill") => fills::anti_aliased(&filter, times(9)),
+        Some("aliased") => fills::aliased(&filter, times(9)),
+        Some("profile") => fills::alone(&filter, times(20), true),
+        Some("profile-aliased") => fills::alone(&filter, times(20), false),
         Some("lines") => lines::aliased(),
         Some("hairlines") => lines::hairlines(),
         Some("flood") => lines::floods(),
         _ => eprintln!(
-            "usage: peers-raster fill [scene] | aliased [scene] | profile [scene] | profile-aliased [scene] | lines | hairlines | flood"
+            "usage: peers-raster fill|aliased|profile|profile-aliased [scene [times]] | lines | hairlines | flood"
         ),
     }
 }

@@ -14,6 +14,7 @@ use durer::view::label::Placer;
 use durer::view::window::WindowToViewport;
 use durer_formats::geo::{Geometry, Points};
 use durer_formats::svg::Fonts;
+use std::collections::BTreeSet;
 
 /// Labels are wider than high: an area counts as if it were narrower by this when a place is sought.
 const WIDTH: f64 = 2.0;
@@ -134,36 +135,49 @@ impl Parts<'_> {
     }
 }
 
-/// Draws as many labels as find room; gives for each layer how many do, and how many do not.
+/// What became of labels.
+#[derive(Debug, Default)]
+pub struct Drawn {
+    /// For each layer how many found room, and how many did not.
+    pub counts: Vec<(u64, u64)>,
+    /// Letters that the fonts of their labels do not have.
+    pub missing: BTreeSet<char>,
+}
+
+/// Draws as many labels as find room, each in the font that has most of its letters, the first of those.
 pub fn draw(
     canvas: &mut Canvas,
     seen: &Rect,
     mut labels: Vec<Label>,
     styles: &[&Style],
     fonts: &Fonts,
-) -> Result<Vec<(u64, u64)>, Failure> {
+) -> Result<Drawn, Failure> {
+    let opened = fonts.iter().map(|(bytes, index)| Font::new(bytes, index));
+    let fonts = opened.collect::<durer::Result<Vec<_>>>();
+    let fonts = fonts.map_err(|e| Failure::Data(e.to_string()))?;
     let no_font = || Failure::Data("there is no font for labels".to_owned());
-    let (bytes, index) = fonts.find(None).ok_or_else(no_font)?;
-    let font = Font::new(bytes, index).map_err(|e| Failure::Data(e.to_string()))?;
     // The sort is stable: what is equal stays in the order of the file.
     labels.sort_by(|a, b| b.layer.cmp(&a.layer).then(b.anchor.size.total_cmp(&a.anchor.size)));
     let mut placer = Placer::new(*seen);
-    let mut counts = vec![(0, 0); styles.len()];
+    let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
     for label in &labels {
         let style = styles[label.layer];
+        let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
+        let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
         let line = font.line(&label.text, style.label_size);
         let places = places(&label.anchor, &line, style);
         let boxes = places.iter().filter_map(|corner| taken(*corner, &line, style));
         match placer.place(boxes) {
             Some(number) => {
-                counts[label.layer].0 += 1;
+                drawn.counts[label.layer].0 += 1;
+                drawn.missing.extend(label.text.chars().filter(|c| !font.has(*c)));
                 write(canvas, &line, places[number], style)
                     .map_err(|e| Failure::Usage(e.to_string()))?;
             }
-            None => counts[label.layer].1 += 1,
+            None => drawn.counts[label.layer].1 += 1,
         }
     }
-    Ok(counts)
+    Ok(drawn)
 }
 
 /// Starts of the base line, the best first.

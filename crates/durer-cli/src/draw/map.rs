@@ -14,14 +14,15 @@ use durer::raster::line::wide::{Cap, Join, Stroke};
 use durer::raster::paint::{Canvas, Paint};
 use durer::view::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
 use durer_formats::geo::{Feature, Geometry, Points, Reader};
+use durer_formats::svg::no_glyphs;
 use std::time::Instant;
 
 /// Room around what is shown, as a share of it, where no window is given.
 const MARGIN: f64 = 0.02;
 
-/// Points of a line that are nearer to the one before in pixels are left out: the coverage of no pixel
-/// changes by more than 1/255 for it.
-const NEAR: f64 = 1.0 / 256.0;
+/// Points of a line that are nearer to the one before in pixels are left out: an edge through a pixel changes its
+/// coverage by less than 0.1/255 for it.
+const NEAR: f64 = 1.0 / 4096.0;
 
 /// So many names of properties are listed where a label's is not there.
 const LISTED: usize = 12;
@@ -80,11 +81,15 @@ impl Job<'_> {
             self.messages.progress.stage(|| "placing labels".to_owned());
             let fonts = fonts::load(&self.args.fonts)?;
             let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
-            let placed = super::label::draw(&mut map.canvas, &map.seen, labels, &styles, &fonts)?;
-            for (layer, (drawn, left_out)) in self.report.layers.iter_mut().zip(placed) {
+            let drawn = super::label::draw(&mut map.canvas, &map.seen, labels, &styles, &fonts)?;
+            for (layer, placed) in self.report.layers.iter_mut().zip(drawn.counts) {
                 if let Some(counts) = &mut layer.map {
-                    (counts.labels, counts.labels_left_out) = (drawn, left_out);
+                    (counts.labels, counts.labels_left_out) = placed;
                 }
+            }
+            if let Some(message) = no_glyphs(drawn.missing.into_iter()) {
+                self.messages.warning("labels", &message);
+                self.report.warnings.push(message);
             }
         }
         Ok(map.canvas)

@@ -120,6 +120,32 @@ fn neighbours_of_one_colour_leave_no_seam() {
 }
 
 #[test]
+fn fills_without_borders_are_as_exact_as_others() {
+    // Many corners off every grid, in few pixels.
+    let ring: Vec<String> = (0..=60)
+        .map(|i| {
+            let angle = f64::from(i % 60) * std::f64::consts::TAU / 60.0;
+            let radius = if i % 2 == 0 { 3.03 } else { 2.41 };
+            format!("[{:.6},{:.6}]", 4.0 + radius * angle.cos(), 4.0 + radius * angle.sin())
+        })
+        .collect();
+    let ring = ring.join(",");
+    let folder = Folder::new();
+    folder.write("a.json", format!(r#"{{"type":"Polygon","coordinates":[[{ring}]]}}"#));
+    let path = ring.replace("],[", " L").replace(['[', ']'], "");
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8">
+<rect width="8" height="8" fill="#fff"/><path transform="matrix(1 0 0 -1 0 8)" d="M"##;
+    folder.write("a.svg", format!("{svg}{path}Z\"/></svg>"));
+    folder.must("draw a.json --fill black --stroke none -o a.png --window 0,0,8,8 --size 8x8");
+    folder.must("draw a.svg -o b.png");
+    let (map, drawing) = (picture(&folder, "a.png"), picture(&folder, "b.png"));
+    for (x, y) in (0..64).map(|i| (i % 8, i / 8)) {
+        let (a, b) = (map.pixel(x, y)[0], drawing.pixel(x, y)[0]);
+        assert!(a.abs_diff(b) <= 1, "{a} and {b} at {x}, {y}");
+    }
+}
+
+#[test]
 fn a_map_has_holes_lines_and_markers() {
     let folder = folder();
     let colors = "--fill #00f --stroke #f00 --stroke-width 2 --marker square --marker-size 10";
@@ -213,6 +239,42 @@ fn text_is_set_in_the_font_that_is_there_and_a_missing_one_is_told() {
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
     folder.run("draw plain.svg -o a.png --font plain.svg").fails(1, "no TrueType or OpenType font");
     folder.run("draw plain.svg -o a.png --font nowhere").fails(1, "nowhere");
+}
+
+#[test]
+fn styles_and_letters_that_no_font_has_are_told() {
+    let folder = Folder::new();
+    let told = |style: &str, text: &str| {
+        let svg = format!(
+            r##"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="20">
+<text x="2" y="16" font-size="16" {style}>{text}</text></svg>"##
+        );
+        folder.write("a.svg", svg);
+        folder.must("draw a.svg -o a.png").err
+    };
+    for (style, wanted) in [
+        ("font-weight='bold'", "`DejaVu Sans` bold"),
+        ("font-family='sans-serif' font-style='italic'", "`sans-serif` italic"),
+        ("font-family='serif'", "`serif`"),
+        ("font-family='monospace' font-weight='900'", "`monospace` of weight 900"),
+        ("font-family='Papyrus' font-weight='bold'", "`Papyrus` bold"),
+    ] {
+        let message = format!("font {wanted} is missing; `DejaVu Sans` is used in its place");
+        let told = told(style, "ab");
+        assert!(told.contains(&message), "{told}");
+    }
+    assert_eq!(told("font-family='sans-serif'", "ab"), "");
+    let message = "there is no glyph for 中 (U+4E2D), 文 (U+6587)";
+    let missing = told("font-family='sans-serif'", "a 中文 b");
+    assert!(missing.contains(message), "{missing}");
+
+    folder.write(
+        "a.json",
+        r#"{"type": "Feature", "properties": {"name": "a中"},
+            "geometry": {"type": "Point", "coordinates": [0, 0]}}"#,
+    );
+    let told = folder.must("draw a.json -o a.png --label name --size 99").err;
+    assert!(told.contains("there is no glyph for 中 (U+4E2D)"), "{told}");
 }
 
 #[test]

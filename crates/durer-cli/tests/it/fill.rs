@@ -52,6 +52,32 @@ fn tolerance_boundary_and_several_seeds() {
 }
 
 #[test]
+fn pictures_stand_as_viewers_show_them_and_lost_bits_are_told() {
+    let folder = Folder::new();
+    let png = |depth: png::BitDepth, exif: Option<Vec<u8>>, data: &[u8]| {
+        let mut info = png::Info::with_size(3, 1);
+        (info.color_type, info.bit_depth) = (png::ColorType::Grayscale, depth);
+        info.exif_metadata = exif.map(Into::into);
+        let mut bytes = Vec::new();
+        let mut writer = png::Encoder::with_info(&mut bytes, info).unwrap().write_header().unwrap();
+        writer.write_image_data(data).unwrap();
+        writer.finish().unwrap();
+        bytes
+    };
+    // One entry: the orientation, "to be turned by a quarter to the right".
+    let exif = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0".to_vec();
+    folder.write("a.png", png(png::BitDepth::Eight, Some(exif), &[10, 20, 30]));
+    let told = folder.must("fill a.png -o b.png --at 0,2 --color red").err;
+    let turned = Picture::decode(&folder.read("b.png"));
+    assert_eq!((turned.width, turned.height), (1, 3));
+    assert_eq!([0, 1, 2].map(|y| turned.pixel(0, y)[0]), [10, 20, 255]);
+    assert_eq!(told, "");
+    folder.write("c.png", png(png::BitDepth::Sixteen, None, &[0, 9, 1, 0, 2, 0]));
+    let told = folder.must("fill c.png -o d.png --at 0,0 --color red").err;
+    assert!(told.contains("its 16 bits per channel are rounded to 8"), "{told}");
+}
+
+#[test]
 fn wrong_use_is_told() {
     let folder = folder();
     folder.write("no.png", "not a picture");

@@ -7,6 +7,7 @@ mod geojson;
 mod hpgl;
 mod number;
 mod pdf;
+mod pdf_text;
 mod svg;
 
 pub use dxf::write as write_dxf;

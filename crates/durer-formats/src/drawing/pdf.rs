@@ -1,6 +1,7 @@
 //! Sheets as PDF: one page of vectors, a layer ("optional content group") for each of the sheet's.
 
 use super::number::{push, short};
+use super::pdf_text::{self, Words};
 use crate::Result;
 use durer::math::DVec2;
 use durer::paper::{dashes, text_strokes};
@@ -28,7 +29,7 @@ const FIRST_LAYER: i32 = 6;
 
 /// Writes a sheet as a PDF 1.5 document of one page of the sheet's size, without dates.
 ///
-/// Text is drawn by the single-stroke font; its words are with it, to be copied and searched.
+/// Text is drawn by the single-stroke font; its words stand beneath it, invisible, to be searched and copied.
 ///
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
@@ -37,7 +38,8 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     let user_unit = (longest / LONGEST).ceil().max(1.0);
     let scale = POINTS / user_unit;
     let mut alphas = BTreeSet::new();
-    let content = content(sheet, scale, &mut alphas);
+    let mut words = Words::default();
+    let content = content(sheet, scale, &mut alphas, &mut words);
     let content = miniz_oxide::deflate::compress_to_vec_zlib(content.as_bytes(), LEVEL);
     let mut pdf = Pdf::new();
     pdf.set_version(1, 5);
@@ -45,7 +47,9 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
         (0i32..).take(sheet.layers.len()).map(|i| Ref::new(FIRST_LAYER + i)).collect();
     catalog(&mut pdf, &layers);
     pdf.pages(Ref::new(PAGES)).kids([Ref::new(PAGE)]).count(1);
-    page(&mut pdf, sheet, scale, user_unit, &layers, &alphas);
+    let after_layers = |i: i32| Ref::new(FIRST_LAYER + layers.len() as i32 + i);
+    let font = words.any.then(|| after_layers(0));
+    page(&mut pdf, sheet, scale, user_unit, &Used { layers: &layers, alphas: &alphas, font });
     pdf.stream(Ref::new(CONTENT), &content).filter(Filter::FlateDecode);
     let mut info = pdf.document_info(Ref::new(INFO));
     if !sheet.title.is_empty() {
@@ -58,6 +62,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
         group.pair(Name(b"Type"), Name(b"OCG"));
         group.pair(Name(b"Name"), TextStr(&layer.name));
     }
+    words.font(&mut pdf, after_layers(0), after_layers(1));
     out.write_all(&pdf.finish())?;
     Ok(())
 }
@@ -76,14 +81,14 @@ fn catalog(pdf: &mut Pdf, layers: &[Ref]) {
     default.insert(Name(b"Order")).array().items(layers.iter().rev().copied());
 }
 
-fn page(
-    pdf: &mut Pdf,
-    sheet: &Sheet,
-    scale: f64,
-    user_unit: f64,
-    layers: &[Ref],
-    alphas: &BTreeSet<u8>,
-) {
+/// What the page's operators name.
+struct Used<'a> {
+    layers: &'a [Ref],
+    alphas: &'a BTreeSet<u8>,
+    font: Option<Ref>,
+}
+
+fn page(pdf: &mut Pdf, sheet: &Sheet, scale: f64, user_unit: f64, used: &Used<'_>) {
     let [width, height] = [sheet.size.x, sheet.size.y].map(|side| (side * scale) as f32);
     let mut page = pdf.page(Ref::new(PAGE));
     page.media_box(Rect::new(0.0, 0.0, width, height)).parent(Ref::new(PAGES));
@@ -93,12 +98,15 @@ fn page(
     }
     let mut resources = page.resources();
     let mut properties = resources.insert(Name(b"Properties")).dict();
-    for (i, id) in layers.iter().enumerate() {
+    for (i, id) in used.layers.iter().enumerate() {
         properties.pair(Name(format!("L{i}").as_bytes()), *id);
     }
     properties.finish();
+    if let Some(font) = used.font {
+        resources.fonts().pair(Name(pdf_text::FONT), font);
+    }
     let mut states = resources.ext_g_states();
-    for alpha in alphas {
+    for alpha in used.alphas {
         let mut state = states.insert(Name(format!("A{alpha}").as_bytes())).dict();
         let value = f32::from(*alpha) / 255.0;
         state.pair(Name(b"CA"), value).pair(Name(b"ca"), value);
@@ -116,7 +124,7 @@ struct State {
 }
 
 /// The page's operators; collects the opacities used.
-fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>) -> String {
+fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>, words: &mut Words) -> String {
     let mut text = String::new();
     // Millimetres, y down.
     let [k, height] = [scale, sheet.size.y * scale].map(|v| short(v, 6));
@@ -130,7 +138,7 @@ fn content(sheet: &Sheet, scale: f64, alphas: &mut BTreeSet<u8>) -> String {
     for (i, layer) in sheet.layers.iter().enumerate() {
         text += &format!("/OC /L{i} BDC\n");
         for mark in &layer.marks {
-            put(&mut text, &mut state, sheet, mark, alphas);
+            put(&mut text, &mut state, sheet, mark, (&mut *alphas, &mut *words));
         }
         text += "EMC\n";
     }
@@ -142,7 +150,7 @@ fn put(
     state: &mut State,
     sheet: &Sheet,
     mark: &Mark,
-    alphas: &mut BTreeSet<u8>,
+    (alphas, found): (&mut BTreeSet<u8>, &mut Words),
 ) {
     match mark {
         Mark::Fill { rings, color } => {
@@ -162,17 +170,12 @@ fn put(
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, alphas);
             set_dashes(text, state, None);
-            *text += "/Span <</ActualText <FEFF";
-            for unit in words.encode_utf16() {
-                *text += &format!("{unit:04X}");
-            }
-            *text += ">>> BDC\n";
+            found.write(text, *at, words, *height, *anchor);
             let strokes = text_strokes(*at, words, *height, *anchor);
             strokes.iter().for_each(|stroke| path(text, stroke, false));
             if !strokes.is_empty() {
-                *text += "S ";
+                *text += "S\n";
             }
-            *text += "EMC\n";
         }
     }
 }

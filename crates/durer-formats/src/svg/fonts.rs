@@ -1,6 +1,7 @@
 //! The fonts that text is set in.
 
 use super::Told;
+use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 use usvg::fontdb::{self, Database, Family, Query, Source};
 use usvg::{FontFamily, FontResolver, FontStretch, FontStyle};
@@ -86,11 +87,13 @@ impl Fonts {
                 database.face(database.query(&query)?)?
             }
         };
-        match &face.source {
-            Source::Binary(data) => Some(((**data).as_ref(), face.index)),
-            #[allow(unreachable_patterns)]
-            _ => None,
-        }
+        bytes(face)
+    }
+
+    /// The bytes of all fonts in their order, each with its number in its file.
+    pub fn iter(&self) -> impl Iterator<Item = (&[u8], u32)> {
+        let faces = self.database.get().into_iter().flat_map(|database| database.faces());
+        faces.filter_map(bytes)
     }
 
     /// The family of text that names none.
@@ -104,23 +107,110 @@ impl Fonts {
     }
 }
 
-/// Chooses fonts by family and style; tells where a family that was asked for is not there.
+/// The bytes of a font and its number in its file.
+fn bytes(face: &fontdb::FaceInfo) -> Option<(&[u8], u32)> {
+    match &face.source {
+        Source::Binary(data) => Some(((**data).as_ref(), face.index)),
+        #[allow(unreachable_patterns)]
+        _ => None,
+    }
+}
+
+/// Chooses fonts by family and style; tells where what was asked for is not there.
 pub(super) fn resolver(told: &Told) -> FontResolver<'_> {
     FontResolver {
         select_font: Box::new(move |font, database| {
             let id = select(font, database);
-            let wanted = font.families().first();
-            if let (Some(FontFamily::Named(wanted)), Some(id)) = (wanted, id)
-                && let Some(face) = database.face(id)
-                && !face.families.iter().any(|f| f.0.eq_ignore_ascii_case(wanted))
-            {
-                let name = face.families.first().map_or("another", |f| f.0.as_str());
-                told.tell(format!("font `{wanted}` is missing; `{name}` is used in its place"));
+            if let Some(face) = id.and_then(|id| database.face(id)) {
+                replaced(font, face).into_iter().for_each(|message| told.tell(message));
             }
             id
         }),
         select_fallback: FontResolver::default_fallback_selector(),
     }
+}
+
+/// Weights that differ by less look alike.
+const SAME_WEIGHT: u16 = 200;
+
+/// What is to be told where a face is not what was asked for.
+fn replaced(font: &usvg::Font, face: &fontdb::FaceInfo) -> Option<String> {
+    let is_one_of = |names: &[&str]| face.families.iter().any(|f| names.contains(&f.0.as_str()));
+    let (wanted, same_family) = match font.families().first() {
+        None => return None,
+        Some(FontFamily::Named(name)) => {
+            (name.as_str(), face.families.iter().any(|f| f.0.eq_ignore_ascii_case(name)))
+        }
+        Some(FontFamily::Serif) => ("serif", is_one_of(&SERIF)),
+        Some(FontFamily::SansSerif) => ("sans-serif", true),
+        Some(FontFamily::Cursive) => ("cursive", false),
+        Some(FontFamily::Fantasy) => ("fantasy", false),
+        Some(FontFamily::Monospace) => ("monospace", face.monospaced),
+    };
+    let slanted = (font.style() != FontStyle::Normal, face.style != fontdb::Style::Normal);
+    let same_style = font.weight().abs_diff(face.weight.0) < SAME_WEIGHT
+        && slanted.0 == slanted.1
+        && stretch(font) == face.stretch;
+    if same_family && same_style {
+        return None;
+    }
+    let found = face.families.first().map_or("another", |f| f.0.as_str());
+    let wanted = described(wanted, font.weight(), slanted.0, stretch(font));
+    let found = described(found, face.weight.0, slanted.1, face.stretch);
+    Some(format!("font {wanted} is missing; {found} is used in its place"))
+}
+
+/// A family with what is not usual in its style.
+fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch) -> String {
+    let weight = match weight {
+        300..500 => String::new(),
+        700 => " bold".to_owned(),
+        _ => format!(" of weight {weight}"),
+    };
+    let slanted = if slanted { " italic" } else { "" };
+    let number = stretch.to_number();
+    let width = match number.cmp(&fontdb::Stretch::Normal.to_number()) {
+        std::cmp::Ordering::Less => " condensed",
+        std::cmp::Ordering::Equal => "",
+        std::cmp::Ordering::Greater => " expanded",
+    };
+    format!("`{family}`{weight}{slanted}{width}")
+}
+
+/// Letters that are named in a warning, at most.
+const NAMED: usize = 12;
+
+/// What is to be told of letters that no font has.
+pub(super) fn missing_letters(tree: &usvg::Tree) -> Option<String> {
+    let mut missing = BTreeSet::new();
+    let mut groups = vec![tree.root()];
+    while let Some(group) = groups.pop() {
+        for node in group.children() {
+            match node {
+                usvg::Node::Group(group) => groups.push(group),
+                usvg::Node::Text(text) => {
+                    let glyphs = text.layouted().iter().flat_map(|span| &span.positioned_glyphs);
+                    let without = glyphs.filter(|glyph| glyph.id.0 == 0);
+                    missing.extend(without.flat_map(|glyph| glyph.text.chars()));
+                }
+                _ => {}
+            }
+        }
+    }
+    no_glyphs(missing.into_iter().filter(|c| !c.is_control() && !c.is_whitespace()))
+}
+
+/// The warning that there are no glyphs for some letters, if there are such letters.
+pub fn no_glyphs(letters: impl Iterator<Item = char>) -> Option<String> {
+    let letters: Vec<char> = letters.collect();
+    let named = letters.iter().take(NAMED).map(|c| format!("{c} (U+{:04X})", u32::from(*c)));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let rest = match letters.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let message = format!("there is no glyph for {named}{rest}: left blank, or a box");
+    (!letters.is_empty()).then_some(message)
 }
 
 fn select(font: &usvg::Font, database: &Database) -> Option<fontdb::ID> {
@@ -137,7 +227,17 @@ fn select(font: &usvg::Font, database: &Database) -> Option<fontdb::ID> {
         })
         .collect();
     families.push(Family::SansSerif);
-    let stretch = match font.stretch() {
+    let style = match font.style() {
+        FontStyle::Normal => fontdb::Style::Normal,
+        FontStyle::Italic => fontdb::Style::Italic,
+        FontStyle::Oblique => fontdb::Style::Oblique,
+    };
+    let weight = fontdb::Weight(font.weight());
+    database.query(&Query { families: &families, weight, stretch: stretch(font), style })
+}
+
+fn stretch(font: &usvg::Font) -> fontdb::Stretch {
+    match font.stretch() {
         FontStretch::UltraCondensed => fontdb::Stretch::UltraCondensed,
         FontStretch::ExtraCondensed => fontdb::Stretch::ExtraCondensed,
         FontStretch::Condensed => fontdb::Stretch::Condensed,
@@ -147,12 +247,5 @@ fn select(font: &usvg::Font, database: &Database) -> Option<fontdb::ID> {
         FontStretch::Expanded => fontdb::Stretch::Expanded,
         FontStretch::ExtraExpanded => fontdb::Stretch::ExtraExpanded,
         FontStretch::UltraExpanded => fontdb::Stretch::UltraExpanded,
-    };
-    let style = match font.style() {
-        FontStyle::Normal => fontdb::Style::Normal,
-        FontStyle::Italic => fontdb::Style::Italic,
-        FontStyle::Oblique => fontdb::Style::Oblique,
-    };
-    let weight = fontdb::Weight(font.weight());
-    database.query(&Query { families: &families, weight, stretch, style })
+    }
 }

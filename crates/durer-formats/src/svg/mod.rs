@@ -28,7 +28,7 @@ mod fonts;
 mod image;
 mod paint;
 
-pub use fonts::Fonts;
+pub use fonts::{Fonts, no_glyphs};
 
 use crate::gltf::uri::relative_path;
 use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
@@ -119,6 +119,7 @@ impl Drawing {
             warnings.push(warning("text is left out: there are no fonts"));
         }
         warnings.extend(told.into_iter().map(warning));
+        warnings.extend(fonts::missing_letters(&tree).map(warning));
         Ok(Self { tree, limits: options.limits, warnings })
     }
 

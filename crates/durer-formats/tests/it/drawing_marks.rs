@@ -129,6 +129,30 @@ fn content(pdf: &[u8]) -> String {
 }
 
 #[test]
+fn words_of_a_pdf_stand_beneath_their_strokes() {
+    let pdf = written(|out| {
+        write_pdf(out, &sheet(vec![text("A (b)", Anchor::End), text("Ωßш", Anchor::Start)]))
+    });
+    let content = content(&pdf);
+    // Invisible, once; letters of Latin-1 by their own codes, others by the first free ones.
+    assert_eq!(content.matches("3 Tr\n").count(), 1, "{content}");
+    assert!(content.contains("<4120286229> Tj ET"), "{content}");
+    assert!(content.contains(" 50 40 Tm <80DF81> Tj ET"), "{content}");
+    // Capitals of the font are 0.562 of its size high.
+    assert!(content.contains("BT /F 8.897 Tf"), "{content}");
+    // It ends where the strokes do: five letters of 0.6 of the size, stretched.
+    let line = content.lines().find(|line| line.contains("<4120")).expect("the words");
+    let numbers: Vec<f64> = line.split(' ').filter_map(|w| w.parse().ok()).collect();
+    let [size, stretch, _, _, _, _, x, y] = numbers[..] else { panic!("{line}") };
+    let end = x + 5.0 * 0.6 * size * stretch / 100.0;
+    assert!((end - 50.0).abs() < 0.01 && y == 40.0, "{line}");
+    let file = String::from_utf8_lossy(&pdf);
+    assert!(file.contains("/BaseFont /Courier") && file.contains("<80> <03A9>"), "{file}");
+    let without = written(|out| write_pdf(out, &sheet(Vec::new())));
+    assert!(!String::from_utf8_lossy(&without).contains("/Font"));
+}
+
+#[test]
 fn pdf_changes_its_state_only_where_it_must() {
     let marks = vec![
         stroke(&[(1.0, 2.0), (2.0, 2.0), (2.0, 3.0)], true, 1),

@@ -49,6 +49,11 @@ impl<'a> Font<'a> {
         Ok(Self { font })
     }
 
+    /// Whether the font has a glyph for a character, or the character needs none.
+    pub fn has(&self, character: char) -> bool {
+        character.is_control() || self.font.charmap().map(character).is_some()
+    }
+
     /// Lays out one line of text; `size` is the height of the em square in pixels. Characters that the
     /// font does not have appear as its missing-glyph box; control characters are left out.
     pub fn line(&self, text: &str, size: f64) -> TextLine {

@@ -375,11 +375,6 @@ fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
 /// [single-stroke font](stroke_font).
 pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<Vec<DVec2>> {
     let line = stroke_font::line(text, height);
-    let back = match anchor {
-        Anchor::Start => 0.0,
-        Anchor::Middle => 0.5,
-        Anchor::End => 1.0,
-    };
-    let start = at - DVec2::new(line.advance * back, 0.0);
+    let start = at - DVec2::new(line.advance * anchor.share(), 0.0);
     line.strokes.into_iter().map(|s| s.into_iter().map(|p| p + start).collect()).collect()
 }

@@ -5,6 +5,9 @@
 
 use std::ops::Range;
 
+use fearless_simd::prelude::*;
+use fearless_simd::{i32x4, i32x8};
+
 use crate::curve::Contours;
 use crate::parallel;
 
@@ -76,6 +79,18 @@ impl<E> Edges<E> {
         });
         few.into_iter().chain(many)
     }
+}
+
+/// Each of eight numbers with all those before it, of which the sum is `before`.
+///
+/// Halves are summed for themselves first: to move numbers from one to the other takes longest.
+#[inline(always)]
+pub(crate) fn running_sums<S: Simd>(simd: S, v: i32x8<S>, before: i32x8<S>) -> i32x8<S> {
+    let zero = i32x8::splat(simd, 0);
+    let v = v + zero.slide_within_blocks::<3>(v);
+    let v = v + zero.slide_within_blocks::<2>(v);
+    let first_half = i32x4::splat(simd, v[3]);
+    v + before + i32x4::splat(simd, 0).combine(first_half)
 }
 
 /// What `make` gives for chunks of the contours' points, so many at once, in their order.

@@ -162,6 +162,17 @@ pub enum Anchor {
     End,
 }
 
+impl Anchor {
+    /// Which share of its length the text has before the point.
+    pub fn share(self) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5,
+            Self::End => 1.0,
+        }
+    }
+}
+
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {

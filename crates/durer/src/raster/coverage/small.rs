@@ -11,7 +11,7 @@ use super::FillRule;
 use super::edge::{BITS, Edge, ONE, Steps};
 use super::ramp::{Ramp, area, eight_deltas};
 use super::sweep::{Sink, lanes};
-use crate::raster::bands::BAND_ROWS;
+use crate::raster::bands::{BAND_ROWS, running_sums};
 
 /// Pixels between the first and the last one of a row, at most.
 pub(super) const WIDEST: i32 = 31;
@@ -105,9 +105,7 @@ fn sweep<S: Simd, K: Sink<S>>(
     for cells in now {
         let v = i32x8::from_slice(simd, cells);
         zero.store_slice(cells);
-        let v = v + zero.slide::<7>(v);
-        let v = v + zero.slide::<6>(v);
-        let v = v + zero.slide::<4>(v) + carry;
+        let v = running_sums(simd, v, carry);
         carry = i32x8::splat(simd, v[7]);
         sink.eight(simd, row, x, lanes(simd, v, FillRule::NonZero));
         x += 8;

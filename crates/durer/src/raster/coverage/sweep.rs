@@ -10,6 +10,7 @@ use super::FillRule;
 use super::cells::{Cells, Marks};
 use super::edge::ONE;
 use super::resolve::Resolver;
+use crate::raster::bands::running_sums;
 
 /// What is done with the coverage of a row, from left to right.
 pub(crate) trait Sink<S: Simd> {
@@ -96,12 +97,9 @@ pub(crate) fn sweep<S: Simd, K: Sink<S>>(
                 }
                 done = x + 8;
                 let Some(cells) = cells.as_chunks_mut::<8>().0.get_mut(group) else { continue };
-                // Sum of eight by three shifted additions.
                 let v = i32x8::from_slice(simd, cells);
                 zero.store_slice(cells);
-                let v = v + zero.slide::<7>(v);
-                let v = v + zero.slide::<6>(v);
-                let v = v + zero.slide::<4>(v) + i32x8::splat(simd, carry);
+                let v = running_sums(simd, v, i32x8::splat(simd, carry));
                 carry = v[7];
                 let mut coverage = lanes(simd, v, rule);
                 if let Some(resolver) = &mut resolver

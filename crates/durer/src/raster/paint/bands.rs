@@ -49,15 +49,6 @@ pub(super) fn render<'a, P: Space>(
     target.data_mut().chunks_mut(rows_per_band).enumerate().for_each(|b| paint(&mut painter, b));
 }
 
-/// Sets all pixels.
-fn clear(pixels: &mut [Color], color: Color) {
-    // Setting bytes leaves it to the system how, which for much memory does not fetch it first.
-    match color {
-        [r, g, b, a] if r == g && g == b && b == a => pixels.as_flattened_mut().fill(r),
-        _ => pixels.fill(color),
-    }
-}
-
 /// Lines are fetched so many at a time: they lie far apart in memory, and so are waited for together.
 const AT_ONCE: usize = 16;
 
@@ -112,7 +103,7 @@ impl<'a, P: Space> Painter<'a, P> {
         let mut copy = self.spare.pop().unwrap_or_default();
         let background = self.canvas.background;
         if let Some(color) = background {
-            clear(rows, color);
+            rows.fill(color);
         }
         if let Some(base) = P::in_place(rows) {
             // Nothing painted over opaque pixels makes them less so.

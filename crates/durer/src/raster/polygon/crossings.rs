@@ -12,7 +12,7 @@ use fearless_simd_macros::simd;
 
 use super::{is_inside, snapped_edges};
 use crate::curve::Contours;
-use crate::raster::bands::{BAND_ROWS, CHUNK, Chunk, Edges, FEW_EDGES, by_chunks};
+use crate::raster::bands::{BAND_ROWS, CHUNK, Chunk, Edges, FEW_EDGES, by_chunks, running_sums};
 use crate::raster::coverage::FillRule;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS, first_center};
@@ -302,12 +302,9 @@ impl CrossingFiller {
             let cells = this.cells.get_mut(start + first..=(start + last) | 7).unwrap_or_default();
             let mut carry = zero;
             for (x, cells) in (first..).step_by(8).zip(cells.as_chunks_mut::<8>().0) {
-                // Sum of eight by three shifted additions.
                 let v = i32x8::from_slice(simd, cells);
                 zero.store_slice(cells);
-                let v = v + zero.slide::<7>(v);
-                let v = v + zero.slide::<6>(v);
-                let v = v + zero.slide::<4>(v) + carry;
+                let v = running_sums(simd, v, carry);
                 carry = i32x8::splat(simd, v[7]);
                 let outside = match rule {
                     FillRule::NonZero => v.simd_eq(zero),
