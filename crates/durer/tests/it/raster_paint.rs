@@ -423,6 +423,34 @@ fn a_mask_restricts_what_follows_until_it_is_popped() {
 }
 
 #[test]
+fn a_clip_around_the_whole_picture_changes_nothing_and_ends() {
+    let painted = |clips: &[&Path]| {
+        let mut c = canvas(20);
+        clips.iter().for_each(|clip| c.push_clip(clip, FillRule::EvenOdd));
+        let circle = Path::circle(DVec2::new(9.3, 4.8), 6.1);
+        c.fill(&circle, FillRule::NonZero, &color(200, 30, 9, 255), 0.7);
+        // Each ends alone.
+        clips.iter().for_each(|_| c.pop(1.0));
+        let bar = Path::rectangle(3.5, 0.0, 9.0, 20.0);
+        c.fill(&bar, FillRule::NonZero, &color(3, 90, 200, 255), 1.0);
+        rendered(&c, 20, WHITE).data().to_vec()
+    };
+    let free = painted(&[]);
+    let around = Path::rectangle(0.0, 0.0, 20.0, 20.0);
+    let beyond = Path::rectangle(-5.0, -1.0, 99.0, 99.0);
+    assert_eq!(painted(&[&around]), free);
+    assert_eq!(painted(&[&beyond, &around]), free);
+    // By the even-odd rule two times around is outside; and a little less than all cuts.
+    let mut twice = around.clone();
+    twice.extend(&beyond);
+    let less = Path::rectangle(0.0, 0.5, 20.0, 20.0);
+    for cutting in [twice, less] {
+        let cut = painted(&[&cutting]);
+        assert!(cut != free && painted(&[&beyond, &cutting]) == cut);
+    }
+}
+
+#[test]
 fn a_group_is_clipped_once() {
     let mut c = canvas(4);
     c.push_clip(&Path::rectangle(0.0, 0.0, 1.5, 4.0), FillRule::NonZero);

@@ -41,6 +41,8 @@ impl Item {
 pub(super) enum Open {
     /// A clip path, or a mask that is finished.
     Clip,
+    /// A clip path that holds the whole picture, for which there is no command.
+    Everything,
     Group,
     /// A mask that is still painted.
     Mask,
@@ -50,11 +52,14 @@ impl Open {
     /// What closes it at the end of all commands.
     pub fn closing<'a, P>(&self) -> impl Iterator<Item = Prepared<'a, P>> + use<'a, P> {
         let (first, second) = match self {
-            Self::Clip => (Prepared::PopClip, None),
-            Self::Group => (Prepared::PopGroup { opacity: 255 }, None),
-            Self::Mask => (Prepared::EndMask { kind: MaskKind::Alpha }, Some(Prepared::PopClip)),
+            Self::Clip => (Some(Prepared::PopClip), None),
+            Self::Everything => (None, None),
+            Self::Group => (Some(Prepared::PopGroup { opacity: 255 }), None),
+            Self::Mask => {
+                (Some(Prepared::EndMask { kind: MaskKind::Alpha }), Some(Prepared::PopClip))
+            }
         };
-        std::iter::once(first).chain(second)
+        first.into_iter().chain(second)
     }
 }
 

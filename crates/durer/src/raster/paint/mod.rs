@@ -19,7 +19,7 @@ use super::coverage::{FillRule, Overlap, check_size};
 use super::line::anti_aliased;
 use super::line::wide::{self, Stroke};
 use crate::curve::{Contours, Path, flatten};
-use crate::math::DAffine2;
+use crate::math::{DAffine2, DVec2};
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::{Error, Result};
@@ -241,6 +241,10 @@ impl Canvas {
     /// Restricts what follows to the inside of a path, within the clip paths already in force.
     pub fn push_clip(&mut self, path: &Path, rule: FillRule) {
         let contours = self.flattened(path);
+        if holds_all(&contours, [self.width, self.height].map(f64::from)) {
+            // Fills that nothing is cut off from need no mask.
+            return self.open.push(Open::Everything);
+        }
         let outline = self.outline(&contours);
         self.commands.push(Command::PushClip { outline, rule });
         self.open.push(Open::Clip);
@@ -283,7 +287,7 @@ impl Canvas {
         match self.open.pop() {
             Some(Open::Group) => self.commands.push(Command::PopGroup { opacity }),
             Some(Open::Clip | Open::Mask) => self.commands.push(Command::PopClip),
-            None => {}
+            Some(Open::Everything) | None => {}
         }
     }
 
@@ -331,6 +335,22 @@ impl Canvas {
         let closing = self.open.iter().rev().flat_map(Open::closing);
         self.commands.iter().map(|command| command.prepared(&self.lists)).chain(closing).collect()
     }
+}
+
+/// Whether contours are one upright rectangle that holds a picture of this size.
+fn holds_all(contours: &Contours, [width, height]: [f64; 2]) -> bool {
+    let points = match contours.points() {
+        [points @ .., last] if points.len() == 4 && *last == points[0] => points,
+        points => points,
+    };
+    let &[a, b, c, d] = points else { return false };
+    let upright = (a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y)
+        || (a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x);
+    let (min, max) = (a.min(c), a.max(c));
+    contours.iter().count() == 1
+        && upright
+        && min.cmple(DVec2::ZERO).all()
+        && max.cmpge(DVec2::new(width, height)).all()
 }
 
 #[cfg(test)]
