@@ -177,7 +177,18 @@ fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, V
         decoder.decode_into(pixels.as_flattened_mut()).map_err(wrong)?;
         pixels
     };
+    // The decoder leaves grey what is not there.
+    if !has_end(bytes) {
+        return Err(broken(name, "is cut off: no end of image follows its last scan"));
+    }
     Ok((size.0, size.1, pixels))
+}
+
+/// Whether the marker of the end of a JPEG comes after that of its last scan; in the data of a scan neither
+/// can be.
+fn has_end(bytes: &[u8]) -> bool {
+    let last_scan = bytes.windows(2).rposition(|marker| marker == [0xff, 0xda]);
+    last_scan.is_none_or(|at| bytes[at..].windows(2).any(|marker| marker == [0xff, 0xd9]))
 }
 
 #[cfg(test)]
@@ -275,6 +286,10 @@ mod tests {
         assert_eq!(pixels(&[255, 0, 0, 255]), [255, 0, 0, 255]);
         assert_eq!(pixels(&[255, 255, 0, 128]), [128, 128, 0, 255]);
         let whole = jpeg_block(&[228]);
+        for cut in 1..=2 {
+            let error = decode(&whole[..whole.len() - cut], "short", &Limits::default());
+            assert!(error.unwrap_err().to_string().contains("cut off"), "{cut} bytes less");
+        }
         let mut huge = whole.clone();
         let size = whole.windows(2).position(|w| w == [0xff, 0xc0]).unwrap() + 5;
         huge[size..size + 4].copy_from_slice(&[0x3f; 4]);
