@@ -35,6 +35,40 @@ fn error(format: GeoFormat, bytes: &[u8]) -> String {
 }
 
 #[test]
+fn a_line_that_is_cut_off_is_not_read_on() {
+    let line = "{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"Point\",\"coordinates\":[1,2]}}\n";
+    for cut in [&line[..line.len() - 4], &line[..24], &line[..49]] {
+        let text = [line, line, line, cut, "\n", line, line].concat();
+        let told = error(GeoFormat::GeoJson, text.as_bytes());
+        assert!(told.starts_with("line 4, ") || told.starts_with("line 5, column 1:"), "{told}");
+    }
+    // Documents of several lines may come before others.
+    let spread = line.replace(':', ":\n ");
+    let texts = [[line, &spread, line, line], [&spread, &spread, line, &spread]];
+    for text in texts.map(|parts| parts.concat()) {
+        assert_eq!(features(GeoFormat::GeoJson, text.as_bytes()).len(), 4);
+    }
+}
+
+#[test]
+fn numbers_follow_the_grammar_of_json() {
+    let point = |x: &str| format!("{{\"type\":\"Point\",\"coordinates\":[{x},2]}}");
+    for x in ["01", "-01", "00", "1.", "-.5", "1.e5", ".5", "+1", "1e", "-Infinity", "-"] {
+        let told = error(GeoFormat::GeoJson, point(x).as_bytes());
+        assert!(
+            told.contains("not a number of JSON") || told.contains("a number is expected"),
+            "{x}: {told}"
+        );
+        assert!(told.starts_with("line 1, column 32: "), "{x}: {told}");
+    }
+    for (x, value) in [("0", 0.0), ("-0.5", -0.5), ("10", 10.0), ("0e1", 0.0), ("1E+2", 100.0)] {
+        let read = features(GeoFormat::GeoJson, point(x).as_bytes());
+        let Some(Geometry::Point(points)) = &read[0].geometry else { panic!("{x}") };
+        assert_eq!(points.xy[0].x, value);
+    }
+}
+
+#[test]
 fn geojson_keeps_what_it_does_not_know() {
     let text = r#"{ "type":"FeatureCollection", "name":"n\u00e4h", "bbox":[0,0,1,1], "features":[
  {"type":"Feature","id":"a","bbox":[1,2,1,2],"style":{"x":1.50},"properties":{"n":1e3,"s":"\"}]"},"geometry":{"type":"Point","coordinates":[1,2.0,3]}},

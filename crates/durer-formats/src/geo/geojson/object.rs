@@ -192,7 +192,8 @@ impl<'a> Cursor<'a> {
             let found = self.found();
             return Err(self.error(format!("a number is expected, not {found}")));
         };
-        if !matches!(rest.get(length), Some(b',' | b']' | b' ' | b'\t' | b'\r' | b'\n')) {
+        let ends = matches!(rest.get(length), Some(b',' | b']' | b' ' | b'\t' | b'\r' | b'\n'));
+        if !ends || !is_number_of_json(&rest[..length]) {
             return Err(self.error("this is not a number of JSON"));
         }
         if !value.is_finite() {
@@ -220,4 +221,17 @@ impl<'a> Cursor<'a> {
             self.expect(b',', "`,` or `]`")?;
         }
     }
+}
+
+/// Whether a number, as it is read elsewhere, follows the stricter grammar of JSON (RFC 8259, 6): no zeros in
+/// front, digits before and after the point.
+fn is_number_of_json(text: &[u8]) -> bool {
+    let text = text.strip_prefix(b"-").unwrap_or(text);
+    let whole = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let fraction = match text.get(whole) {
+        Some(b'.') => text.get(whole + 1).is_some_and(u8::is_ascii_digit),
+        Some(byte) => matches!(byte, b'e' | b'E'),
+        None => true,
+    };
+    fraction && whole > 0 && (whole == 1 || text[0] != b'0')
 }

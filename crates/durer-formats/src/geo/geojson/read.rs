@@ -30,6 +30,8 @@ struct Stream<R> {
     at: usize,
     /// Line and column of the next byte, from 1.
     here: (u64, u64),
+    /// Whether values end with their line.
+    by_lines: bool,
 }
 
 impl<R: Read> Stream<R> {
@@ -110,6 +112,11 @@ impl<R: Read> Stream<R> {
                 Progress::TooDeep => return Err(self.error("this is nested too deep")),
                 Progress::More | Progress::Last => {}
             }
+            if byte == b'\n' && self.by_lines {
+                let message =
+                    "the line ends within a value; each feature before stands on one line";
+                return Err(self.error(message));
+            }
             piece.bytes.push(byte);
             self.bump(byte);
             if progress == Progress::Last {
@@ -142,11 +149,18 @@ pub struct Reader<R> {
     collection: (u64, u64),
     members: Vec<Member>,
     documents: u64,
+    /// Features on lines of their own, since another document came.
+    in_lines: u64,
 }
+
+/// After so many features that each stand on one line all others do: a line that is cut off is not read on to the
+/// end of the file.
+const LINES: u64 = 2;
 
 impl<R: Read> Reader<R> {
     pub fn new(source: R) -> Self {
-        let stream = Stream { source, chunk: Vec::new(), at: 0, here: (1, 1) };
+        let (chunk, here) = (Vec::new(), (1, 1));
+        let stream = Stream { source, chunk, at: 0, here, by_lines: false };
         Self {
             stream,
             state: State::Between,
@@ -155,6 +169,7 @@ impl<R: Read> Reader<R> {
             collection: (1, 1),
             members: Vec::new(),
             documents: 0,
+            in_lines: 0,
         }
     }
 
@@ -175,8 +190,12 @@ impl<R: Read> Reader<R> {
                         return Ok(None);
                     }
                     if self.state == State::Between {
+                        let one_line = self.stream.here.0 == self.collection.0;
+                        self.in_lines = if one_line { self.in_lines + 1 } else { 0 };
+                        self.stream.by_lines = self.in_lines >= LINES;
                         return self.document().map(Some);
                     }
+                    (self.in_lines, self.stream.by_lines) = (0, false);
                 }
                 State::Features(_) if self.stream.take(b']')? => {
                     if self.stream.take(b'}')? {
