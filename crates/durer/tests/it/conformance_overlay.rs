@@ -1,5 +1,6 @@
 //! `overlay()` on the published suites.
 
+use durer::clip::line::polyline::{self, Part};
 use durer::clip::polygon::overlay::{Options, Output, overlay};
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
 use durer::math::DVec2;
@@ -323,6 +324,87 @@ fn i_overlay_ogc_holes_lie_in_their_shells() {
                 &Options { grid, ..Options::default() },
             );
             assert!(out.shapes.ring_count() > out.shapes.polygon_count());
+        }
+    }
+}
+
+/// The length of polylines within the polygons, border and all: between crossings with the borders a segment
+/// is inside as its middle is.
+fn length_inside(lines: &[Vec<DVec2>], clip: &Shapes) -> f64 {
+    let edges: Vec<[DVec2; 2]> = clip
+        .rings()
+        .flat_map(|r| (0..r.len()).map(|i| [r[i], r[(i + 1) % r.len()]]).collect::<Vec<_>>())
+        .collect();
+    let inside = |p: DVec2| {
+        let on = |[a, b]: &[DVec2; 2]| {
+            let off = (*b - *a).perp_dot(p - *a).abs() / a.distance(*b);
+            off < 1e-9 && (p - *a).dot(p - *b) <= 0.0
+        };
+        let right = |[a, b]: &&[DVec2; 2]| {
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        };
+        edges.iter().any(on) || edges.iter().filter(right).count() % 2 == 1
+    };
+    let mut sum = 0.0;
+    for ends in lines.iter().flat_map(|line| line.windows(2)) {
+        let (from, along) = (ends[0], ends[1] - ends[0]);
+        let mut cuts = vec![0.0, 1.0];
+        for [a, b] in &edges {
+            let divisor = along.perp_dot(*b - *a);
+            // Along an edge the segment can come in and go out at its ends.
+            cuts.extend([*a, *b].map(|p| (p - from).dot(along) / along.length_squared()));
+            cuts.extend((divisor != 0.0).then(|| (*a - from).perp_dot(*b - *a) / divisor));
+        }
+        cuts.retain(|t| (0.0..=1.0).contains(t));
+        cuts.sort_by(f64::total_cmp);
+        let pieces = cuts.windows(2).filter(|t| inside(from + along * ((t[0] + t[1]) / 2.0)));
+        sum += pieces.map(|t| (t[1] - t[0]) * along.length()).sum::<f64>();
+    }
+    sum
+}
+
+#[test]
+fn clipper2_lines_are_cut_at_the_border() {
+    let Some(text) = shared("geo2d/clipper2/Lines.txt") else { return };
+    let cases = ClipperCase::all(&text);
+    assert_eq!(cases.len(), 16);
+    for case in &cases {
+        let name = format!("case {}", case.number);
+        let out =
+            checked(&name, &case.subject, &case.clip, case.op, &Options::with_rule(case.rule));
+        assert!((out.shapes.area() - case.area as f64).abs() < 1e-9, "{name}: area");
+        if case.count > 0 {
+            assert_eq!(out.shapes.ring_count() as i64, case.count, "{name}: rings");
+        }
+        let points: Vec<DVec2> = case.open.concat();
+        let ends: Vec<usize> = case
+            .open
+            .iter()
+            .scan(0, |end, line| {
+                *end += line.len();
+                Some(*end)
+            })
+            .collect();
+        let whole: f64 =
+            case.open.iter().flat_map(|l| l.windows(2)).map(|s| s[0].distance(s[1])).sum();
+        let inside = length_inside(&case.open, &case.clip);
+        for (part, expected) in [(Part::Inside, inside), (Part::Outside, whole - inside)] {
+            let cut = polyline::clip(
+                &case.clip,
+                &points,
+                &ends,
+                &polyline::Options { part },
+                &mut NoTrace,
+            )
+            .expect("finite");
+            let mut from = 0;
+            let mut length = 0.0;
+            for &end in &cut.ends {
+                length +=
+                    cut.points[from..end].windows(2).map(|s| s[0].distance(s[1])).sum::<f64>();
+                from = end;
+            }
+            assert!((length - expected).abs() <= 1e-9 * whole, "{name}: {length} {expected}");
         }
     }
 }

@@ -32,6 +32,8 @@ pub struct ClipperCase {
     pub area: i64,
     pub count: i64,
     pub subject: Shapes,
+    /// Polylines of the subject.
+    pub open: Vec<Vec<DVec2>>,
     pub clip: Shapes,
 }
 
@@ -42,7 +44,7 @@ impl ClipperCase {
 
     fn parse(text: &str) -> Self {
         let mut case = Self::default();
-        let mut clip = false;
+        let (mut clip, mut open) = (false, false);
         for (i, line) in text.lines().enumerate() {
             let line = line.trim();
             let value = |key: &str| line.strip_prefix(key).map(str::trim);
@@ -64,9 +66,11 @@ impl ClipperCase {
             } else if let Some(count) = value("SOL_COUNT:") {
                 case.count = count.parse().expect("count");
             } else if line.starts_with("SUBJECTS") {
-                clip = false;
+                (clip, open) = (false, line.starts_with("SUBJECTS_OPEN"));
             } else if line.starts_with("CLIPS") {
-                clip = true;
+                (clip, open) = (true, false);
+            } else if open && line.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
+                case.open.push(points(line));
             } else if line.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
                 let shapes = if clip { &mut case.clip } else { &mut case.subject };
                 shapes.push_ring(points(line));
