@@ -31,7 +31,8 @@ pub fn run(options: &Options) -> Result<()> {
         let name = model.file_name().unwrap_or_default().to_string_lossy().replace('.', "-");
         let camera = Camera::of(&durer, model, &folder.join("camera.png"))?;
         for work in Work::ALL {
-            let picture = |who| folder.join(format!("{name}-{}-{who}.png", work.name()));
+            let file = format!("{name}-{}", work.name().replace(' ', "-"));
+            let picture = |who| folder.join(format!("{file}-{who}.png"));
             let (ours, theirs) = (picture("durer"), picture("f3d"));
             let mut costs = [Vec::new(), Vec::new()];
             for _ in 0..options.rounds {

@@ -144,10 +144,10 @@ fn algorithm_help() -> String {
     format!(
         "An algorithm by its name [default: what is fast and right]\n\nOne of {}. Those for lines \
          take windows and leave polygons to the default, and the other way round; \
-         sutherland-hodgman takes convex masks and leaves bridges along the border; rectangle, \
-         weiler-atherton and greiner-hormann refuse polygons whose rings cross or overlap, the first \
+         sutherland-hodgman takes convex masks and leaves bridges along the border; it, rectangle, \
+         weiler-atherton and greiner-hormann refuse polygons whose rings cross or overlap, rectangle \
          also some whose rings touch. Of those for polygons, overlay \
-         and vatti follow --grid and --fill-rule.",
+         and vatti follow --grid and --fill-rule, and do --op union and xor.",
         names()
     )
 }

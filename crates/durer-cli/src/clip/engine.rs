@@ -121,12 +121,14 @@ impl Algorithm {
         }
     }
 
+    /// Whether it joins the polygons of all features.
+    pub fn joins(self) -> bool {
+        matches!(self, Self::Polygon(PolygonClipper::Overlay | PolygonClipper::Vatti))
+    }
+
     /// Whether polygons are cut on a grid and by a fill rule; so they are beside algorithms for lines.
     pub fn takes_rules(self) -> bool {
-        match self {
-            Self::Polygon(a) => matches!(a, PolygonClipper::Overlay | PolygonClipper::Vatti),
-            Self::Line(_) => true,
-        }
+        self.joins() || matches!(self, Self::Line(_))
     }
 
     /// Whether it keeps the inside only.
@@ -271,12 +273,19 @@ impl Cutter {
             (PolygonClipper::Overlay, _) => {
                 self.rules.overlay(area, mask, self.op, self.rules.fill)?
             }
-            (PolygonClipper::Vatti, _) => {
-                let options = self.rules.options(area, mask, self.rules.fill);
-                let output = vatti::vatti(&area.shapes, mask, self.op, &options, &mut NoTrace)?;
-                area.overlaid(mask, &output, false)
+            (PolygonClipper::Vatti, _) => self.rules.vatti(area, mask, self.op, self.rules.fill)?,
+            (clipper, _) => {
+                let crosses = clipper == PolygonClipper::SutherlandHodgman
+                    && !is_valid(&area.shapes, Touching::AtPoints);
+                if crosses {
+                    return Err(durer::Error::Unsupported {
+                        what: "a polygon whose rings cross or overlap by Sutherland–Hodgman",
+                        instead: "choose another algorithm, or none",
+                    });
+                }
+                // Heights and measures are looked for where the new vertices lie.
+                area.cut(clipper.clip(&area.shapes, mask, self.op)?, &[])
             }
-            (clipper, _) => Area::flat(clipper.clip(&area.shapes, mask, self.op)?),
         })
     }
 }
@@ -404,6 +413,19 @@ impl Rules {
         Ok(area.overlaid(clip, &output, false))
     }
 
+    /// The same by Vatti's sweep; all vertices are on the grid.
+    pub fn vatti(
+        &self,
+        area: &Area,
+        clip: &Shapes,
+        op: BooleanOp,
+        subject_rule: FillRule,
+    ) -> Result<Area> {
+        let options = self.options(area, clip, subject_rule);
+        let output = vatti::vatti(&area.shapes, clip, op, &options, &mut NoTrace)?;
+        Ok(area.overlaid(clip, &output, false))
+    }
+
     /// The same region by polygons that are valid, with outer rings counter-clockwise.
     pub fn clean(&self, geometry: &Geometry) -> Result<Area> {
         let area = Area::of_geometry(geometry);
@@ -494,7 +516,8 @@ mod tests {
                 ring.push(DVec2::new(x - 0.1, 8.0));
             }
             ring.push(DVec2::new(0.0, 9.0));
-            let area = Area::flat(Shapes::from_rings([ring]));
+            let mut area = Area::default();
+            area.shapes = Shapes::from_rings([ring]);
             let far = rectangle_shape(&Rect::new(DVec2::splat(5.0), DVec2::splat(6.0)).unwrap());
             for op in BooleanOp::ALL {
                 let cut = Rules::default().overlay(&area, &far, *op, FillRule::EvenOdd);

@@ -15,9 +15,9 @@ use crate::failure::{Failure, in_words};
 use crate::input::{display_name, is_stream};
 use crate::messages::Messages;
 use crate::output::{self, Target};
-use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
+use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
-use engine::{Cutter, Mask, Rules};
+use engine::{Algorithm, Cutter, Mask, Rules};
 use rayon::prelude::*;
 use report::{Counts, Report};
 use shapes::Area;
@@ -99,8 +99,11 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     }
     let Some(algorithm) = args.cutting.algorithm else { return Ok(()) };
     let name = algorithm.name();
-    if joins(args) || region.tiles.is_some() {
-        return usage("--algorithm goes with --op intersection and difference only");
+    if region.tiles.is_some() {
+        return usage("--algorithm and --tiles do not go together: tiles are cut by what is fast");
+    }
+    if joins(args) && !algorithm.joins() {
+        return usage("--op union and xor are done by --algorithm overlay and vatti");
     }
     if algorithm.needs_window() && region.window.is_none() {
         return Err(Failure::Usage(format!("--algorithm {name} needs --window")));
@@ -366,7 +369,13 @@ impl Job<'_> {
         let rule = if op == BooleanOp::Xor { FillRule::EvenOdd } else { FillRule::Positive };
         let none = Shapes::new();
         let mask = mask.map_or(&none, Mask::shapes);
-        let joined = self.rules.overlay(&all, mask, op, rule).map_err(|e| self.fail(e))?;
+        let joined = match self.args.cutting.algorithm {
+            Some(Algorithm::Polygon(PolygonClipper::Vatti)) => {
+                self.rules.vatti(&all, mask, op, rule)
+            }
+            _ => self.rules.overlay(&all, mask, op, rule),
+        };
+        let joined = joined.map_err(|e| self.fail(e))?;
         let mut writer = None;
         if let Some(geometry) = joined.into_geometry() {
             self.put(&mut writer, &Feature::of_geometry(geometry))?;

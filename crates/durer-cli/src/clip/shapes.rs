@@ -17,11 +17,6 @@ pub struct Area {
 }
 
 impl Area {
-    /// Polygons without heights and measures.
-    pub fn flat(shapes: Shapes) -> Self {
-        Self { shapes, ..Self::default() }
-    }
-
     /// The polygons of a geometry, of collections too.
     pub fn of_geometry(geometry: &Geometry) -> Self {
         let mut area = Self { dimensions: geometry.dimensions(), ..Self::default() };
@@ -88,7 +83,7 @@ impl Area {
         }
     }
 
-    /// What became of this area, from the sources of the new vertices.
+    /// What became of this area, from the sources of the new vertices as far as they are known.
     pub fn cut(&self, shapes: Shapes, sources: &[Source]) -> Self {
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };

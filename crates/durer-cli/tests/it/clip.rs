@@ -104,6 +104,39 @@ fn masks_operations_and_the_outside() {
 }
 
 #[test]
+fn every_algorithm_keeps_heights_or_refuses() {
+    let folder = Folder::new();
+    folder.write("z.wkt", "POLYGON Z ((0 0 1,4 0 1,4 4 9,0 4 9,0 0 1))");
+    folder.write("bow.wkt", "POLYGON ((0 0,4 4,4 0,0 4,0 0))");
+    for name in ["sutherland-hodgman", "weiler-atherton", "greiner-hormann", "rectangle", "vatti"] {
+        let line = format!("--window -1,2,9,9 --algorithm {name} -o -");
+        let cut = folder.must(&format!("clip z.wkt {line}"));
+        let cut = String::from_utf8(cut.out).expect("text");
+        assert!(
+            cut.starts_with("POLYGON Z ((") && cut.matches(" 2 5").count() >= 2,
+            "{name}: {cut}"
+        );
+        if name != "vatti" {
+            folder.run(&format!("clip bow.wkt {line}")).fails(1, "cross");
+            folder
+                .run(&format!("clip bow.wkt --op union --algorithm {name} -o -"))
+                .fails(2, "overlay and vatti");
+        }
+        folder
+            .run(&format!("clip bow.wkt --tiles 1 --algorithm {name} -o tiles"))
+            .fails(2, "--tiles");
+    }
+    folder.write("mask.wkt", "POLYGON ((2 0,6 0,6 4,2 4,2 0))");
+    for op in ["union", "xor"] {
+        let by = |name: &str| {
+            let line = format!("clip z.wkt --by mask.wkt --op {op} --algorithm {name} -o -");
+            folder.must(&line).out
+        };
+        assert_eq!(by("overlay"), by("vatti"));
+    }
+}
+
+#[test]
 fn fill_rules_decide_what_crossing_rings_enclose() {
     let folder = Folder::new();
     folder.write(
