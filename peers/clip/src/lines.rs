@@ -7,7 +7,7 @@ use durer::trace::NoTrace;
 use line_clipping::{LineSegment, Point, Window, cohen_sutherland::clip_line};
 use std::hint::black_box;
 
-const N: usize = 2_000_000;
+const N: usize = 10_000_000;
 
 /// Segments that are all inside, all outside, all crossing, or anything.
 fn segment(kind: &str, r: &mut Random) -> [f64; 4] {

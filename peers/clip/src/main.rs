@@ -1,4 +1,4 @@
-//! Side-by-side measurements of clipping: `clip-peers lines | rect | triangles`.
+//! Side-by-side measurements of clipping: `clip-peers lines | rect [FOLDER] | triangles`.
 //!
 //! Ours and the other's run in turn in the same process; figures are medians of nine runs, in CPU
 //! time of the calling thread, which a busy machine disturbs less than the time of the clock.
@@ -6,6 +6,8 @@
 mod lines;
 mod rect;
 mod triangles;
+
+use std::path::Path;
 
 /// CPU time of this thread in nanoseconds.
 fn cpu_time() -> f64 {
@@ -56,8 +58,8 @@ impl Random {
 fn main() {
     match std::env::args().nth(1).as_deref() {
         Some("lines") => lines::run(),
-        Some("rect") => rect::run(),
+        Some("rect") => rect::run(std::env::args().nth(2).as_deref().map(Path::new)),
         Some("triangles") => triangles::run(),
-        _ => eprintln!("usage: clip-peers lines|rect|triangles"),
+        _ => eprintln!("usage: clip-peers lines | rect [FOLDER] | triangles"),
     }
 }

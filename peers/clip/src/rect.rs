@@ -11,6 +11,7 @@ use durer::clip::polygon::{Shapes, rectangle};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 use std::ffi::c_void;
+use std::path::Path;
 
 #[repr(C)]
 struct Rect64 {
@@ -81,11 +82,28 @@ fn clipper(f: RectClip, paths: *mut ClipperPaths64) -> f64 {
     }
 }
 
-pub fn run() {
+/// Writes the curves for `geos.py`: their number, the points of each, and all coordinates, little endian.
+fn write(path: &Path, curves: &[Vec<DVec2>]) -> std::io::Result<()> {
+    let mut bytes = Vec::new();
+    for number in [curves.len(), curves.first().map_or(0, Vec::len)] {
+        bytes.extend((number as u64).to_le_bytes());
+    }
+    for point in curves.iter().flatten() {
+        bytes.extend(point.x.to_le_bytes());
+        bytes.extend(point.y.to_le_bytes());
+    }
+    std::fs::write(path, bytes)
+}
+
+/// Measures; where a folder is named, the polygons are left there.
+pub fn run(folder: Option<&Path>) {
     let window = Rect::new(DVec2::splat(WORLD * 0.25), DVec2::splat(WORLD * 0.75)).unwrap();
     let cases = [("10^5 × 16", 100_000, 16, WORLD * 0.002), ("4 × 100k", 4, 100_000, WORLD * 0.4)];
     for (name, count, n, radius) in cases {
         let curves = blobs(count, n, radius, &mut Random(3));
+        if let Some(folder) = folder {
+            write(&folder.join(format!("{count}x{n}.f64")), &curves).unwrap();
+        }
         // SAFETY: lives until the end of the program.
         let paths = unsafe { to_clipper(&curves) };
         let shapes = Shapes::from_rings(&curves);
