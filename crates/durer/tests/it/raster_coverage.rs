@@ -145,6 +145,20 @@ fn coverage_is_exact_in_crowded_pixels() {
 }
 
 #[test]
+fn small_crowded_drawings_are_exact() {
+    let mut random = Random(60);
+    let mut contours = Contours::new();
+    for _ in 0..60 {
+        let center = DVec2::new(random.next() * 96.0, random.next() * 32.0);
+        contours.push((0..3).map(|_| center + random.point(-4.0, 4.0)), true);
+    }
+    for rule in RULES {
+        let worst = worst_error(&contours, 96, 32, rule);
+        assert!(worst <= 1.0, "{rule:?}: {worst}");
+    }
+}
+
+#[test]
 fn opposite_windings_do_not_cancel() {
     // The two halves of a bow-tie meet in the diagonal of every pixel.
     let points = [(0.0, 0.0), (8.0, 8.0), (8.0, 0.0), (0.0, 8.0)].map(|(x, y)| DVec2::new(x, y));

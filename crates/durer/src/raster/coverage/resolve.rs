@@ -14,7 +14,10 @@ use crate::raster::bands::BAND_ROWS;
 /// Pixels crossed by more edges than this keep the integral's answer: what they show is noise, and
 /// the cost grows with the third power.
 const MAX_PIECES: u32 = 24;
-/// What a band shows is noise as well where more pixels than this are shared, two in a row on average,
+/// A band with at most so many edges is resolved, whatever it shows: that takes no long time, and in small drawings
+/// each pixel is looked at.
+const FEW_EDGES: u32 = 256;
+/// What another band shows is noise as well where more pixels than this are shared, two in a row on average,
 const FEW_SHARED: u32 = 2 * BAND_ROWS as u32;
 /// more than one in so many of the touched ones,
 const OFTEN: u32 = 5;
@@ -99,7 +102,8 @@ impl Resolver {
                 found |= u64::from(mark.shared != 0) << row;
             }
         }
-        if shared > FEW_SHARED
+        if edges > FEW_EDGES
+            && shared > FEW_SHARED
             && shared > touched / OFTEN
             && (edges > MANY_EDGES || shared < edges * PER_EDGE)
         {
