@@ -29,7 +29,9 @@ pub fn run(options: &Options) -> Result<()> {
     let mut pictures = Vec::new();
     for model in &models {
         let name = model.file_name().unwrap_or_default().to_string_lossy().replace('.', "-");
-        let camera = Camera::of(&durer, model, &folder.join("camera.png"))?;
+        // Asked for outside of the measured runs, and only where somebody else is to have it.
+        let view = || Camera::of(&durer, model, &temp.path().join("view.png"));
+        let f3d = display.as_ref().map(|display| view().map(|view| (display, view))).transpose()?;
         for work in Work::ALL {
             let file = format!("{name}-{}", work.name().replace(' ', "-"));
             let picture = |who| folder.join(format!("{file}-{who}.png"));
@@ -37,14 +39,14 @@ pub fn run(options: &Options) -> Result<()> {
             let mut costs = [Vec::new(), Vec::new()];
             for _ in 0..options.rounds {
                 costs[0].push(child::run(&mut work.durer(&durer, model, &ours))?);
-                if let Some(display) = &display {
-                    let mut f3d = work.f3d(display.f3d(model, &theirs), &camera);
-                    costs[1].push(child::run(&mut f3d)?);
+                if let Some((display, view)) = &f3d {
+                    let mut command = work.f3d(display.f3d(model, &theirs), view);
+                    costs[1].push(child::run(&mut command)?);
                 }
             }
             print(&[&name, work.name(), "durer"], &costs[0], &costs[0]);
             pictures.push(ours);
-            if display.is_some() {
+            if f3d.is_some() {
                 print(&[&name, work.name(), "f3d"], &costs[1], &costs[0]);
                 pictures.push(theirs);
             }
@@ -114,14 +116,14 @@ impl Camera {
     fn of(durer: &Path, model: &Path, picture: &Path) -> Result<Self> {
         let output = render(durer, model, picture).arg("--json").output()?;
         let report = String::from_utf8(output.stdout)?;
-        let of = |key: &str, ends: [char; 2]| -> Result<String> {
+        let of = |key: &str, ends: &[char]| -> Result<String> {
             let key = format!("\"{key}\":");
             let value = report.split_once(&key).and_then(|(_, rest)| rest.split_once(ends));
             let (value, _) = value.ok_or_else(|| format!("no {key} in the report of durer"))?;
             Ok(value.split_whitespace().collect::<String>().replace('[', ""))
         };
-        let point = |key| of(key, [']', ']']);
-        let fov = of("fov", [',', '}'])?;
+        let point = |key| of(key, &[']']);
+        let fov = of("fov", &[',', '}'])?;
         Ok(Self { eye: point("eye")?, target: point("target")?, up: point("up")?, fov })
     }
 }

@@ -257,16 +257,15 @@ impl Cutter {
 
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
         let mask = &self.mask.shapes;
+        let valid = |shapes: &Shapes| is_valid(shapes, Touching::AtPoints);
         Ok(match (clipper, self.mask.window) {
             (PolygonClipper::Rectangle, Some(window)) => {
                 let cut = clip_area(&window, area)?;
                 // Where rings touch, what is left of them may be one ring that touches itself.
-                let valid = |shapes: &Shapes| is_valid(shapes, Touching::AtPoints);
                 if !valid(&area.shapes) || !valid(&cut.shapes) {
-                    return Err(durer::Error::Unsupported {
-                        what: "a polygon whose rings cross, overlap or touch there by the rectangle clip",
-                        instead: "choose another algorithm, or none",
-                    });
+                    const WHAT: &str =
+                        "a polygon whose rings cross, overlap or touch there by the rectangle clip";
+                    return refused(WHAT);
                 }
                 cut
             }
@@ -275,13 +274,9 @@ impl Cutter {
             }
             (PolygonClipper::Vatti, _) => self.rules.vatti(area, mask, self.op, self.rules.fill)?,
             (clipper, _) => {
-                let crosses = clipper == PolygonClipper::SutherlandHodgman
-                    && !is_valid(&area.shapes, Touching::AtPoints);
-                if crosses {
-                    return Err(durer::Error::Unsupported {
-                        what: "a polygon whose rings cross or overlap by Sutherland–Hodgman",
-                        instead: "choose another algorithm, or none",
-                    });
+                // The walks find that themselves.
+                if clipper == PolygonClipper::SutherlandHodgman && !valid(&area.shapes) {
+                    return refused("a polygon whose rings cross or overlap by Sutherland–Hodgman");
                 }
                 // Heights and measures are looked for where the new vertices lie.
                 area.cut(clipper.clip(&area.shapes, mask, self.op)?, &[])
@@ -294,6 +289,11 @@ impl Cut {
     fn of(geometry: Option<Geometry>) -> Self {
         Self { geometry, repaired: false }
     }
+}
+
+/// What an algorithm that was asked for cannot do.
+fn refused(what: &'static str) -> Result<Area> {
+    Err(durer::Error::Unsupported { what, instead: "choose another algorithm, or none" })
 }
 
 fn one_or_many(mut lines: Vec<Points>) -> Option<Geometry> {

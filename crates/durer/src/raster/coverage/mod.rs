@@ -10,8 +10,9 @@
 //! Class: image space. Cost: O(pixels crossed by edges + pixels touched); rows are worked on in bands,
 //! which are the parallel task. Limits: sides of at most 32,767 pixels; winding numbers beyond ±32,767 wrap
 //! around; pixels crossed by more than 24 edges take the integral of the winding number for the area, and so
-//! do bands of noise: those of more than 256 edges, short ones that cross each other in more than a fifth of what they touch. To
-//! resolve those too takes twelve times as long (a random walk of 10⁵ steps at 2048²: 180 ms instead of 15).
+//! do bands of noise: those of more than 256 edges, short ones that cross each other in more than a fifth of
+//! what they touch. To resolve those too takes twelve times as long (a random walk of 10⁵ steps at 2048²: 180 ms
+//! instead of 15).
 //! Where a contour starts and which way it runs changes nothing.
 
 pub(crate) mod band;
