@@ -122,13 +122,6 @@ pub(crate) struct Canonical<const N: usize> {
     pub(crate) swapped: bool,
 }
 
-/// Where a canonical segment crosses a border: the point and its exact outcode.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Cut<const N: usize> {
-    pub(super) point: [f64; N],
-    pub(super) code: Outcode,
-}
-
 impl<const N: usize> Canonical<N> {
     /// # Errors
     /// [`Error::NonFinite`], with index 0 for the start and 1 for the end.
@@ -155,34 +148,30 @@ impl<const N: usize> Canonical<N> {
     /// coordinate, and on the side of each border of the window that the exact crossing is on.
     // A call would pass the cut through memory, which costs as much as making it.
     #[inline(always)]
-    pub(super) fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Cut<N> {
+    pub(super) fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> [f64; N] {
         let border = window.borders[axis][upper];
         let length = self.q[axis] - self.p[axis];
         let t = (border - self.p[axis]) / length;
         let mut point = [border; N];
-        let mut code = Outcode::INSIDE;
         // The other axes, without a branch that depends on which axis it is.
         for k in (1..N).map(|step| (axis + step) % N) {
             let (p, q, [min, max]) = (self.p[k], self.q[k], window.borders[k]);
             let near = p + (q - p) * t;
             let margin = doubt(p, q);
             point[k] = near;
-            // Huge coordinates make one of these infinite or NaN, and then the test fails.
-            let well_inside = near - min > margin && max - near > margin && length.abs() < f64::MAX;
-            if well_inside {
+            // Huge coordinates make one of these infinite or NaN, and then the tests fail.
+            let sure = length.abs() < f64::MAX;
+            if sure && near - min > margin && max - near > margin {
                 continue;
             }
             // Beyond a border by more than any rounding, it needs no exact test either.
-            let sure = length.abs() < f64::MAX;
-            if sure && min - near > margin && near > -f64::MAX {
-                code |= bit(k, 0);
-            } else if sure && near - max > margin && near < f64::MAX {
-                code |= bit(k, 1);
-            } else {
-                code |= self.settle_cut(window, (axis, border), k, &mut point);
+            let below = min - near > margin && near > -f64::MAX;
+            let above = near - max > margin && near < f64::MAX;
+            if !sure || !(below || above) {
+                self.settle_cut(window, (axis, border), k, &mut point);
             }
         }
-        Cut { point, code }
+        point
     }
 
     /// Decides exactly on which side of the borders of axis k the crossing with `border` is, and

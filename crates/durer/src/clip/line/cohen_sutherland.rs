@@ -8,7 +8,7 @@
 //! We deviate in one point: every cut is computed from the original ends, and its outcode exactly,
 //! so rounding does not pile up over several cuts and a corner touch is never judged wrong.
 
-use super::border::{Canonical, Cut, bit, doubt, is_greater, lowest_border};
+use super::border::{Canonical, bit, doubt, is_greater, lowest_border};
 use super::{ClipBox, End, Segment};
 use crate::Result;
 use crate::clip::outcode::Outcode;
@@ -132,7 +132,10 @@ fn run<const N: usize, P: From<[f64; N]>>(
         return Ok(None);
     }
     let mut codes = [code_start, code_end];
-    let mut ends = [start, end];
+    // Axis by axis: what is written as two numbers would be waited for where it is read as one point.
+    let mut ends: [[f64; 2]; N] = std::array::from_fn(|k| [start[k], end[k]]);
+    let point =
+        |ends: &[[f64; 2]; N], which: usize| P::from(std::array::from_fn(|k| ends[k][which]));
     // Each turn clears at least one bit for good, so 2·N·2 turns would be the end in any case.
     while !(codes[0] | codes[1]).is_inside() {
         if !(codes[0] & codes[1]).is_inside() {
@@ -141,17 +144,17 @@ fn run<const N: usize, P: From<[f64; N]>>(
         }
         let which = usize::from(codes[0].is_inside());
         let (axis, upper) = lowest_border(codes[which]);
-        let cut = line.cut(window, axis, upper)?;
-        (ends[which], codes[which]) = (cut.point, cut.code);
+        let code = line.cut(window, axis, upper, |k, v| ends[k][which] = v)?;
+        codes[which] = code;
         t.step(|| Step::Cut {
             end: [End::Start, End::End][which],
             border: bit(axis, upper),
-            point: cut.point.into(),
-            code: cut.code,
+            point: point(&ends, which),
+            code,
         });
     }
     t.step(|| Step::Accepted);
-    Ok(Some(Segment { start: ends[0].into(), end: ends[1].into() }))
+    Ok(Some(Segment { start: point(&ends, 0), end: point(&ends, 1) }))
 }
 
 /// A segment that is cut without being turned round: [`Canonical::cut`] with the same bits.
@@ -190,29 +193,37 @@ impl<const N: usize> Line<N> {
         Ok((code, point[k]))
     }
 
-    /// The crossing with a border, which the segment must span; segments parallel to the axis take
-    /// the short way without arithmetic.
+    /// The crossing with a border, which the segment must span, coordinate by coordinate, and its code; segments
+    /// parallel to the axis take the short way without arithmetic.
     ///
     /// Coordinates that are not finite let none of the quick tests succeed, so that only what these
     /// leave open needs to be looked at.
     // A call would pass the cut through memory, which costs as much as making it.
     #[inline(always)]
-    fn cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Result<Cut<N>> {
+    fn cut(
+        &self,
+        window: &ClipBox<N>,
+        axis: usize,
+        upper: usize,
+        mut put: impl FnMut(usize, f64),
+    ) -> Result<Outcode> {
         if N == 2 && self.way[1 - axis] == 0.0 {
-            return self.short_cut(window, axis, upper);
+            put(axis, window.borders[axis][upper]);
+            put(1 - axis, self.short_way(1 - axis)?);
+            return Ok(Outcode::INSIDE);
         }
         let p = &self.ends[usize::from(self.is_turned())];
         let border = window.borders[axis][upper];
         let length = self.way[axis];
         let t = (border - p[axis]) / length;
-        let mut point = [border; N];
+        put(axis, border);
         let mut code = Outcode::INSIDE;
         // The other axes, without a branch that depends on which axis it is.
         for k in (1..N).map(|step| (axis + step) % N) {
             let [min, max] = window.borders[k];
             let near = p[k] + self.way[k] * t;
             let margin = doubt(self.ends[0][k], self.ends[1][k]);
-            point[k] = near;
+            put(k, near);
             // Huge coordinates make one of these infinite or NaN, and then the test fails.
             let sure = length.abs() < f64::MAX;
             if sure && near - min > margin && max - near > margin {
@@ -225,10 +236,11 @@ impl<const N: usize> Line<N> {
                 code |= bit(k, 1);
             } else {
                 let (settled, near) = self.settle(window, (axis, border), k)?;
-                (point[k], code) = (near, code | settled);
+                put(k, near);
+                code |= settled;
             }
         }
-        Ok(Cut { point, code })
+        Ok(code)
     }
 
     /// Whether the second end is lexicographically smaller. Of a segment in the plane that is not
@@ -239,15 +251,12 @@ impl<const N: usize> Line<N> {
         if N == 2 { start[0] > end[0] } else { is_greater(start, end) }
     }
 
+    /// The other coordinate of a crossing with a border at a right angle: it is inside, or the AND test would have
+    /// rejected the segment. Adding zero turns −0 into 0, as the long way does.
     #[cold]
     #[inline(never)]
-    fn short_cut(&self, window: &ClipBox<N>, axis: usize, upper: usize) -> Result<Cut<N>> {
+    fn short_way(&self, k: usize) -> Result<f64> {
         Canonical::new(self.ends[0], self.ends[1])?;
-        let mut point = self.ends[0];
-        point[axis] = window.borders[axis][upper];
-        // Its other coordinate is inside, or the AND test would have rejected the segment; adding
-        // zero turns −0 into 0, as the long way does.
-        point[1 - axis] += 0.0;
-        Ok(Cut { point, code: Outcode::INSIDE })
+        Ok(self.ends[0][k] + 0.0)
     }
 }

@@ -116,7 +116,7 @@ fn run<const N: usize, P: From<[f64; N]>>(
         t.step(|| Step::Rejected);
         return Ok(None);
     }
-    let cut = |border: Option<usize>| border.map(|b| (b, line.cut(window, b >> 1, b & 1).point));
+    let cut = |border: Option<usize>| border.map(|b| (b, line.cut(window, b >> 1, b & 1)));
     Ok(Some(finish(segment, &line, cut(lower), cut(upper), t)))
 }
 

@@ -147,7 +147,7 @@ impl Search {
             (None, Some(y)) => (1, y),
             (None, None) => return None,
         };
-        let point = self.line.cut(&self.window, axis, upper).point;
+        let point = self.line.cut(&self.window, axis, upper);
         let end = end.swapped_if(self.line.swapped);
         t.step(|| Step::Cut { end, border: bit(axis, upper), point: point.into() });
         Some(point)

@@ -86,19 +86,34 @@ pub fn clip_lines(
     Ok(out)
 }
 
+/// How many points from the first on are as wanted; eight are asked at a time, without a branch.
+#[inline(always)]
+fn run(points: &[DVec2], wanted: impl Fn(DVec2) -> bool) -> usize {
+    let (eights, _) = points.as_chunks::<8>();
+    let whole = |eight: &[DVec2; 8]| eight.iter().fold(true, |all, p| all & wanted(*p));
+    let first = eights.iter().position(|eight| !whole(eight)).unwrap_or(eights.len()) * 8;
+    let rest = points.get(first..).unwrap_or_default();
+    first + rest.iter().position(|p| !wanted(*p)).unwrap_or(rest.len())
+}
+
+/// How many points from the first on lie in the window.
+fn run_inside(window: &Rect, points: &[DVec2]) -> usize {
+    let (min, max) = (window.min(), window.max());
+    run(points, |p| (p.x >= min.x) & (p.x <= max.x) & (p.y >= min.y) & (p.y <= max.y))
+}
+
 /// How many points from the first on lie beyond one and the same of some borders.
 fn run_beyond(window: &Rect, borders: Outcode, points: &[DVec2]) -> usize {
     let (min, max) = (window.min(), window.max());
-    let back = if borders.contains(Outcode::LEFT) {
-        points.iter().position(|p| p.x >= min.x)
+    if borders.contains(Outcode::LEFT) {
+        run(points, |p| p.x < min.x)
     } else if borders.contains(Outcode::RIGHT) {
-        points.iter().position(|p| p.x <= max.x)
+        run(points, |p| p.x > max.x)
     } else if borders.contains(Outcode::BOTTOM) {
-        points.iter().position(|p| p.y >= min.y)
+        run(points, |p| p.y < min.y)
     } else {
-        points.iter().position(|p| p.y <= max.y)
-    };
-    back.unwrap_or(points.len())
+        run(points, |p| p.y > max.y)
+    }
 }
 
 fn cut(
@@ -118,8 +133,7 @@ fn cut(
     while next < part.len() {
         if open {
             // The whole run of points inside at once.
-            let run = part[next..].iter().position(|p| !code(*p).is_inside());
-            let end = run.map_or(part.len(), |length| next + length);
+            let end = next + run_inside(window, &part[next..]);
             out.points.extend_from_slice(&part[next..end]);
             if sources {
                 out.sources.extend((first + next..first + end).map(Source::Vertex));
