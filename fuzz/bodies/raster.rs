@@ -77,8 +77,10 @@ fn any_raster(u: &mut Unstructured<'_>) -> Result<()> {
 /// Outlines of more elements, of fine dashes along lines that go far, take seconds and show nothing new.
 const LONG: usize = 2_000;
 
+const OVERLAPS: [Overlap; 3] = [Overlap::Exact, Overlap::Adaptive, Overlap::Accumulated];
+
 fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
-    let masks = [Overlap::Exact, Overlap::Accumulated].map(|overlap| {
+    let masks = OVERLAPS.map(|overlap| {
         let options = coverage::Options { rule, overlap };
         coverage::fill(contours, size.0, size.1, &options, &mut NoTrace).expect("small")
     });
@@ -86,7 +88,7 @@ fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
     for (points, closed) in contours.iter() {
         back.push(points.iter().rev().copied(), closed);
     }
-    for (mask, overlap) in masks.iter().zip([Overlap::Exact, Overlap::Accumulated]) {
+    for (mask, overlap) in masks.iter().zip(OVERLAPS) {
         let options = coverage::Options { rule, overlap };
         let reversed = coverage::fill(&back, size.0, size.1, &options, &mut NoTrace);
         assert_eq!(mask.data(), reversed.expect("small").data(), "{rule:?} {size:?} {contours:?}");

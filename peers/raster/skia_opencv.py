@@ -1,6 +1,6 @@
-"""Skia, OpenCV and Blend2D on the scenes of this harness (the drawing apart), CPU milliseconds, one thread, medians.
+"""Skia, OpenCV, Blend2D and Cairo on the scenes of this harness (the drawing apart), CPU milliseconds, one thread, medians.
 
-Needs: pip install skia-python opencv-python-headless blend2d-py numpy
+Needs: pip install skia-python opencv-python-headless blend2d-py pycairo numpy
 """
 
 import math
@@ -8,6 +8,7 @@ import sys
 import time
 
 import blend2d
+import cairo
 import cv2
 import numpy as np
 import skia
@@ -86,8 +87,9 @@ def medians(rounds, *work):
 
 
 def fills():
-    print("| fill, ms | Skia, anti-aliased | Skia, aliased | OpenCV, aliased | Blend2D, anti-aliased |")
-    print("|---|---|---|---|---|")
+    print("| fill, ms | Skia, anti-aliased | Skia, aliased | OpenCV, aliased | Blend2D, anti-aliased "
+          "| Cairo, anti-aliased |")
+    print("|---|---|---|---|---|---|")
     scenes = [small_polygons(), mesh(), heavy("coast", False), heavy("walk", False),
               heavy("walk", True)]
     for name, side, shapes in scenes:
@@ -138,14 +140,29 @@ def fills():
             context.fill_all()
             context.end()
 
+        drawing = cairo.Context(cairo.ImageSurface(cairo.FORMAT_ARGB32, side, side))
+        cairo_paths = [(cairo_path(drawing, points), [c / 255 for c in color])
+                       for points, color, _ in shapes]
+        winding = cairo.FillRule.EVEN_ODD if shapes[0][2] else cairo.FillRule.WINDING
+        drawing.set_fill_rule(winding)
+
+        def cairo_fill():
+            drawing.set_source_rgb(1, 1, 1)
+            drawing.paint()
+            for path, color in cairo_paths:
+                drawing.append_path(path)
+                drawing.set_source_rgb(*color)
+                drawing.fill()
+
         m = medians(9, lambda: smooth.playback(surface.getCanvas()),
                     lambda: hard.playback(surface.getCanvas()), opencv,
-                    lambda: blend2d_fill(False), lambda: blend2d_fill(True), blend2d_clear)
+                    lambda: blend2d_fill(False), lambda: blend2d_fill(True), blend2d_clear,
+                    cairo_fill)
         even_odd = shapes[0][2] or len(shapes) > 1
         # What the calls from Python cost is taken off; there is no call for the even-odd rule.
         blend_time = m[3] - (m[4] - m[5])
         print(f"| {name} | {m[0]:.2f} | {m[1]:.2f} | {f'{m[2]:.2f}' if even_odd else '–'} "
-              f"| {'–' if shapes[0][2] else f'{blend_time:.2f}'} |")
+              f"| {'–' if shapes[0][2] else f'{blend_time:.2f}'} | {m[6]:.2f} |")
 
 
 def blend2d_path(points):
@@ -154,6 +171,16 @@ def blend2d_path(points):
     for x, y in points[1:]:
         path.line_to(x, y)
     path.close()
+    return path
+
+
+def cairo_path(drawing, points):
+    drawing.move_to(*points[0])
+    for x, y in points[1:]:
+        drawing.line_to(x, y)
+    drawing.close_path()
+    path = drawing.copy_path()
+    drawing.new_path()
     return path
 
 

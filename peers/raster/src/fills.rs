@@ -51,7 +51,7 @@ pub fn alone(filter: &str, times: usize, anti_alias: bool) {
     let one = one_thread();
     for scene in all().iter().map(|make| make()).filter(|s| s.name.contains(filter)) {
         let mut target = Pixels::new(scene.size, scene.size, [255; 4]);
-        for overlap in [Overlap::Exact, Overlap::Accumulated] {
+        for overlap in [Overlap::Adaptive, Overlap::Exact, Overlap::Accumulated] {
             let mut canvas = canvas(&scene, overlap, anti_alias);
             let mut run = || {
                 let start = ProcessTime::now();
@@ -166,7 +166,7 @@ pub fn skia(
 
 pub fn anti_aliased(filter: &str, rounds: usize) {
     println!(
-        "| anti-aliased, ms | durer exact | durer accumulated | durer exact, 2 threads | vello_cpu | tiny-skia | vello / exact | vello / accumulated | tiny-skia / exact | 2 threads, by the clock |"
+        "| anti-aliased, ms | durer | durer accumulated | durer, 2 threads | vello_cpu | tiny-skia | vello / durer | vello / accumulated | tiny-skia / durer | 2 threads, by the clock |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
     let one = one_thread();
@@ -179,7 +179,7 @@ pub fn anti_aliased(filter: &str, rounds: usize) {
         let side = scene.size;
         let mut targets = [(); 3].map(|()| Pixels::new(side, side, [255; 4]));
         let [t0, t1, t2] = &mut targets;
-        let overlaps = [Overlap::Exact, Overlap::Accumulated, Overlap::Exact];
+        let overlaps = [Overlap::Adaptive, Overlap::Accumulated, Overlap::Adaptive];
         let [mut c0, mut c1, mut c2] = overlaps.map(|overlap| canvas(&scene, overlap, true));
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
         let mut vello_target = Vello::new(side);
@@ -192,7 +192,7 @@ pub fn anti_aliased(filter: &str, rounds: usize) {
             rounds,
             &mut [
                 (
-                    "exact",
+                    "adaptive",
                     Box::new(|| {
                         let start = Instant::now();
                         one.install(|| durer(&scene, &mut c0, t0));
@@ -273,7 +273,7 @@ pub fn aliased(filter: &str, rounds: usize) {
         }
         let side = scene.size;
         let mut target = Pixels::new(side, side, [255; 4]);
-        let mut canvas = canvas(&scene, Overlap::Exact, false);
+        let mut canvas = canvas(&scene, Overlap::Adaptive, false);
         let (bez, skia_paths) = (bez(&scene), skia_paths(&scene));
         let mut vello_target = Vello::new(side);
         let mut skia_map = tiny_skia::Pixmap::new(side, side).unwrap();

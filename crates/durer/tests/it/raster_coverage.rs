@@ -24,8 +24,11 @@ impl Random {
 const RULES: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];
 
 fn mask(contours: &Contours, width: u32, height: u32, rule: FillRule) -> Pixels<u8> {
-    let options = Options { rule, ..Options::default() };
-    fill(contours, width, height, &options, &mut NoTrace).expect("size")
+    mask_with(contours, width, height, &Options { rule, ..Options::default() })
+}
+
+fn mask_with(contours: &Contours, width: u32, height: u32, options: &Options) -> Pixels<u8> {
+    fill(contours, width, height, options, &mut NoTrace).expect("size")
 }
 
 fn edges(contours: &Contours) -> Vec<(DVec2, DVec2)> {
@@ -88,8 +91,13 @@ fn row_areas(edges: &[(DVec2, DVec2)], y: u32, width: u32, rule: FillRule) -> Ve
 
 /// The largest difference from the exact coverage, in 1/255.
 fn worst_error(contours: &Contours, width: u32, height: u32, rule: FillRule) -> f64 {
-    let found = mask(contours, width, height, rule);
+    error_of(&mask(contours, width, height, rule), contours, rule)
+}
+
+/// The same for coverage that has been found.
+fn error_of(found: &Pixels<u8>, contours: &Contours, rule: FillRule) -> f64 {
     let edges = edges(contours);
+    let (width, height) = (found.width(), found.height());
     let mut worst = 0.0_f64;
     for y in 0..height {
         for (x, area) in row_areas(&edges, y, width, rule).iter().enumerate() {
@@ -146,16 +154,52 @@ fn coverage_is_exact_in_crowded_pixels() {
 
 #[test]
 fn small_crowded_drawings_are_exact() {
-    let mut random = Random(60);
-    let mut contours = Contours::new();
-    for _ in 0..60 {
-        let center = DVec2::new(random.next() * 96.0, random.next() * 32.0);
-        contours.push((0..3).map(|_| center + random.point(-4.0, 4.0)), true);
-    }
+    let contours = crowd(60, DVec2::new(96.0, 32.0), &mut Random(60));
     for rule in RULES {
         let worst = worst_error(&contours, 96, 32, rule);
         assert!(worst <= 1.0, "{rule:?}: {worst}");
     }
+}
+
+/// So many triangles of about six pixels, strewn over a drawing.
+fn crowd(count: usize, size: DVec2, random: &mut Random) -> Contours {
+    let mut contours = Contours::new();
+    for _ in 0..count {
+        let center = DVec2::new(random.next(), random.next()) * size;
+        contours.push((0..3).map(|_| center + random.point(-4.0, 4.0)), true);
+    }
+    contours
+}
+
+#[test]
+fn noise_is_exact_where_that_is_asked_for() {
+    let contours = crowd(150, DVec2::new(40.0, 12.0), &mut Random(61));
+    for rule in RULES {
+        let of = |overlap| {
+            let found = mask_with(&contours, 40, 12, &Options { rule, overlap });
+            error_of(&found, &contours, rule)
+        };
+        let (exact, adaptive) = (of(Overlap::Exact), of(Overlap::Adaptive));
+        assert!(exact <= 1.0, "{rule:?}: {exact}");
+        // Otherwise the drawing would not be one that tells the two apart.
+        assert!(adaptive > 16.0, "{rule:?}: {adaptive}");
+    }
+}
+
+#[test]
+fn pixels_of_many_edges_are_measured() {
+    let contours = crowd(120, DVec2::splat(3.0), &mut Random(62));
+    let mut small = Contours::new();
+    for (points, closed) in contours.iter() {
+        small.push(points.iter().map(|p| *p * 0.4 + DVec2::splat(0.6)), closed);
+    }
+    let of = |overlap| {
+        let rule = FillRule::EvenOdd;
+        let found = mask_with(&small, 3, 3, &Options { rule, overlap });
+        error_of(&found, &small, rule)
+    };
+    let (exact, accumulated) = (of(Overlap::Exact), of(Overlap::Accumulated));
+    assert!(exact <= 2.0 && accumulated > 16.0, "{exact} {accumulated}");
 }
 
 #[test]

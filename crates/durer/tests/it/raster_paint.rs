@@ -4,7 +4,7 @@ use crate::raster_coverage::Random;
 use durer::curve::text::Font;
 use durer::curve::{Contours, Path};
 use durer::math::{DAffine2, DVec2};
-use durer::raster::coverage::FillRule;
+use durer::raster::coverage::{FillRule, Overlap};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
 use durer::raster::paint::{
     Blending, Canvas, Gradient, MaskKind, Options, Paint, Pattern, Shape, Spread,
@@ -277,6 +277,25 @@ fn strokes_have_their_width_caps_and_dashes() {
     for join in [Join::Miter, Join::Round, Join::Bevel] {
         assert!(outline(&strange, &Stroke { join, ..dashed.clone() }, 0.1).is_ok());
     }
+}
+
+/// The outline of a stroke overlaps itself wherever it bends, which is no noise.
+#[test]
+fn strokes_of_many_short_edges_are_exact() {
+    let mut random = Random(12);
+    let mut at = DVec2::splat(32.0);
+    let scribble = Path::polyline((0..2000).map(|_| {
+        at = (at + random.point(-3.0, 3.0)).clamp(DVec2::ZERO, DVec2::splat(64.0));
+        at
+    }));
+    let stroke = Stroke { width: 0.5, ..Stroke::default() };
+    let of = |overlap| {
+        let mut c = Canvas::new(64, 64, Options { overlap, ..Options::default() }).unwrap();
+        c.stroke(&scribble, &stroke, &color(0, 0, 0, 255), 1.0).unwrap();
+        rendered(&c, 64, WHITE)
+    };
+    assert_eq!(of(Overlap::Adaptive), of(Overlap::Exact));
+    assert_ne!(of(Overlap::Accumulated), of(Overlap::Exact));
 }
 
 #[test]

@@ -4,14 +4,14 @@ use fearless_simd::dispatch;
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-use super::FillRule;
 use super::cells::{Cells, Marks};
 use super::convex;
 use super::edge::{BITS, Edge, ONE};
 use super::outline;
-use super::resolve::Resolver;
+use super::resolve::{Noise, Resolver};
 use super::small::{self, SmallCells, Touched};
 use super::sweep::{Rows, Sink, alpha, sweep};
+use super::{FillRule, Options, Overlap};
 use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::raster::bands::{BAND_ROWS, Edges};
@@ -152,10 +152,17 @@ impl BandFiller {
 
     /// Adds the edges of a path to the cells; says whether there are pixels that have to be resolved.
     #[simd]
-    fn collect<S: Simd>(simd: S, this: &mut Self, path: Path<'_>, top: i32, exact: bool) -> bool {
+    fn collect<S: Simd>(
+        simd: S,
+        this: &mut Self,
+        path: Path<'_>,
+        top: i32,
+        overlap: Overlap,
+    ) -> bool {
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
         let x = (first as i32) << BITS;
         cells.any_shared = 0;
+        let exact = overlap != Overlap::Accumulated;
         let mut edges = 0;
         for some in path.of_band(top) {
             edges += some.len() as u32;
@@ -165,7 +172,11 @@ impl BandFiller {
         }
         Cells::flush(simd, cells, exact);
         let any = cells.any_shared != 0;
-        let shared = if any { resolver.begin(cells, rows, words, edges) } else { 0 };
+        let noise = match overlap {
+            Overlap::Exact => Noise::Resolved,
+            Overlap::Adaptive | Overlap::Accumulated => Noise::Left { edges },
+        };
+        let shared = if any { resolver.begin(cells, rows, words, noise) } else { 0 };
         if shared != 0 {
             let marks = |row: i32| cells.marks_of(row);
             let edges = path.of_band(top).flatten();
@@ -181,8 +192,7 @@ impl BandFiller {
         this: &mut Self,
         path: Path<'_>,
         top: i32,
-        rule: FillRule,
-        exact: bool,
+        &Options { rule, overlap }: &Options,
         sink: &mut K,
     ) {
         let &PathEdges { ref edges, rows, columns, convex, whole } = path.path;
@@ -195,7 +205,9 @@ impl BandFiller {
                 return convex::fill(simd, own, rows, top, this.width, sink);
             }
         }
-        let resolved = Self::collect(simd, this, path, top, exact && !convex);
+        // Nothing of a convex path overlaps.
+        let overlap = if convex { Overlap::Accumulated } else { overlap };
+        let resolved = Self::collect(simd, this, path, top, overlap);
         let width = this.width;
         let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
         let resolver = resolved.then_some(resolver);
@@ -206,7 +218,7 @@ impl BandFiller {
     /// pixel, 0 … 65,536.
     pub fn areas(&mut self, path: Path<'_>, top: i32, mut add: impl FnMut(i32, usize, i32)) {
         let width = self.width;
-        dispatch!(default_level(), simd => Self::collect(simd, self, path, top, false));
+        dispatch!(default_level(), simd => Self::collect(simd, self, path, top, Overlap::Accumulated));
         let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
         for row in rows.0..rows.1 {
             let (cells, marks) = cells.row(row, words);

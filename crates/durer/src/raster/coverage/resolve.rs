@@ -11,9 +11,13 @@ use super::cells::{Cells, Marks};
 use super::edge::{BITS, Edge, ONE};
 use crate::raster::bands::BAND_ROWS;
 
-/// Pixels crossed by more edges than this keep the integral's answer: what they show is noise, and
-/// the cost grows with the third power.
-const MAX_PIECES: u32 = 24;
+/// Pixels crossed by more pieces than this are not cut into slabs, for which the cost grows with the third power, but
+/// measured along lines,
+const MAX_PIECES: usize = 24;
+/// so many for all pieces together,
+const MEASURES: usize = 6144;
+/// and at least and at most so many.
+const LINES: (usize, usize) = (16, 256);
 /// A band with at most so many edges is resolved, whatever it shows: that takes no long time, and in small drawings
 /// each pixel is looked at.
 const FEW_EDGES: u32 = 256;
@@ -80,15 +84,27 @@ pub(crate) struct Resolver {
     active: Vec<(f64, i32)>,
 }
 
+/// Which bands are resolved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Noise {
+    /// All.
+    Resolved,
+    /// All but those that show noise.
+    Left {
+        /// Edges of the band.
+        edges: u32,
+    },
+}
+
 impl Resolver {
-    /// Numbers the shared pixels of a band with so many edges; returns a bit for each row that has some, 0 where what the
-    /// band shows is noise.
+    /// Numbers the shared pixels of a band; returns a bit for each row that has some, 0 where it is noise that is
+    /// left as it is.
     pub fn begin(
         &mut self,
         cells: &Cells,
         rows: (i32, i32),
         words: (usize, usize),
-        edges: u32,
+        noise: Noise,
     ) -> u64 {
         self.words = (words.0, words.1 - words.0);
         self.ranks.clear();
@@ -102,7 +118,8 @@ impl Resolver {
                 found |= u64::from(mark.shared != 0) << row;
             }
         }
-        if edges > FEW_EDGES
+        if let Noise::Left { edges } = noise
+            && edges > FEW_EDGES
             && shared > FEW_SHARED
             && shared > touched / OFTEN
             && (edges > MANY_EDGES || shared < edges * PER_EDGE)
@@ -212,7 +229,7 @@ impl Resolver {
         // Each piece changes the winding number by one, so it has one sign all over the pixel where its
         // mean is so far from zero.
         let mean = sum.unsigned_abs() >> BITS;
-        if pixel.count > MAX_PIECES || (rule == FillRule::NonZero && mean >= pixel.count) {
+        if rule == FillRule::NonZero && mean >= pixel.count {
             return None;
         }
         self.segments.clear();
@@ -236,15 +253,21 @@ impl Resolver {
         if rule == FillRule::NonZero && (base - down > 0 || base + up < 0) {
             return Some(1.0);
         }
+        if self.segments.len() > MAX_PIECES {
+            lines(self.segments.len(), &mut self.cuts);
+        } else {
+            cuts(&self.segments, &mut self.cuts);
+        }
         Some(self.slabs(base, rule))
     }
 
+    /// The area inside, of slabs that are as wide everywhere as in the middle.
     fn slabs(&mut self, base: i32, rule: FillRule) -> f64 {
         let inside = |winding: i32| match rule {
             FillRule::NonZero => winding != 0,
             FillRule::EvenOdd => winding & 1 != 0,
         };
-        cuts(&self.segments, &mut self.cuts);
+        let many = self.segments.len() > MAX_PIECES;
         let mut area = 0.0;
         for pair in self.cuts.windows(2) {
             let (upper, lower) = (pair[0], pair[1]);
@@ -253,8 +276,13 @@ impl Resolver {
             }
             let middle = (upper + lower) / 2.0;
             self.active.clear();
-            for s in self.segments.iter().filter(|s| s.y0 <= middle && s.y1 > middle) {
-                insert(&mut self.active, (s.x_at(middle), s.sign), |a, b| a.0 < b.0);
+            let crossed = self.segments.iter().filter(|s| s.y0 <= middle && s.y1 > middle);
+            let crossings = crossed.map(|s| (s.x_at(middle), s.sign));
+            if many {
+                self.active.extend(crossings);
+                self.active.sort_by(|a, b| a.0.total_cmp(&b.0));
+            } else {
+                crossings.for_each(|c| insert(&mut self.active, c, |a, b| a.0 < b.0));
             }
             let (mut x, mut winding, mut covered) = (0.0, base, 0.0);
             for (next, sign) in &self.active {
@@ -321,6 +349,13 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     if y1 > y0 {
         out.push(Segment::new(x0, y0, x1, y1, sign));
     }
+}
+
+/// Heights between which a pixel with so many segments is measured in the middle, from 0 to 1.
+fn lines(segments: usize, cuts: &mut Vec<f64>) {
+    let count = (MEASURES / segments).clamp(LINES.0, LINES.1);
+    cuts.clear();
+    cuts.extend((0..=count).map(|i| i as f64 / count as f64));
 }
 
 /// The heights at which a segment ends or two of them cross, in order, from 0 to 1.

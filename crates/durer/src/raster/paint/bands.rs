@@ -9,10 +9,10 @@ use super::color::Space;
 use super::command::{Item, Line, Prepared, sort_into_bands};
 use super::outline::{Drawn, Filler};
 use super::source::Source;
-use super::{Canvas, Color, FillRule, MaskKind};
+use super::{Canvas, Color, MaskKind};
 use crate::raster::bands::BAND_ROWS;
-use crate::raster::coverage::convex;
 use crate::raster::coverage::sweep::{Sink, unpacked};
+use crate::raster::coverage::{self, convex};
 use crate::target::Pixels;
 
 /// Paints all commands over the target.
@@ -136,12 +136,12 @@ impl<'a, P: Space> Painter<'a, P> {
             match command {
                 // They are items of their own.
                 Prepared::Lines { .. } => {}
-                Prepared::Fill { outline, rule, source } => {
+                Prepared::Fill { outline, how, source } => {
                     let at = (top, &mut *base);
-                    dispatch!(level, simd => self.fill(simd, *outline, *rule, source, at));
+                    dispatch!(level, simd => self.fill(simd, *outline, how, source, at));
                 }
-                Prepared::PushClip { outline, rule } => {
-                    dispatch!(level, simd => self.push_clip(simd, *outline, *rule, top));
+                Prepared::PushClip { outline, how } => {
+                    dispatch!(level, simd => self.push_clip(simd, *outline, how, top));
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
                 Prepared::PushGroup => self.push_group(base.len()),
@@ -156,7 +156,7 @@ impl<'a, P: Space> Painter<'a, P> {
         &mut self,
         simd: S,
         outline: Drawn<'_>,
-        rule: FillRule,
+        how: &coverage::Options,
         source: &Source<P>,
         (top, base): (i32, &mut [P]),
     ) {
@@ -167,11 +167,11 @@ impl<'a, P: Space> Painter<'a, P> {
         match (source.color(), clip) {
             (Some(color), None) => {
                 let mut sink = Plain { pixels, width, color };
-                Filler::fill(simd, filler, outline, top, rule, &mut sink);
+                Filler::fill(simd, filler, outline, top, how, &mut sink);
             }
             _ => {
                 let mut sink = Painted { pixels, width, source, clip, top };
-                Filler::fill(simd, filler, outline, top, rule, &mut sink);
+                Filler::fill(simd, filler, outline, top, how, &mut sink);
             }
         }
     }
@@ -199,13 +199,19 @@ impl<'a, P: Space> Painter<'a, P> {
         }
     }
 
-    fn push_clip<S: Simd>(&mut self, simd: S, outline: Drawn<'_>, rule: FillRule, top: i32) {
+    fn push_clip<S: Simd>(
+        &mut self,
+        simd: S,
+        outline: Drawn<'_>,
+        how: &coverage::Options,
+        top: i32,
+    ) {
         let mut clip = vec![0_u8; self.width * BAND_ROWS as usize];
         let (width, below) = (self.width, clip_in_force(&self.clips, &self.floors));
         let touched = outline.rows();
         if touched.0 < top + BAND_ROWS && touched.1 > top {
             let mut sink = Clip { clip: &mut clip, width, below: below.map(Vec::as_slice) };
-            Filler::fill(simd, &mut self.filler, outline, top, rule, &mut sink);
+            Filler::fill(simd, &mut self.filler, outline, top, how, &mut sink);
         }
         self.clips.push(clip);
     }

@@ -3,9 +3,9 @@
 use super::color::{Space, premultiply};
 use super::outline::{Drawn, Lists, Outline};
 use super::source::{self, Source};
-use super::{Color, FillRule, MaskKind, Paint};
+use super::{Color, MaskKind, Paint};
 use crate::math::DAffine2;
-use crate::raster::coverage::convex::Strip;
+use crate::raster::coverage::{self, convex::Strip};
 
 /// A thin straight line of one colour.
 #[derive(Debug, Clone, Copy)]
@@ -93,7 +93,7 @@ impl Brush {
 pub(super) enum Command {
     Fill {
         outline: Outline,
-        rule: FillRule,
+        how: coverage::Options,
         brush: Brush,
     },
     /// Lines of the canvas, from the first to before the last.
@@ -103,7 +103,7 @@ pub(super) enum Command {
     },
     PushClip {
         outline: Outline,
-        rule: FillRule,
+        how: coverage::Options,
     },
     PopClip,
     PushGroup,
@@ -119,13 +119,13 @@ pub(super) enum Command {
 impl Command {
     pub fn prepared<'a, P: Space>(&'a self, lists: &'a Lists) -> Prepared<'a, P> {
         match self {
-            Self::Fill { outline, rule, brush } => {
+            Self::Fill { outline, how, brush } => {
                 let outline = outline.with(lists);
-                Prepared::Fill { outline, rule: *rule, source: brush.source() }
+                Prepared::Fill { outline, how: *how, source: brush.source() }
             }
             Self::Lines { first, last } => Prepared::Lines { first: *first, last: *last },
-            Self::PushClip { outline, rule } => {
-                Prepared::PushClip { outline: outline.with(lists), rule: *rule }
+            Self::PushClip { outline, how } => {
+                Prepared::PushClip { outline: outline.with(lists), how: *how }
             }
             Self::PopClip => Prepared::PopClip,
             Self::PushGroup => Prepared::PushGroup,
@@ -140,9 +140,9 @@ impl Command {
 
 /// A command with its paint made ready for one colour space.
 pub(super) enum Prepared<'a, P> {
-    Fill { outline: Drawn<'a>, rule: FillRule, source: Source<P> },
+    Fill { outline: Drawn<'a>, how: coverage::Options, source: Source<P> },
     Lines { first: u32, last: u32 },
-    PushClip { outline: Drawn<'a>, rule: FillRule },
+    PushClip { outline: Drawn<'a>, how: coverage::Options },
     PopClip,
     PushGroup,
     PopGroup { opacity: u8 },

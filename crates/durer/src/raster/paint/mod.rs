@@ -15,7 +15,7 @@ pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
 use std::sync::{Mutex, PoisonError};
 
 use super::coverage::convex::Strip;
-use super::coverage::{FillRule, Overlap, check_size};
+use super::coverage::{self, FillRule, Overlap, check_size};
 use super::line::anti_aliased;
 use super::line::wide::{self, Stroke};
 use crate::curve::{Contours, Path, flatten};
@@ -52,7 +52,8 @@ pub enum Blending {
 pub struct Options {
     /// In which space colours are mixed.
     pub blending: Blending,
-    /// What happens where a path overlaps itself inside a pixel.
+    /// What happens where a path overlaps itself inside a pixel. Strokes, which do so wherever they bend, are
+    /// [`Overlap::Exact`] unless they are to be accumulated.
     pub overlap: Overlap,
     /// Largest distance between a curve and its chords in pixels. 0.025 is at most 6/255 of coverage
     /// where a curve bends most; the number of chords grows with its inverse square root.
@@ -67,7 +68,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             blending: Blending::Srgb,
-            overlap: Overlap::Exact,
+            overlap: Overlap::Adaptive,
             tolerance: 0.025,
             anti_alias: true,
         }
@@ -196,7 +197,13 @@ impl Canvas {
         }
         let scale = self.transform.matrix2.determinant().abs().sqrt();
         let tolerance = self.options.tolerance / scale.max(1e-9);
-        self.fill(&wide::outline(path, stroke, tolerance)?, FillRule::NonZero, paint, opacity);
+        let outline = self.flattened(&wide::outline(path, stroke, tolerance)?);
+        let overlap = match self.options.overlap {
+            Overlap::Adaptive => Overlap::Exact,
+            chosen => chosen,
+        };
+        let how = coverage::Options { rule: FillRule::NonZero, overlap };
+        self.fill_as(&outline, how, paint, opacity);
         Ok(())
     }
 
@@ -227,10 +234,21 @@ impl Canvas {
         paint: &Paint,
         opacity: f64,
     ) {
+        let overlap = self.options.overlap;
+        self.fill_as(contours, coverage::Options { rule, overlap }, paint, opacity);
+    }
+
+    fn fill_as(
+        &mut self,
+        contours: &Contours,
+        how: coverage::Options,
+        paint: &Paint,
+        opacity: f64,
+    ) {
         let outline = self.outline(contours);
         if outline.rows().0 < outline.rows().1 {
             let brush = Brush::new(paint, self.transform, opacity);
-            self.commands.push(Command::Fill { outline, rule, brush });
+            self.commands.push(Command::Fill { outline, how, brush });
         }
     }
 
@@ -246,7 +264,8 @@ impl Canvas {
             return self.open.push(Open::Everything);
         }
         let outline = self.outline(&contours);
-        self.commands.push(Command::PushClip { outline, rule });
+        let how = coverage::Options { rule, overlap: self.options.overlap };
+        self.commands.push(Command::PushClip { outline, how });
         self.open.push(Open::Clip);
     }
 
@@ -323,7 +342,7 @@ impl Canvas {
     /// Buffers used before, or new ones.
     fn filler(&self) -> Filler {
         let spare = self.fillers.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        spare.unwrap_or_else(|| Filler::new(self.width, self.options.overlap == Overlap::Exact))
+        spare.unwrap_or_else(|| Filler::new(self.width))
     }
 
     fn keep(&self, filler: Filler) {

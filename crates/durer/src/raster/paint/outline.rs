@@ -3,8 +3,8 @@
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
-use super::FillRule;
 use crate::curve::Contours;
+use crate::raster::coverage;
 use crate::raster::coverage::band::{self, BandFiller, PathEdges};
 use crate::raster::coverage::edge::Edge;
 use crate::raster::coverage::sweep::Sink;
@@ -88,14 +88,12 @@ impl Drawn<'_> {
 pub(super) struct Filler {
     smooth: BandFiller,
     hard: CrossingFiller,
-    /// Whether areas are exact where outlines overlap.
-    exact: bool,
 }
 
 impl Filler {
     /// Buffers for rows of `width` pixels.
-    pub fn new(width: u32, exact: bool) -> Self {
-        Self { smooth: BandFiller::new(width), hard: CrossingFiller::new(width), exact }
+    pub fn new(width: u32) -> Self {
+        Self { smooth: BandFiller::new(width), hard: CrossingFiller::new(width) }
     }
 
     /// Hands what an outline covers of the band at row `top` to the sink.
@@ -105,15 +103,15 @@ impl Filler {
         this: &mut Self,
         outline: Drawn<'_>,
         top: i32,
-        rule: FillRule,
+        how: &coverage::Options,
         sink: &mut K,
     ) {
         match outline {
             Drawn::Smooth(path) => {
-                BandFiller::fill(simd, &mut this.smooth, path, top, rule, this.exact, sink);
+                BandFiller::fill(simd, &mut this.smooth, path, top, how, sink);
             }
             Drawn::Hard(path) => {
-                CrossingFiller::fill(simd, &mut this.hard, path, top, rule, sink);
+                CrossingFiller::fill(simd, &mut this.hard, path, top, how.rule, sink);
             }
         }
     }
