@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use super::path::{Path, PathElement};
 use crate::info::{Class, Info};
-use crate::math::DVec2;
+use crate::math::{DAffine2, DVec2};
 
 /// The facts of flattening.
 pub const INFO: Info = Info {
@@ -85,6 +85,14 @@ impl Contours {
         })
     }
 
+    /// The same contours with every point mapped.
+    pub fn transformed(mut self, map: DAffine2) -> Self {
+        if map != DAffine2::IDENTITY {
+            self.points.iter_mut().for_each(|p| *p = map.transform_point2(*p));
+        }
+        self
+    }
+
     /// Forgets the contours and keeps the memory.
     pub fn clear(&mut self) {
         self.points.clear();
@@ -143,7 +151,7 @@ pub(crate) fn flatten_into(path: &Path, tolerance: f64, out: &mut Contours) {
                     out.points.push(first);
                     (start, at) = (Some(first), first);
                 }
-                curve(at, element, tolerance, &mut out.points);
+                chain(at, element, tolerance, &mut out.points);
                 at = p;
             }
         }
@@ -152,7 +160,7 @@ pub(crate) fn flatten_into(path: &Path, tolerance: f64, out: &mut Contours) {
 }
 
 /// Appends the points of one element after its start `a`, its end last and exact.
-fn curve(a: DVec2, element: &PathElement, tolerance: f64, out: &mut Vec<DVec2>) {
+pub(crate) fn chain(a: DVec2, element: &PathElement, tolerance: f64, out: &mut Vec<DVec2>) {
     match *element {
         PathElement::LineTo(p) => out.push(p),
         PathElement::QuadTo(b, c) => {

@@ -7,5 +7,6 @@ mod path;
 pub mod stroke_font;
 pub mod text;
 
+pub(crate) use flatten::chain;
 pub use flatten::{Contours, INFO as FLATTEN, flatten, segments_for};
 pub use path::{Path, PathElement};

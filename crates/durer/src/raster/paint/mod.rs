@@ -22,6 +22,7 @@ use crate::curve::{Contours, Path, flatten};
 use crate::math::{DAffine2, DVec2};
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
+use crate::trace::NoTrace;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
 use command::{Brush, Command, Line, Open, Prepared};
@@ -194,9 +195,10 @@ impl Canvas {
             self.push_line(line);
             return Ok(());
         }
-        let scale = self.transform.matrix2.determinant().abs().sqrt();
-        let tolerance = self.options.tolerance / scale.max(1e-9);
-        self.fill(&wide::outline(path, stroke, tolerance)?, FillRule::NonZero, paint, opacity);
+        let tolerance = self.options.tolerance / stretch(self.transform).max(1e-9);
+        let outline = wide::outline(path, stroke, tolerance, &mut NoTrace)?;
+        let outline = outline.transformed(self.transform);
+        self.fill_contours(&outline, FillRule::NonZero, paint, opacity);
         Ok(())
     }
 
@@ -335,6 +337,13 @@ impl Canvas {
         let closing = self.open.iter().rev().flat_map(Open::closing);
         self.commands.iter().map(|command| command.prepared(&self.lists)).chain(closing).collect()
     }
+}
+
+/// The length of the longest image of a unit vector.
+fn stretch(map: DAffine2) -> f64 {
+    let (a, b) = (map.matrix2.x_axis, map.matrix2.y_axis);
+    let (sum, difference) = (a.dot(a) + b.dot(b), a.dot(a) - b.dot(b));
+    ((sum + libm::hypot(difference, 2.0 * a.dot(b))) / 2.0).sqrt()
 }
 
 /// Whether contours are one upright rectangle that holds a picture of this size.
