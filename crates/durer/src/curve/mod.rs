@@ -8,5 +8,7 @@ pub mod stroke_font;
 pub mod text;
 
 pub(crate) use flatten::chain;
-pub use flatten::{Contours, INFO as FLATTEN, flatten, segments_for};
+pub use flatten::{
+    Contours, INFO as FLATTEN, Step as FlattenStep, flatten, flatten_traced, segments_for,
+};
 pub use path::{Path, PathElement};

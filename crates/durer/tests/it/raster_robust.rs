@@ -75,7 +75,7 @@ fn empty_targets_take_everything() {
         canvas.render(&mut target).unwrap();
         let contours = Contours::polygon([DVec2::ZERO, DVec2::X, DVec2::Y]);
         let face = Face { contours: contours.clone(), color: [1; 4] };
-        assert_eq!(fill_partition(&[face], &mut target), Ok(0));
+        assert_eq!(fill_partition(&[face], &mut target, &mut NoTrace), Ok(0));
         let options = polygon::Options::default();
         for method in PolygonRasterizer::ALL {
             method.fill(&contours, width, height, &options, |s| panic!("{method} {s:?}"));
