@@ -67,9 +67,9 @@ fn any_raster(u: &mut Unstructured<'_>) -> Result<()> {
     let size = (u.int_in_range(0..=40)?, u.int_in_range(0..=20)?);
     any_lines(u)?;
     let (path, stroke) = (path(u, kind)?, stroke(u, kind)?);
-    let outline = any_stroke(&path, &stroke).filter(|outline| outline.elements().len() <= LONG);
-    for path in [Some(&path), outline.as_ref()].into_iter().flatten() {
-        any_fill(&flatten(path, 0.1), rule, size);
+    let outline = any_stroke(&path, &stroke).filter(|outline| outline.points().len() <= LONG);
+    for contours in [Some(flatten(&path, 0.1)), outline.clone()].into_iter().flatten() {
+        any_fill(&contours, rule, size);
     }
     any_painting(u, kind, &path, outline.map(|_| &stroke), rule, size)
 }
@@ -107,21 +107,16 @@ fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
 }
 
 /// The outline, of finite points, unless the style is wrong.
-fn any_stroke(path: &Path, stroke: &Stroke) -> Option<Path> {
+fn any_stroke(path: &Path, stroke: &Stroke) -> Option<Contours> {
     let length = |v: f64| v.is_finite() && v >= 0.0;
     let good = length(stroke.width)
         && stroke.miter_limit >= 1.0
         && stroke.dashes.iter().all(|d| length(*d))
         && stroke.dash_offset.is_finite();
-    let found = outline(path, stroke, 0.1);
+    let found = outline(path, stroke, 0.1, &mut NoTrace);
     assert_eq!(found.is_ok(), good, "{stroke:?}");
     let found = found.ok()?;
-    let finite = found.elements().iter().all(|e| match *e {
-        PathElement::MoveTo(p) | PathElement::LineTo(p) => p.is_finite(),
-        PathElement::QuadTo(a, p) => a.is_finite() && p.is_finite(),
-        PathElement::CubicTo(a, b, p) => a.is_finite() && b.is_finite() && p.is_finite(),
-        PathElement::Close => true,
-    });
+    let finite = found.points().iter().all(|p| p.is_finite());
     assert!(finite, "{path:?} {stroke:?}");
     Some(found)
 }

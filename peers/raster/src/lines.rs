@@ -11,6 +11,7 @@ use durer::raster::paint::{Canvas, Paint};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, flood_fill};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
+use durer::trace::NoTrace;
 
 /// 10⁶ lines of up to 100 pixels in mixed colours at 2048².
 pub fn aliased() {
@@ -32,7 +33,7 @@ pub fn aliased() {
     let m = medians(
         7,
         &mut [
-            ("durer, tiles", Box::new(|| tiled::draw(&tiled, d))),
+            ("durer, tiles", Box::new(|| tiled::draw(&tiled, d, &mut NoTrace))),
             (
                 "durer",
                 Box::new(|| {

@@ -7,6 +7,7 @@
 use super::bezier::{Point, project};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3};
+use crate::trace::{NoTrace, Tracer};
 use crate::{Error, Result};
 
 /// The facts of de Boor's algorithm.
@@ -94,18 +95,9 @@ impl<P: Point> BSpline<P> {
         (span, t)
     }
 
-    /// The point at a parameter, by de Boor's algorithm; parameters outside the domain are moved to its ends.
+    /// The point at a parameter, by [`de_boor`].
     pub fn point(&self, t: f64) -> P {
-        let (p, (span, t)) = (self.degree, self.span(t));
-        let mut points = self.control[span - p..=span].to_vec();
-        for level in 1..=p {
-            for i in (level..=p).rev() {
-                let (low, high) = (self.knots[span - p + i], self.knots[span + 1 + i - level]);
-                let share = if high > low { (t - low) / (high - low) } else { 0.0 };
-                points[i] = points[i - 1].mix(points[i], share);
-            }
-        }
-        points[p]
+        de_boor(self, t, &mut NoTrace)
     }
 
     /// The values of all basis functions at a parameter, by the recursion of Cox and de Boor: they are
@@ -126,6 +118,53 @@ impl<P: Point> BSpline<P> {
         values.truncate(self.control.len());
         values
     }
+}
+
+/// One step: a point of a level of the triangle of intermediate points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step<P> {
+    /// Level, 1 for the mixes of control points, up to the degree for the curve's point.
+    pub level: usize,
+    /// It is mixed from the points `index` − 1 and `index` of the level below; on level 0 control points are
+    /// counted.
+    pub index: usize,
+    /// The share of the second.
+    pub share: f64,
+    /// The point.
+    pub point: P,
+}
+
+/// The point of a curve at a parameter, by de Boor's algorithm; parameters outside the domain are moved to its ends.
+///
+/// ```
+/// use durer::curve::b_spline::{BSpline, de_boor};
+/// use durer::trace::Recorder;
+///
+/// let spline = BSpline::clamped(2, vec![0.0, 2.0, 3.0, 7.0]).unwrap();
+/// let mut steps = Recorder::default();
+/// // Two mixes of three control points, and one of these.
+/// assert_eq!(de_boor(&spline, 0.25, &mut steps), 1.625);
+/// assert_eq!(steps.steps().len(), 3);
+/// ```
+pub fn de_boor<P: Point>(curve: &BSpline<P>, t: f64, tracer: &mut impl Tracer<Step<P>>) -> P {
+    let (p, (span, t)) = (curve.degree, curve.span(t));
+    let mut points = curve.control[span - p..=span].to_vec();
+    for level in 1..=p {
+        for i in (level..=p).rev() {
+            let (low, high) = (curve.knots[span - p + i], curve.knots[span + 1 + i - level]);
+            let share = if high > low { (t - low) / (high - low) } else { 0.0 };
+            points[i] = points[i - 1].mix(points[i], share);
+            let (index, point) = (span - p + i, points[i]);
+            tracer.step(|| Step { level, index, share, point });
+        }
+    }
+    points[p]
+}
+
+/// The point of a rational curve at a parameter: [`de_boor`] with homogeneous points (x · weight, y · weight,
+/// weight), then one division.
+pub fn de_boor_rational(curve: &Nurbs, t: f64, tracer: &mut impl Tracer<Step<DVec3>>) -> DVec2 {
+    project(de_boor(&curve.lifted, t, tracer)).unwrap_or_default()
 }
 
 /// A non-uniform rational B-spline in the plane: control points with weights.
@@ -162,9 +201,9 @@ impl Nurbs {
         self.lifted.domain()
     }
 
-    /// The point at a parameter.
+    /// The point at a parameter, by [`de_boor_rational`].
     pub fn point(&self, t: f64) -> DVec2 {
-        project(self.lifted.point(t)).unwrap_or_default()
+        de_boor_rational(self, t, &mut NoTrace)
     }
 }
 
@@ -172,7 +211,7 @@ impl Nurbs {
 mod tests {
     use super::*;
     use crate::curve::bezier::de_casteljau;
-    use crate::trace::NoTrace;
+    use crate::trace::Recorder;
 
     fn control() -> Vec<DVec2> {
         (0..7).map(|i| DVec2::new(f64::from(i), f64::from(i * i % 5))).collect()
@@ -200,6 +239,39 @@ mod tests {
             let t = f64::from(i) / 10.0;
             let p = de_casteljau(&control(), t, &mut NoTrace).unwrap();
             assert!(p.distance(spline.point(t)) < 1e-12);
+        }
+    }
+
+    /// Mixes the points again as the steps say; the last one.
+    fn replayed<P: Point + PartialEq + std::fmt::Debug>(control: &[P], steps: &[Step<P>]) -> P {
+        let (mut below, mut level, mut level_number) = (control.to_vec(), control.to_vec(), 1);
+        for step in steps {
+            if step.level > level_number {
+                (below, level_number) = (level.clone(), step.level);
+            }
+            level[step.index] = below[step.index - 1].mix(below[step.index], step.share);
+            assert_eq!(level[step.index], step.point);
+        }
+        steps.last().expect("a degree of at least 1").point
+    }
+
+    #[test]
+    fn the_steps_rebuild_the_point() {
+        let weights = [1.0, 0.5, 2.0, 1.0, 3.0, 0.1, 1.0];
+        let weighted: Vec<(DVec2, f64)> = control().into_iter().zip(weights).collect();
+        for degree in 1..=6 {
+            let spline = BSpline::clamped(degree, control()).unwrap();
+            let nurbs = Nurbs::new(degree, &weighted, spline.knots.clone()).unwrap();
+            for i in 0..=20 {
+                let (t, mut steps, mut lifted) =
+                    (f64::from(i) / 20.0, Recorder::default(), Recorder::default());
+                let p = de_boor(&spline, t, &mut steps);
+                assert_eq!((p, steps.steps().len()), (spline.point(t), degree * (degree + 1) / 2));
+                assert_eq!(replayed(&control(), steps.steps()), p);
+                let p = de_boor_rational(&nurbs, t, &mut lifted);
+                assert_eq!(p, nurbs.point(t));
+                assert_eq!(project(replayed(&nurbs.lifted.control, lifted.steps())), Some(p));
+            }
         }
     }
 

@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use super::path::{Path, PathElement};
 use crate::info::{Class, Info};
-use crate::math::DVec2;
+use crate::math::{DAffine2, DVec2};
+use crate::trace::{NoTrace, Tracer};
 
 /// The facts of flattening.
 pub const INFO: Info = Info {
@@ -85,6 +86,14 @@ impl Contours {
         })
     }
 
+    /// The same contours with every point mapped.
+    pub fn transformed(mut self, map: DAffine2) -> Self {
+        if map != DAffine2::IDENTITY {
+            self.points.iter_mut().for_each(|p| *p = map.transform_point2(*p));
+        }
+        self
+    }
+
     /// Forgets the contours and keeps the memory.
     pub fn clear(&mut self) {
         self.points.clear();
@@ -117,42 +126,74 @@ pub fn segments_for(degree: u32, second_difference: f64, tolerance: f64) -> u32 
 /// what [`crate::raster::paint`] takes; 0.1 is seen by comparison only. The number of lines grows
 /// with 1/√tolerance. Contours that are not closed stay marked as open.
 pub fn flatten(path: &Path, tolerance: f64) -> Contours {
-    let mut contours = Contours::new();
-    flatten_into(path, tolerance, &mut contours);
-    contours
+    flatten_traced(path, tolerance, &mut NoTrace)
 }
 
-/// As [`flatten`], appending to contours whose memory is used again.
-pub(crate) fn flatten_into(path: &Path, tolerance: f64, out: &mut Contours) {
+/// One step of flattening.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A contour begins.
+    Start(DVec2),
+    /// The next chord of an element.
+    Chord {
+        /// Index of the element in the path.
+        element: usize,
+        /// Where the chord ends.
+        end: DVec2,
+    },
+    /// The contour ends, closed or open.
+    End {
+        /// Whether it was closed.
+        closed: bool,
+    },
+}
+
+/// As [`flatten`], with a listener for its steps.
+pub fn flatten_traced(path: &Path, tolerance: f64, t: &mut impl Tracer<Step>) -> Contours {
+    let mut out = Contours::new();
     let (mut start, mut at) = (None, DVec2::ZERO);
-    for element in path.elements() {
-        let open = start.is_some();
+    for (index, element) in path.elements().iter().enumerate() {
         match *element {
             PathElement::MoveTo(p) => {
-                out.end(false);
+                end(&mut out, false, t);
                 out.points.push(p);
+                t.step(|| Step::Start(p));
                 (start, at) = (Some(p), p);
             }
             PathElement::Close => {
-                out.end(true);
+                end(&mut out, true, t);
                 at = start.take().unwrap_or(at);
             }
             PathElement::LineTo(p) | PathElement::QuadTo(_, p) | PathElement::CubicTo(_, _, p) => {
-                if !open {
+                if start.is_none() {
                     let first = if out.ends.is_empty() { p } else { at };
                     out.points.push(first);
+                    t.step(|| Step::Start(first));
                     (start, at) = (Some(first), first);
                 }
-                curve(at, element, tolerance, &mut out.points);
+                let before = out.points.len();
+                chain(at, element, tolerance, &mut out.points);
+                for end in &out.points[before..] {
+                    t.step(|| Step::Chord { element: index, end: *end });
+                }
                 at = p;
             }
         }
     }
-    out.end(false);
+    end(&mut out, false, t);
+    out
+}
+
+/// Ends a contour, if one is open.
+fn end(out: &mut Contours, closed: bool, t: &mut impl Tracer<Step>) {
+    if out.points.len() > out.start() {
+        t.step(|| Step::End { closed });
+    }
+    out.end(closed);
 }
 
 /// Appends the points of one element after its start `a`, its end last and exact.
-fn curve(a: DVec2, element: &PathElement, tolerance: f64, out: &mut Vec<DVec2>) {
+pub(crate) fn chain(a: DVec2, element: &PathElement, tolerance: f64, out: &mut Vec<DVec2>) {
     match *element {
         PathElement::LineTo(p) => out.push(p),
         PathElement::QuadTo(b, c) => {
@@ -180,6 +221,7 @@ fn curve(a: DVec2, element: &PathElement, tolerance: f64, out: &mut Vec<DVec2>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::Recorder;
 
     /// Distance of a point from a chain of lines.
     fn distance(p: DVec2, chain: &[DVec2]) -> f64 {
@@ -226,5 +268,28 @@ mod tests {
         let contours = flatten(&path, 0.1);
         let found: Vec<(usize, bool)> = contours.iter().map(|(p, c)| (p.len(), c)).collect();
         assert_eq!(found, [(4, true), (3, false)]);
+    }
+
+    #[test]
+    fn the_steps_rebuild_the_contours() {
+        let mut path = Path::circle(DVec2::ONE, 7.0);
+        path.line_to(3.0, 4.0).quad_to(9.0, 1.0, 2.0, -5.0).close().close();
+        path.move_to(1.0, 1.0).move_to(5.0, 5.0).cubic_to(DVec2::X, DVec2::Y, DVec2::ONE);
+        let mut recorder = Recorder::default();
+        let traced = flatten_traced(&path, 0.1, &mut recorder);
+        assert_eq!(traced, flatten(&path, 0.1));
+        let (mut replayed, mut points) = (Contours::new(), Vec::new());
+        for step in recorder.steps() {
+            match *step {
+                Step::Start(p) => points = vec![p],
+                Step::Chord { element, end } => {
+                    assert!(!matches!(path.elements()[element], PathElement::Close));
+                    points.push(end);
+                }
+                Step::End { closed } => replayed.push(points.drain(..), closed),
+            }
+        }
+        assert_eq!(replayed, traced);
+        assert_eq!(traced.iter().count(), 4);
     }
 }

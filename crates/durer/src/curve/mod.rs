@@ -7,5 +7,8 @@ mod path;
 pub mod stroke_font;
 pub mod text;
 
-pub use flatten::{Contours, INFO as FLATTEN, flatten, segments_for};
+pub(crate) use flatten::chain;
+pub use flatten::{
+    Contours, INFO as FLATTEN, Step as FlattenStep, flatten, flatten_traced, segments_for,
+};
 pub use path::{Path, PathElement};

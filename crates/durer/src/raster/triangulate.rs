@@ -9,6 +9,7 @@ use earcut::Earcut;
 use crate::curve::Contours;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
+use crate::trace::Tracer;
 
 /// The facts of triangulation.
 pub const INFO: Info = Info {
@@ -40,19 +41,29 @@ impl Triangulation {
     }
 }
 
+/// One step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The next of the points that triangles name.
+    Point(DVec2),
+    /// An ear is cut off: its corners.
+    Triangle([u32; 3]),
+}
+
 /// Triangulates a polygon: the first contour is its border, the others are holes in it.
 ///
 /// ```
 /// use durer::curve::{Path, flatten};
 /// use durer::raster::triangulate::triangulate;
+/// use durer::trace::NoTrace;
 ///
 /// let mut frame = Path::rectangle(0.0, 0.0, 4.0, 4.0);
 /// frame.extend(&Path::rectangle(1.0, 1.0, 2.0, 2.0));
-/// let triangles = triangulate(&flatten(&frame, 0.1));
+/// let triangles = triangulate(&flatten(&frame, 0.1), &mut NoTrace);
 /// assert_eq!(triangles.area(), 12.0);
 /// assert_eq!(triangles.triangles.len(), 8);
 /// ```
-pub fn triangulate(polygon: &Contours) -> Triangulation {
+pub fn triangulate(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulation {
     let mut points = Vec::with_capacity(polygon.points().len());
     let mut holes: Vec<u32> = Vec::new();
     for (i, (contour, _)) in polygon.iter().enumerate() {
@@ -64,5 +75,7 @@ pub fn triangulate(polygon: &Contours) -> Triangulation {
     let mut indices: Vec<u32> = Vec::new();
     Earcut::new().earcut(points.iter().map(|p| [p.x, p.y]), &holes, &mut indices);
     let triangles = indices.as_chunks::<3>().0.to_vec();
+    points.iter().for_each(|p| t.step(|| Step::Point(*p)));
+    triangles.iter().for_each(|corners| t.step(|| Step::Triangle(*corners)));
     Triangulation { points, triangles }
 }

@@ -3,7 +3,8 @@
 use durer::curve::b_spline::BSpline;
 use durer::curve::{Contours, Path, PathElement, flatten};
 use durer::math::DVec2;
-use durer::raster::triangulate::triangulate;
+use durer::raster::triangulate::{Step, Triangulation, triangulate};
+use durer::trace::{NoTrace, Recorder};
 
 #[test]
 fn what_follows_a_closed_contour_begins_at_its_start() {
@@ -65,8 +66,18 @@ fn triangles_leave_holes_open() {
     let mut polygon = Contours::polygon(square(0.0, 9.0));
     polygon.push(square(1.0, 3.0), true);
     polygon.push(square(4.0, 8.0), true);
-    let found = triangulate(&polygon);
+    let mut recorder = Recorder::default();
+    let found = triangulate(&polygon, &mut recorder);
     assert_eq!((found.points.len(), found.triangles.len()), (12, 14));
+    assert_eq!(found, triangulate(&polygon, &mut NoTrace));
+    let mut replayed = Triangulation::default();
+    for step in recorder.steps() {
+        match *step {
+            Step::Point(p) => replayed.points.push(p),
+            Step::Triangle(corners) => replayed.triangles.push(corners),
+        }
+    }
+    assert_eq!(replayed, found);
     assert!((found.area() - (81.0 - 4.0 - 16.0)).abs() < 1e-12, "{}", found.area());
     let inside = |t: &[u32; 3], p: DVec2| {
         let [a, b, c] = t.map(|i| found.points[i as usize]);

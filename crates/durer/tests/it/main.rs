@@ -37,6 +37,7 @@ mod raster_robust;
 mod raster_seed_fill;
 mod raster_source;
 mod raster_stroke;
+mod raster_stroke_area;
 mod raster_triangle;
 mod region_details;
 mod scenes;

@@ -2,7 +2,9 @@
 
 use durer::curve::Contours;
 use durer::math::DVec2;
-use durer::raster::coverage::{Face, FillRule, Options, Overlap, Step, fill, fill_partition};
+use durer::raster::coverage::{
+    Face, FillRule, Options, Overlap, PartitionStep, Step, fill, fill_partition,
+};
 use durer::target::Pixels;
 use durer::trace::{NoTrace, Recorder};
 
@@ -459,20 +461,54 @@ fn mesh(random: &mut Random, cells: usize, side: f64) -> Vec<Face> {
 }
 
 #[test]
+fn steps_of_a_partition_rebuild_it() {
+    let mut faces = mesh(&mut Random(4), 9, 37.0);
+    faces.truncate(100);
+    let below = Pixels::new(40, 33, [0, 255, 0, 128]);
+    let (mut painted, mut unheard, mut replayed) = (below.clone(), below.clone(), below);
+    let mut recorder = Recorder::default();
+    let full = fill_partition(&faces, &mut painted, &mut recorder).unwrap();
+    assert_eq!(fill_partition(&faces, &mut unheard, &mut NoTrace).unwrap(), full);
+    assert_eq!(unheard, painted);
+    let (mut sums, mut colored) = (Pixels::new(40, 33, 0), 0);
+    for step in recorder.steps() {
+        match *step {
+            PartitionStep::Area { face, pixel: (x, y), area } => {
+                assert!(face < faces.len());
+                sums.set(x, y, sums.get(x, y).unwrap() + area);
+            }
+            PartitionStep::Pixel { pixel: (x, y), color } => {
+                replayed.set(x, y, color);
+                colored += 1;
+            }
+        }
+    }
+    assert_eq!(replayed, painted);
+    let areas = sums.data();
+    assert_eq!(areas.iter().filter(|sum| **sum > 0).count(), colored);
+    // A pixel is full from 254.5 of 255 parts on.
+    let enough = areas.iter().filter(|sum| **sum * 2 * 255 >= 65_536 * 509).count();
+    assert_eq!(enough as u64, full);
+}
+
+#[test]
 fn a_partition_is_exactly_full_in_any_order() {
     let mut random = Random(10);
     for side in [40_u32, 97] {
         let mut faces = mesh(&mut random, 13, f64::from(side));
         let mut reference = Pixels::new(side, side, [0, 255, 0, 255]);
-        assert_eq!(fill_partition(&faces, &mut reference).unwrap(), u64::from(side * side));
+        assert_eq!(
+            fill_partition(&faces, &mut reference, &mut NoTrace).unwrap(),
+            u64::from(side * side)
+        );
         faces.reverse();
         let mut again = Pixels::new(side, side, [0, 255, 0, 255]);
-        fill_partition(&faces, &mut again).unwrap();
+        fill_partition(&faces, &mut again, &mut NoTrace).unwrap();
         assert_eq!(again, reference);
         // White faces over black: no pixel may be less than white.
         faces.iter_mut().for_each(|f| f.color = [255; 4]);
         let mut white = Pixels::new(side, side, [0, 0, 0, 255]);
-        fill_partition(&faces, &mut white).unwrap();
+        fill_partition(&faces, &mut white, &mut NoTrace).unwrap();
         assert!(white.data().iter().all(|p| *p == [255; 4]));
     }
 }

@@ -189,8 +189,19 @@ fn tiled_lines_are_bresenhams_in_their_order() {
             bresenham::draw(*from, *to, &options, plot, &mut NoTrace);
         }
         let mut found = Pixels::new(width, height, 0);
-        tiled::draw(&lines, &mut found);
+        let mut recorder = Recorder::default();
+        tiled::draw(&lines, &mut found, &mut recorder);
         assert!(found == expected, "round {round}");
+        let mut replayed = Pixels::new(width, height, 0);
+        for tiled::Step { tile, line } in recorder.steps() {
+            let options = Options { window: Some(*tile) };
+            let plot = |p: IVec2| replayed.set(p.x as u32, p.y as u32, line.value);
+            bresenham::draw(line.from, line.to, &options, plot, &mut NoTrace);
+        }
+        assert!(replayed == expected, "steps of round {round}");
+        let mut unheard = Pixels::new(width, height, 0);
+        tiled::draw(&lines, &mut unheard, &mut NoTrace);
+        assert!(unheard == expected, "without a listener, round {round}");
     }
 }
 
@@ -210,7 +221,7 @@ fn every_short_slope_is_bresenhams_in_a_tile() {
                 let lines = [Line { from, to, value: 1_u8 }; 24];
                 let (width, height) = (ax.max(bx) + 1, ay.max(by) + 1);
                 let mut found = Pixels::new(width as u32, height as u32, 0);
-                tiled::draw(&lines, &mut found);
+                tiled::draw(&lines, &mut found, &mut NoTrace);
                 let mut expected = Pixels::new(width as u32, height as u32, 0);
                 let plot = |p: IVec2| expected.set(p.x as u32, p.y as u32, 1);
                 bresenham::draw(from, to, &Options::default(), plot, &mut NoTrace);

@@ -10,6 +10,7 @@ use durer::raster::paint::{
     Blending, Canvas, Gradient, MaskKind, Options, Paint, Pattern, Shape, Spread,
 };
 use durer::target::Pixels;
+use durer::trace::NoTrace;
 use std::sync::Arc;
 
 const WHITE: [u8; 4] = [255; 4];
@@ -270,12 +271,12 @@ fn strokes_have_their_width_caps_and_dashes() {
         Stroke { dashes: vec![-1.0], ..plain.clone() },
         Stroke { dash_offset: f64::INFINITY, ..plain.clone() },
     ] {
-        assert!(outline(&line, &bad, 0.1).is_err());
+        assert!(outline(&line, &bad, 0.1, &mut NoTrace).is_err());
     }
     let mut strange = Path::new();
     strange.close().line_to(f64::NAN, 1.0).line_to(5.0, 5.0).quad_to(1e30, 3.0, 9.0, 9.0).close();
     for join in [Join::Miter, Join::Round, Join::Bevel] {
-        assert!(outline(&strange, &Stroke { join, ..dashed.clone() }, 0.1).is_ok());
+        assert!(outline(&strange, &Stroke { join, ..dashed.clone() }, 0.1, &mut NoTrace).is_ok());
     }
 }
 
@@ -306,10 +307,11 @@ fn thin_lines_are_painted_as_their_outlines_are() {
         let blending = if round % 5 == 0 { Blending::Linear } else { Blending::Srgb };
         let options = Options { blending, ..Options::default() };
         let mut canvases = [(); 2].map(|()| Canvas::new(side, side - 7, options).unwrap());
+        let mut map = DAffine2::IDENTITY;
         if kind == 1 {
             let turn = DAffine2::from_angle_translation(random.next(), DVec2::new(40.0, -20.0));
-            let turn = turn * DAffine2::from_scale(DVec2::new(1.2, 0.7));
-            canvases.iter_mut().for_each(|c| c.set_transform(turn));
+            map = turn * DAffine2::from_scale(DVec2::new(1.2, 0.7));
+            canvases.iter_mut().for_each(|c| c.set_transform(map));
         }
         if kind == 2 {
             let hole = Path::circle(DVec2::splat(80.0), 50.0);
@@ -339,8 +341,13 @@ fn thin_lines_are_painted_as_their_outlines_are() {
             path.move_to(a.x, a.y).line_to(b.x, b.y);
             let opacity = 0.9 + random.next() * 0.2;
             canvases[0].stroke(&path, &stroke, &paint, opacity).unwrap();
-            let outline = outline(&path, &stroke, 0.025).unwrap();
-            canvases[1].fill(&outline, FillRule::NonZero, &paint, opacity);
+            let outline = outline(&path, &stroke, 0.025, &mut NoTrace).unwrap();
+            canvases[1].fill_contours(
+                &outline.transformed(map),
+                FillRule::NonZero,
+                &paint,
+                opacity,
+            );
         }
         let [own, other] = canvases.map(|c| {
             let mut target = Pixels::new(side, side - 7, [250, 240, 10, 200]);

@@ -7,7 +7,7 @@ use durer::raster::coverage::FillRule;
 use durer::raster::polygon::{Options, PolygonRasterizer, edge_table, ordered_edge_list};
 use durer::raster::span::Span;
 use durer::raster::triangulate::triangulate;
-use durer::trace::Recorder;
+use durer::trace::{NoTrace, Recorder};
 
 fn spans(
     method: PolygonRasterizer,
@@ -99,7 +99,7 @@ fn triangulated_polygons_light_each_pixel_once() {
         contours.push(star(&mut random, 2.0, 5.0).into_iter().rev(), true);
         let whole = covered(&contours, 40, FillRule::EvenOdd);
         let mut parts = vec![0; 1600];
-        let triangles = triangulate(&contours);
+        let triangles = triangulate(&contours, &mut NoTrace);
         for t in &triangles.triangles {
             let corners = t.map(|i| triangles.points[i as usize]);
             let part = covered(&Contours::polygon(corners), 40, FillRule::NonZero);

@@ -5,6 +5,7 @@ use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::{Face, FillRule, fill_partition};
 use durer::raster::paint::{Blending, Canvas, Gradient, Options, Paint, Pattern, Shape, Spread};
 use durer::target::Pixels;
+use durer::trace::NoTrace;
 use std::sync::Arc;
 
 /// A square of 40×40 pixels in one paint, on nothing.
@@ -113,7 +114,7 @@ fn faces_mix_with_what_is_below_and_with_each_other() {
     let face = |color| Face { contours: durer::curve::flatten(&all(), 0.1), color };
     let drawn = |faces: &[Face], below| {
         let mut picture = Pixels::new(4, 4, below);
-        fill_partition(faces, &mut picture).expect("size");
+        fill_partition(faces, &mut picture, &mut NoTrace).expect("size");
         picture.get(1, 1).expect("pixel")
     };
     // Half of black over white, over nothing, and over half of white.

@@ -12,6 +12,7 @@ use crate::curve::Contours;
 use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
 use crate::target::Pixels;
+use crate::trace::Tracer;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -37,6 +38,27 @@ pub struct Face {
 /// Sums of one pixel: area 0 … 65,536, and area · colour for three channels and alpha.
 type Sums = [u32; 5];
 
+/// One step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// A face covers a part of a pixel.
+    Area {
+        /// Index of the face.
+        face: usize,
+        /// Column and row.
+        pixel: (u32, u32),
+        /// The part, of 65,536.
+        area: u32,
+    },
+    /// A pixel, its sums complete, gets its colour.
+    Pixel {
+        /// Column and row.
+        pixel: (u32, u32),
+        /// The faces over what was there.
+        color: [u8; 4],
+    },
+}
+
 /// Paints faces that do not overlap over the target as one shape: their areas and colours are added in
 /// each pixel before anything is rounded, so where faces meet nothing of what is behind shines through.
 ///
@@ -45,7 +67,11 @@ type Sums = [u32; 5];
 ///
 /// # Errors
 /// [`crate::Error::Limit`] for sides beyond 32,767 pixels.
-pub fn fill_partition(faces: &[Face], target: &mut Pixels<[u8; 4]>) -> Result<u64> {
+pub fn fill_partition(
+    faces: &[Face],
+    target: &mut Pixels<[u8; 4]>,
+    t: &mut impl Tracer<Step>,
+) -> Result<u64> {
     let (width, height) = (target.width(), target.height());
     check_size(width, height)?;
     let mut list = Vec::new();
@@ -55,10 +81,13 @@ pub fn fill_partition(faces: &[Face], target: &mut Pixels<[u8; 4]>) -> Result<u6
     let mut full = 0;
     for top in (0..height as i32).step_by(BAND_ROWS as usize) {
         let mut sums: Vec<Sums> = vec![[0; 5]; width as usize * BAND_ROWS as usize];
-        for (face, path) in faces.iter().zip(&paths).filter(|(_, p)| !p.misses(top)) {
+        let touched = faces.iter().zip(&paths).enumerate().filter(|(_, (_, p))| !p.misses(top));
+        for (index, (face, path)) in touched {
             let [r, g, b, a] = face.color.map(u32::from);
             let weights = [1, r * a / 255, g * a / 255, b * a / 255, a];
             filler.areas(path.with(&list), top, |row, x, area| {
+                let pixel = (x as u32, top as u32 + row as u32);
+                t.step(|| Step::Area { face: index, pixel, area: area as u32 });
                 let sum = &mut sums[row as usize * width as usize + x];
                 for (sum, weight) in sum.iter_mut().zip(weights) {
                     *sum = sum.saturating_add(area as u32 * weight);
@@ -69,7 +98,9 @@ pub fn fill_partition(faces: &[Face], target: &mut Pixels<[u8; 4]>) -> Result<u6
             let (x, y) = (i as u32 % width, top as u32 + i as u32 / width);
             full += u64::from(coverage_of_area(sum[0].min(65_536) as i32) == 255);
             if let Some(below) = target.get(x, y) {
-                target.set(x, y, over(sum, below));
+                let color = over(sum, below);
+                t.step(|| Step::Pixel { pixel: (x, y), color });
+                target.set(x, y, color);
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::info::{Class, Info};
 use crate::math::IVec2;
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
-use crate::trace::NoTrace;
+use crate::trace::{NoTrace, Tracer};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -53,6 +53,15 @@ pub struct Line<T> {
     pub value: T,
 }
 
+/// One step: what a line leaves in a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step<T> {
+    /// First and last pixel of the tile, both included; tiles at the target's border end with it.
+    pub tile: (IVec2, IVec2),
+    /// The line; what lies outside the tile is drawn elsewhere.
+    pub line: Line<T>,
+}
+
 /// Draws lines in their order: pixels of several have the value of the last. What lies outside the target is left out.
 ///
 /// The same pixels as [`super::bresenham::draw`] lights, one line after the other, in less than half the time where
@@ -62,17 +71,24 @@ pub struct Line<T> {
 /// use durer::math::IVec2;
 /// use durer::raster::line::tiled::{Line, draw};
 /// use durer::target::Pixels;
+/// use durer::trace::NoTrace;
 ///
 /// let mut picture = Pixels::new(5, 3, '.');
 /// let line = |from: (i32, i32), to: (i32, i32), value| Line { from: from.into(), to: to.into(), value };
-/// draw(&[line((0, 0), (4, 2), 'a'), line((2, -5), (2, 9), 'b')], &mut picture);
+/// let lines = [line((0, 0), (4, 2), 'a'), line((2, -5), (2, 9), 'b')];
+/// draw(&lines, &mut picture, &mut NoTrace);
 /// assert_eq!(String::from_iter(picture.data()), "aab....ba...b.a".to_owned());
 /// ```
-pub fn draw<T: Copy>(lines: &[Line<T>], target: &mut Pixels<T>) {
-    draw_at(default_level(), lines, target);
+pub fn draw<T: Copy>(lines: &[Line<T>], target: &mut Pixels<T>, t: &mut impl Tracer<Step<T>>) {
+    draw_at(default_level(), lines, target, t);
 }
 
-fn draw_at<T: Copy>(level: Level, lines: &[Line<T>], target: &mut Pixels<T>) {
+fn draw_at<T: Copy>(
+    level: Level,
+    lines: &[Line<T>],
+    target: &mut Pixels<T>,
+    t: &mut impl Tracer<Step<T>>,
+) {
     let Some(first) = lines.first() else { return };
     let mut tiles = Tiles {
         across: (target.width().div_ceil(TILE as u32) as usize).max(1),
@@ -83,7 +99,7 @@ fn draw_at<T: Copy>(level: Level, lines: &[Line<T>], target: &mut Pixels<T>) {
     };
     for lines in lines.chunks(BATCH) {
         tiles.sort(lines);
-        tiles.draw(level, target);
+        tiles.draw(level, target, t);
     }
 }
 
@@ -144,14 +160,16 @@ impl<T: Copy> Tiles<T> {
     }
 
     /// Draws the lines of all tiles.
-    fn draw(&mut self, level: Level, target: &mut Pixels<T>) {
+    fn draw(&mut self, level: Level, target: &mut Pixels<T>, t: &mut impl Tracer<Step<T>>) {
         let Self { across, size, starts, entries, copy } = self;
         let Some(copy) = copy.first_chunk_mut::<PIXELS>() else { return };
         for (i, range) in starts.windows(2).enumerate() {
             let lines = &entries[range[0] as usize..range[1] as usize];
             let corner = IVec2::new((i % *across) as i32, (i / *across) as i32) * TILE;
             let size = IVec2::new(size.0 as i32, size.1 as i32);
-            draw_tile(level, lines, (corner, size.min(corner + TILE)), copy, target);
+            let end = size.min(corner + TILE);
+            lines.iter().for_each(|line| t.step(|| Step { tile: (corner, end - 1), line: *line }));
+            draw_tile(level, lines, (corner, end), copy, target);
         }
     }
 }
@@ -295,7 +313,7 @@ mod tests {
             .collect();
         let at = |level| {
             let mut picture = Pixels::new(300, 270, u16::MAX);
-            draw_at(level, &lines, &mut picture);
+            draw_at(level, &lines, &mut picture, &mut NoTrace);
             picture
         };
         let mut expected = Pixels::new(300, 270, u16::MAX);

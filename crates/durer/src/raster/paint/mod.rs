@@ -22,6 +22,7 @@ use crate::curve::{Contours, Path, flatten};
 use crate::math::{DAffine2, DVec2};
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
+use crate::trace::NoTrace;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
 use command::{Brush, Command, Line, Open, Prepared};
@@ -195,15 +196,14 @@ impl Canvas {
             self.push_line(line);
             return Ok(());
         }
-        let scale = self.transform.matrix2.determinant().abs().sqrt();
-        let tolerance = self.options.tolerance / scale.max(1e-9);
-        let outline = self.flattened(&wide::outline(path, stroke, tolerance)?);
+        let tolerance = self.options.tolerance / stretch(self.transform).max(1e-9);
+        let outline = wide::outline(path, stroke, tolerance, &mut NoTrace)?;
         let overlap = match self.options.overlap {
             Overlap::Adaptive => Overlap::Exact,
             chosen => chosen,
         };
         let how = coverage::Options { rule: FillRule::NonZero, overlap };
-        self.fill_as(&outline, how, paint, opacity);
+        self.fill_as(&outline.transformed(self.transform), how, paint, opacity);
         Ok(())
     }
 
@@ -354,6 +354,13 @@ impl Canvas {
         let closing = self.open.iter().rev().flat_map(Open::closing);
         self.commands.iter().map(|command| command.prepared(&self.lists)).chain(closing).collect()
     }
+}
+
+/// The length of the longest image of a unit vector.
+fn stretch(map: DAffine2) -> f64 {
+    let (a, b) = (map.matrix2.x_axis, map.matrix2.y_axis);
+    let (sum, difference) = (a.dot(a) + b.dot(b), a.dot(a) - b.dot(b));
+    ((sum + libm::hypot(difference, 2.0 * a.dot(b))) / 2.0).sqrt()
 }
 
 /// Whether contours are one upright rectangle that holds a picture of this size.

@@ -1,0 +1,149 @@
+//! Dashes: a path cut where it has run their lengths. Lengths of curves are measured by kurbo.
+
+use kurbo::{Affine, BezPath, PathEl, Point};
+
+use super::{Cap, Stroke};
+use crate::curve::{Path, PathElement};
+use crate::math::DVec2;
+
+/// No path gets more dashes and gaps than this; with more the line is drawn solid.
+const MAX_DASHES: f64 = 100_000.0;
+
+/// With more dashes and gaps than this, lengths are those of chords, not those of curves.
+const MAX_MEASURED: f64 = 2000.0;
+
+/// Paths that are longer are made this long while they are cut into dashes.
+const MEASURED: f64 = 1e4;
+
+/// Dots — dashes without length, with round or square caps — are lines as long as this share of the width: too
+/// short to be seen, long enough to have a direction.
+const DOT: f64 = 1e-4;
+
+/// Whether all dashes are dots, whose corners are round whatever the join.
+pub(super) fn only_dots(stroke: &Stroke) -> bool {
+    stroke.cap != Cap::Butt && repeated(&stroke.dashes).step_by(2).all(|d| d == 0.0)
+}
+
+/// SVG repeats a list of odd length, so that dashes and gaps change places.
+fn repeated(dashes: &[f64]) -> impl Iterator<Item = f64> {
+    let times = if dashes.len() % 2 == 1 { 2 } else { 1 };
+    dashes.iter().copied().cycle().take(times * dashes.len())
+}
+
+/// The dashes of a path of finite points; `None` where it stays solid: without dashes, or with too many.
+pub(super) fn dashed(
+    path: impl Iterator<Item = PathElement>,
+    stroke: &Stroke,
+    tolerance: f64,
+) -> Option<Path> {
+    let period: f64 = stroke.dashes.iter().sum();
+    if period <= 0.0 {
+        return None;
+    }
+    let source: BezPath = path.map(to_kurbo).collect();
+    let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
+    let length = control_length(&source);
+    let count = length / period * stroke.dashes.len() as f64;
+    if !(length > 0.0 && count < MAX_DASHES) {
+        return None;
+    }
+    let mut dashes: Vec<f64> = repeated(&stroke.dashes).collect();
+    if stroke.cap != Cap::Butt {
+        lengthen_dots(&mut dashes, stroke.width * DOT);
+    }
+    let offset = stroke.dash_offset.rem_euclid(dashes.iter().sum());
+    // kurbo measures to a fixed accuracy, which takes for ever on paths much longer than this.
+    let scale = libm::exp2(-libm::ceil(libm::log2((length / MEASURED).max(1.0))));
+    let source = if count < MAX_MEASURED { source } else { chords(&source, length, tolerance) };
+    dashes.iter_mut().for_each(|d| *d *= scale);
+    let small = Affine::scale(scale) * source;
+    let start = small.elements().first().copied();
+    let mut dashed = kurbo::dash(small.into_iter(), offset * scale, &dashes).peekable();
+    // Where a dash ends within rounding of the start, what follows comes without its first point.
+    let start = start.filter(|_| !matches!(dashed.peek(), None | Some(PathEl::MoveTo(_))));
+    let mut out = Path::new();
+    for element in start.into_iter().chain(dashed) {
+        out.push(from_kurbo(Affine::scale(1.0 / scale) * element));
+    }
+    Some(out)
+}
+
+/// The curves as chains of chords.
+fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
+    let mut out = BezPath::new();
+    kurbo::flatten(path.iter(), tolerance.max(length * 1e-7), |element| out.push(element));
+    out
+}
+
+/// The lengths of the lines through all control points, which are not less than those of the curves.
+fn control_length(path: &BezPath) -> f64 {
+    let (mut start, mut at, mut sum) = (Point::ORIGIN, Point::ORIGIN, 0.0);
+    for element in path.elements() {
+        let chain = match *element {
+            PathEl::MoveTo(p) => {
+                (start, at) = (p, p);
+                continue;
+            }
+            PathEl::LineTo(p) => [p, p, p],
+            PathEl::QuadTo(a, p) => [a, p, p],
+            PathEl::CurveTo(a, b, p) => [a, b, p],
+            PathEl::ClosePath => [start; 3],
+        };
+        for p in chain {
+            sum += at.distance(p);
+            at = p;
+        }
+    }
+    sum
+}
+
+/// Dashes without length get one, at the cost of the gap after them, where it has enough.
+fn lengthen_dots(dashes: &mut [f64], length: f64) {
+    for pair in dashes.chunks_exact_mut(2).filter(|p| p[0] == 0.0 && p[1] > length) {
+        pair[0] += length;
+        pair[1] -= length;
+    }
+}
+
+/// The path with contours that stay in one point made a line as long as a dot, along x, as SVG wants it;
+/// what only moves makes no dot.
+fn with_dots(path: &BezPath, width: f64) -> BezPath {
+    let mut out = BezPath::new();
+    let starts = |e: &PathEl| matches!(e, PathEl::MoveTo(_));
+    for contour in path.elements().chunk_by(|_, next| !starts(next)) {
+        let start = contour.first().and_then(PathEl::end_point);
+        match start {
+            Some(p)
+                if contour.len() > 1
+                    && control_length(&contour.iter().copied().collect()) == 0.0 =>
+            {
+                out.move_to((p.x - 0.5 * DOT * width, p.y));
+                out.line_to((p.x + 0.5 * DOT * width, p.y));
+            }
+            _ => out.extend(contour.iter().copied()),
+        }
+    }
+    out
+}
+
+fn to_kurbo(element: PathElement) -> PathEl {
+    let at = |p: DVec2| Point::new(p.x, p.y);
+    match element {
+        PathElement::MoveTo(p) => PathEl::MoveTo(at(p)),
+        PathElement::LineTo(p) => PathEl::LineTo(at(p)),
+        PathElement::QuadTo(c, p) => PathEl::QuadTo(at(c), at(p)),
+        PathElement::CubicTo(a, b, p) => PathEl::CurveTo(at(a), at(b), at(p)),
+        PathElement::Close => PathEl::ClosePath,
+    }
+}
+
+fn from_kurbo(element: PathEl) -> PathElement {
+    let at = |p: Point| DVec2::new(p.x, p.y);
+    match element {
+        PathEl::MoveTo(p) => PathElement::MoveTo(at(p)),
+        PathEl::LineTo(p) => PathElement::LineTo(at(p)),
+        PathEl::QuadTo(c, p) => PathElement::QuadTo(at(c), at(p)),
+        PathEl::CurveTo(a, b, p) => PathElement::CubicTo(at(a), at(b), at(p)),
+        PathEl::ClosePath => PathElement::Close,
+    }
+}

@@ -1,0 +1,252 @@
+//! Wide lines: the outline of a stroke with caps, joins and dashes.
+//!
+//! Thick primitives as polygons (J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles
+//! and Practice*, 2nd ed. 1990, §3.9), with the joins, caps and dashes of PostScript and SVG. Class: object space.
+//! Cost: O(n) points for n pieces of the flattened path, and those of its arcs.
+//!
+//! The path is flattened first. A stroke is the union of one rectangle for each piece, one wedge for each corner, and
+//! the caps. Its outline walks along one side of the path and back along the other, and on the inner side of a corner
+//! through the corner itself: then the outline's winding number is a sum of those of rectangles and wedges that
+//! all turn the same way, so the non-zero rule leaves no hole, however short pieces are beside the width. Where
+//! both pieces are long enough the offset lines meet in one point instead. How many points an arc gets and when two
+//! offset lines meet is durer's own; lengths of curves, which dashes need, are measured by kurbo.
+
+mod contour;
+mod dashes;
+mod sides;
+
+use crate::curve::{Contours, Path, PathElement};
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::trace::Tracer;
+use crate::{Error, Result};
+use sides::Pen;
+
+/// The facts of strokes.
+pub const INFO: Info = Info {
+    name: "stroke",
+    title: "Outlines of strokes",
+    authors: "J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes",
+    year: 1990,
+    source: "Computer Graphics: Principles and Practice, 2nd edition, 3.9",
+    class: Class::ObjectSpace,
+    cost: "O(n) points for n pieces of the flattened path, more where corners and caps are round",
+    limits: "the outline crosses itself: fill it by the non-zero rule",
+};
+
+/// How a stroke ends where its path does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Cap {
+    /// At the end point, straight.
+    #[default]
+    Butt,
+    /// With a half circle.
+    Round,
+    /// Half a width beyond the end point, straight.
+    Square,
+}
+
+/// How two pieces of a stroke meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Join {
+    /// With a sharp corner, cut off where it would be longer than the miter limit.
+    #[default]
+    Miter,
+    /// With a part of a circle.
+    Round,
+    /// Cut off straight.
+    Bevel,
+}
+
+/// The look of a stroke; lengths in the unit of the path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stroke {
+    /// Width, at least 0; a stroke of width 0 has no area.
+    pub width: f64,
+    /// Both ends of open contours, and of dashes.
+    pub cap: Cap,
+    /// Corners.
+    pub join: Join,
+    /// Longest miter over the width, at least 1.
+    pub miter_limit: f64,
+    /// Lengths of dashes and gaps in turn; empty for a solid line.
+    pub dashes: Vec<f64>,
+    /// How far into the dashes the line starts.
+    pub dash_offset: f64,
+}
+
+impl Default for Stroke {
+    fn default() -> Self {
+        let (cap, join) = (Cap::Butt, Join::Miter);
+        Self { width: 1.0, cap, join, miter_limit: 4.0, dashes: vec![], dash_offset: 0.0 }
+    }
+}
+
+/// The finest tolerance, in sizes of the path: a hundredth of a pixel of ten million.
+const FINEST: f64 = 1e-9;
+
+/// Points farther out and greater widths are moved here first, so that products stay finite.
+const FARTHEST: f64 = 1e15;
+
+/// One step of the outline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A new ring of the outline begins.
+    Ring,
+    /// The ring's next point.
+    Point {
+        /// The vertex of the flattened path that it belongs to.
+        vertex: DVec2,
+        /// Where it lies.
+        point: DVec2,
+        /// What it is part of.
+        part: Part,
+    },
+}
+
+/// What a point of an outline is part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// The end of a piece's offset line, or where two of them meet.
+    Side,
+    /// The way through the vertex, on the inner side of a corner beside short pieces.
+    Pivot,
+    /// A join on the outer side of a corner.
+    Join,
+    /// A cap.
+    Cap,
+}
+
+/// The outline of a stroke, to be filled by the non-zero rule; its distance from the exact outline is
+/// at most `tolerance`. Elements with points that are not finite are left out; coordinates and widths
+/// beyond ±10¹⁵ count as that.
+///
+/// ```
+/// use durer::curve::Path;
+/// use durer::raster::line::wide::{Join, Stroke, outline};
+/// use durer::trace::NoTrace;
+///
+/// let small = Path::rectangle(95.0, 95.0, 10.0, 10.0);
+/// let stroke = Stroke { width: 60.0, join: Join::Miter, ..Stroke::default() };
+/// let outline = outline(&small, &stroke, 0.025, &mut NoTrace).unwrap();
+/// // The outer ring is a square; the inner one goes through all corners and covers what is inside.
+/// assert_eq!(outline.iter().map(|(ring, _)| ring.len()).collect::<Vec<_>>(), [4, 12]);
+/// ```
+///
+/// # Errors
+/// [`Error::Parameter`] for a negative width, a miter limit below 1, or negative or non-finite dashes.
+pub fn outline(
+    path: &Path,
+    stroke: &Stroke,
+    tolerance: f64,
+    t: &mut impl Tracer<Step>,
+) -> Result<Contours> {
+    check(stroke)?;
+    let stroke = &Stroke { width: stroke.width.min(FARTHEST), ..stroke.clone() };
+    if let Some((from, to)) = straight(path, stroke) {
+        let outline = super::anti_aliased::outline(from, to, stroke.width);
+        trace(&outline, t);
+        return Ok(outline);
+    }
+    let mut out = Contours::new();
+    let Some(bounds) = path.bounds().filter(|_| stroke.width > 0.0) else { return Ok(out) };
+    // Not finer than the size of the whole allows: a path may be given in any unit.
+    let size = near(bounds.max()) - near(bounds.min());
+    let tolerance = tolerance.max((size.x + size.y + stroke.width) * FINEST);
+    let mut pen = Pen::new(stroke, tolerance, &mut out, t);
+    match dashes::dashed(elements(path), stroke, tolerance) {
+        Some(dashed) => {
+            if dashes::only_dots(stroke) {
+                pen.join = Join::Round;
+            }
+            contour::each(elements(&dashed), tolerance, |c| pen.stroke(c));
+        }
+        None => contour::each(elements(path), tolerance, |c| pen.stroke(c)),
+    }
+    Ok(out)
+}
+
+/// Tells the steps of the outline of one straight line, whose corners are those of its ends.
+fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
+    for (i, point) in outline.points().iter().enumerate() {
+        if i == 0 {
+            t.step(|| Step::Ring);
+        }
+        t.step(|| Step::Point { vertex: *point, point: *point, part: Part::Cap });
+    }
+}
+
+/// A point moved to where products of its coordinates stay finite.
+fn near(p: DVec2) -> DVec2 {
+    p.clamp(DVec2::splat(-FARTHEST), DVec2::splat(FARTHEST))
+}
+
+/// The elements of a path whose points are finite, moved near, every contour with its start.
+fn elements(path: &Path) -> impl Iterator<Item = PathElement> {
+    use PathElement::{Close, CubicTo, LineTo, MoveTo, QuadTo};
+    let (mut start, mut open) = (None, false);
+    path.elements()
+        .iter()
+        .flat_map(move |element| {
+            // Infinity must not become finite.
+            let finite = |points: &[DVec2]| points.iter().all(|p| p.is_finite());
+            let (element, end) = match *element {
+                MoveTo(p) if p.is_finite() => (MoveTo(near(p)), Some(near(p))),
+                LineTo(p) if p.is_finite() => (LineTo(near(p)), Some(near(p))),
+                QuadTo(a, p) if finite(&[a, p]) => (QuadTo(near(a), near(p)), Some(near(p))),
+                CubicTo(a, b, p) if finite(&[a, b, p]) => {
+                    (CubicTo(near(a), near(b), near(p)), Some(near(p)))
+                }
+                Close if open => (Close, None),
+                _ => return [None, None],
+            };
+            let first = match element {
+                MoveTo(_) => {
+                    start = end;
+                    None
+                }
+                Close => None,
+                _ if open => None,
+                _ => {
+                    start = start.or(end);
+                    start.map(MoveTo)
+                }
+            };
+            open = element != Close;
+            [first, Some(element)]
+        })
+        .flatten()
+}
+
+/// Whether a style makes sense.
+///
+/// # Errors
+/// Those of [`outline`].
+pub(crate) fn check(stroke: &Stroke) -> Result<()> {
+    let not_negative = |v: f64| v.is_finite() && v >= 0.0;
+    if !not_negative(stroke.width) {
+        return Err(Error::parameter("stroke width", stroke.width, "finite and at least 0"));
+    }
+    if stroke.miter_limit.is_nan() || stroke.miter_limit < 1.0 {
+        return Err(Error::parameter("miter limit", stroke.miter_limit, "at least 1"));
+    }
+    if !stroke.dashes.iter().all(|d| not_negative(*d)) || !stroke.dash_offset.is_finite() {
+        return Err(Error::parameter("dashes", "given", "finite lengths of at least 0"));
+    }
+    Ok(())
+}
+
+/// The ends of a single straight line without dashes, which needs no offsets of curves; square caps lengthen it.
+pub(crate) fn straight(path: &Path, stroke: &Stroke) -> Option<(DVec2, DVec2)> {
+    let &[PathElement::MoveTo(a), PathElement::LineTo(b)] = path.elements() else { return None };
+    let near = |p: DVec2| p.abs().max_element() <= FARTHEST;
+    if stroke.cap == Cap::Round || !stroke.dashes.is_empty() || !near(a) || !near(b) {
+        return None;
+    }
+    if stroke.cap == Cap::Butt {
+        return Some((a, b));
+    }
+    // Dots have no direction of their own.
+    let cap = (b - a).try_normalize()? * (stroke.width / 2.0);
+    Some((a - cap, b + cap))
+}
