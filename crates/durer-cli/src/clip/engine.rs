@@ -1,10 +1,10 @@
 //! Cutting one geometry with the mask.
 
 use super::shapes::{Area, oriented, pieces};
-use super::validity::{Touching, contains, edges_are_apart, is_valid};
+use super::validity::{Touching, edges_are_apart, is_valid};
 use durer::clip::line::polyline::{self, Part};
 use durer::clip::line::{LineClipper, Segment};
-use durer::clip::polygon::rectangle::{self, ClippedLines};
+use durer::clip::polygon::rectangle::{self, ClippedLines, Prepared};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, overlay, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
@@ -15,54 +15,49 @@ type Result<T> = durer::Result<T>;
 /// What to cut with.
 #[derive(Debug, Clone)]
 pub struct Mask {
-    /// Valid polygons.
-    shapes: Shapes,
-    /// None where there are no polygons.
-    bounds: Option<Rect>,
+    /// Valid polygons, or none; made ready for many features.
+    polygons: Prepared,
     /// Where the mask is a rectangle.
     window: Option<Rect>,
 }
 
 impl Mask {
     /// A window.
-    pub fn window(window: Rect) -> Self {
-        Self { shapes: rectangle_shape(&window), bounds: Some(window), window: Some(window) }
+    pub fn window(window: Rect) -> Result<Self> {
+        Ok(Self { polygons: Prepared::new(rectangle_shape(&window))?, window: Some(window) })
     }
 
     /// Valid polygons, or none.
-    pub fn polygons(shapes: Shapes) -> Self {
-        let bounds = shapes.bounds();
-        Self { shapes, bounds, window: None }
+    pub fn polygons(shapes: Shapes) -> Result<Self> {
+        Ok(Self { polygons: Prepared::new(shapes)?, window: None })
     }
 
     /// Whether it may have a point in common with what lies in a box.
     fn meets(&self, bounds: &Rect) -> bool {
-        self.bounds.is_some_and(|own| own.overlaps(bounds))
+        self.polygons.bounds().is_some_and(|own| own.overlaps(bounds))
     }
 
     /// Its polygons.
     pub fn shapes(&self) -> &Shapes {
-        &self.shapes
+        self.polygons.shapes()
     }
 
     fn contains(&self, p: DVec2) -> bool {
         match self.window {
             Some(window) => window.contains(p),
-            None => self.bounds.is_some_and(|b| b.contains(p)) && contains(&self.shapes, p),
+            None => self.polygons.contains(p),
         }
     }
 
     /// The polygons near a box, cut outside of it where they are many.
-    fn near(&self, bounds: &Rect) -> Result<Shapes> {
+    fn near(&self, bounds: &Rect) -> Shapes {
         /// Cutting fewer points away saves nothing.
         const FEW: usize = 64;
         let margin = bounds.size() * (1.0 / 64.0) + bounds.max().abs() * 1e-9;
         let around = Rect::new(bounds.min() - margin, bounds.max() + margin);
         match around {
-            Ok(around) if self.shapes.points().len() > FEW => {
-                rectangle::clip(&around, &self.shapes, &rectangle::Options, &mut NoTrace)
-            }
-            _ => Ok(self.shapes.clone()),
+            Ok(around) if self.shapes().points().len() > FEW => self.polygons.clip(&around),
+            _ => self.shapes().clone(),
         }
     }
 }
@@ -210,7 +205,7 @@ impl Cutter {
             _ => {
                 let part = if inside { Part::Inside } else { Part::Outside };
                 let options = polyline::Options { part };
-                let near = self.mask.near(bounds)?;
+                let near = self.mask.near(bounds);
                 polyline::clip(&near, &points, &ends, &options, &mut NoTrace)?
             }
         };
@@ -247,7 +242,7 @@ impl Cutter {
             }
             _ => {}
         }
-        let near = self.mask.near(bounds)?;
+        let near = self.mask.near(bounds);
         let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
         // Rings that touch in points are valid, but nothing for the rectangle clip.
         let even_odd = self.rules.fill == FillRule::EvenOdd;
@@ -256,7 +251,7 @@ impl Cutter {
     }
 
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
-        let mask = &self.mask.shapes;
+        let mask = self.mask.shapes();
         Ok(match (clipper, self.mask.window) {
             (PolygonClipper::Rectangle, Some(window)) => {
                 let cut = clip_area(&window, area)?;
@@ -460,7 +455,8 @@ mod tests {
 
     fn cutter(op: BooleanOp, algorithm: Option<Algorithm>) -> Cutter {
         let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).expect("a window");
-        Cutter { mask: Mask::window(window), op, rules: Rules::default(), algorithm }
+        let mask = Mask::window(window).expect("finite");
+        Cutter { mask, op, rules: Rules::default(), algorithm }
     }
 
     #[test]

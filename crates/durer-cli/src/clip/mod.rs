@@ -47,7 +47,9 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let rules = Rules { fill: args.cutting.fill_rule, grid: args.cutting.grid };
     let mask = match (&args.region.window, &args.region.by) {
-        (Some(window), _) => Some(Mask::window(*window)),
+        (Some(window), _) => {
+            Some(Mask::window(*window).map_err(|e| Failure::Usage(format!("--window: {e}")))?)
+        }
         (_, Some(path)) => Some(read_mask(path, args, rules, &messages)?),
         _ => None,
     };
@@ -207,7 +209,7 @@ fn read_mask(
         let warning = durer_formats::Warning { place: Default::default(), message };
         messages.warnings(&display_name(path), &[warning]);
     }
-    Ok(Mask::polygons(union.shapes))
+    Mask::polygons(union.shapes).map_err(|e| fail(e.to_string()))
 }
 
 /// Warnings of reading and of cutting.

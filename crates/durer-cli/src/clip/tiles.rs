@@ -78,7 +78,7 @@ pub fn cut(
     let mut open = vec![(Tile::WORLD, geometry.clone())];
     while let Some((tile, geometry)) = open.pop() {
         let cutter = Cutter {
-            mask: Mask::window(tile.bounds(coordinates)?),
+            mask: Mask::window(tile.bounds(coordinates)?)?,
             op: BooleanOp::Intersection,
             rules,
             algorithm: None,
