@@ -2,6 +2,7 @@
 
     python3 geos.py DURER FILE...      # DURER: the built command; FILEs: GeoJSON with polygons
     python3 geos.py rect FOLDER        # clip_by_rect on the polygons that `clip-peers rect FOLDER` leaves there
+    python3 geos.py mask DURER [N M]   # M small polygons cut by one coast of N vertices, GEOS with the mask prepared
 
 Cuts every feature of each file to windows over its extent and to a slanted mask, by both, and prints how many
 results differ by more than a billionth of the feature's area, how many are not valid by GEOS's judgement,
@@ -79,6 +80,64 @@ def by_rectangle(folder):
         print(f"{name}: {sorted(times)[4] * 1e3:.1f} ms, {left} are left")
 
 
+def coast(count, random):
+    """A closed coast: waves of all lengths around a circle, and noise."""
+    t = numpy.linspace(0, 2 * numpy.pi, count, endpoint=False)
+    radius = numpy.ones(count)
+    for k in range(1, 200):
+        radius += random.normal() * 0.25 / k**1.2 * numpy.cos(k * t + random.uniform(0, 2 * numpy.pi))
+    radius = (numpy.abs(radius) + 0.1) * (1 + random.normal(size=count) / count)
+    return numpy.stack([100 * radius * numpy.cos(t), 100 * radius * numpy.sin(t)], 1)
+
+
+def small(random):
+    """A star of 4 to 12 vertices, up to 2 wide."""
+    count = random.integers(4, 13)
+    t = numpy.sort(random.uniform(0, 2 * numpy.pi, count))
+    radius = random.uniform(0.4, 1, count) * random.uniform(0.05, 1)
+    center = random.uniform(-160, 160, 2)
+    return center + numpy.stack([radius * numpy.cos(t), radius * numpy.sin(t)], 1)
+
+
+def write(name, shapes):
+    features = [
+        {"type": "Feature", "id": i, "properties": {}, "geometry": json.loads(shapely.to_geojson(s))}
+        for i, s in enumerate(shapes)
+    ]
+    with open(name, "w") as file:
+        json.dump({"type": "FeatureCollection", "features": features}, file)
+
+
+def by_mask(durer, count, features):
+    """CPU seconds: of durer for the whole process, of GEOS for preparing and cutting alone."""
+    random = numpy.random.default_rng(5)
+    mask = shapely.Polygon(coast(count, random))
+    shapes = [shapely.Polygon(small(random)) for _ in range(features)]
+    shapes = numpy.array([s if s.is_valid else shapely.make_valid(s) for s in shapes])
+    with tempfile.TemporaryDirectory() as folder:
+        names = [os.path.join(folder, name) for name in ("in.geojson", "mask.geojson", "out.geojson")]
+        write(names[0], shapes)
+        write(names[1], [mask])
+        start = cpu_of_children()
+        command = [durer, "clip", names[0], "--by", names[1], "-o", names[2], "-q", "--threads", "1"]
+        subprocess.run(command, check=True)
+        durer_seconds = cpu_of_children() - start
+        with open(names[2]) as file:
+            ours = {f["id"]: shapely.geometry.shape(f["geometry"]) for f in json.load(file)["features"]}
+    start = time.process_time()
+    shapely.prepare(mask)
+    within = shapely.contains_properly(mask, shapes)
+    cut = shapely.intersects(mask, shapes) & ~within
+    theirs = numpy.where(within, shapes, shapely.Polygon())
+    theirs[cut] = shapely.intersection(shapes[cut], mask)
+    geos_seconds = time.process_time() - start
+    none = shapely.Polygon()
+    area = [shapely.area(ours.get(i, none)) for i in range(features)]
+    apart = numpy.abs(numpy.array(area) - shapely.area(theirs)) > 1e-9 * shapely.area(shapes)
+    found = f"{within.sum()} within, {cut.sum()} across, areas differ for {apart.sum()}"
+    print(f"{count} x {features}: {found}; durer {durer_seconds:.2f} s, GEOS {geos_seconds:.2f} s")
+
+
 def main(durer, paths):
     print(f"shapely {shapely.__version__}, GEOS {shapely.geos_version_string}")
     print("| file | mask | features | differ | not valid | durer, s | GEOS, s |")
@@ -107,5 +166,8 @@ def main(durer, paths):
 if __name__ == "__main__":
     if sys.argv[1] == "rect":
         by_rectangle(sys.argv[2])
+    elif sys.argv[1] == "mask":
+        numbers = [int(n) for n in sys.argv[3:5]] or [500_000, 20_000]
+        by_mask(sys.argv[2], *numbers)
     else:
         main(sys.argv[1], sys.argv[2:])

@@ -91,9 +91,10 @@ pub struct CuttingArgs {
     /// and leave lines and points out
     #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
     pub op: BooleanOp,
-    /// Which points polygons enclose: even-odd, non-zero, positive (rings counter-clockwise) or negative
-    #[arg(long, value_name = "RULE", default_value = "even-odd")]
-    pub fill_rule: FillRule,
+    /// Which points polygons enclose, of IN and FILE: even-odd, non-zero, positive (rings counter-clockwise)
+    /// or negative [default: even-odd; of an SVG, what its paths say]
+    #[arg(long, value_name = "RULE")]
+    pub fill_rule: Option<FillRule>,
     /// An algorithm by its name [default: what is fast and right]
     #[arg(long, value_name = "NAME", long_help = algorithm_help(), value_parser = algorithm)]
     pub algorithm: Option<Algorithm>,

@@ -1,7 +1,8 @@
 //! Cutting one geometry with the mask.
 
+use super::mask::Mask;
 use super::shapes::{Area, oriented, pieces};
-use super::validity::{Touching, contains, edges_are_apart, is_valid};
+use super::validity::{Touching, edges_are_apart, is_valid};
 use durer::clip::line::polyline::{self, Part};
 use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::rectangle::{self, ClippedLines};
@@ -12,70 +13,10 @@ use durer_formats::geo::{Geometry, Points};
 
 type Result<T> = durer::Result<T>;
 
-/// What to cut with.
-#[derive(Debug, Clone)]
-pub struct Mask {
-    /// Valid polygons.
-    shapes: Shapes,
-    /// None where there are no polygons.
-    bounds: Option<Rect>,
-    /// Where the mask is a rectangle.
-    window: Option<Rect>,
-}
-
-impl Mask {
-    /// A window.
-    pub fn window(window: Rect) -> Self {
-        Self { shapes: rectangle_shape(&window), bounds: Some(window), window: Some(window) }
-    }
-
-    /// Valid polygons, or none.
-    pub fn polygons(shapes: Shapes) -> Self {
-        let bounds = shapes.bounds();
-        Self { shapes, bounds, window: None }
-    }
-
-    /// Whether it may have a point in common with what lies in a box.
-    fn meets(&self, bounds: &Rect) -> bool {
-        self.bounds.is_some_and(|own| own.overlaps(bounds))
-    }
-
-    /// Its polygons.
-    pub fn shapes(&self) -> &Shapes {
-        &self.shapes
-    }
-
-    fn contains(&self, p: DVec2) -> bool {
-        match self.window {
-            Some(window) => window.contains(p),
-            None => self.bounds.is_some_and(|b| b.contains(p)) && contains(&self.shapes, p),
-        }
-    }
-
-    /// The polygons near a box, cut outside of it where they are many.
-    fn near(&self, bounds: &Rect) -> Result<Shapes> {
-        /// Cutting fewer points away saves nothing.
-        const FEW: usize = 64;
-        let margin = bounds.size() * (1.0 / 64.0) + bounds.max().abs() * 1e-9;
-        let around = Rect::new(bounds.min() - margin, bounds.max() + margin);
-        match around {
-            Ok(around) if self.shapes.points().len() > FEW => {
-                rectangle::clip(&around, &self.shapes, &rectangle::Options, &mut NoTrace)
-            }
-            _ => Ok(self.shapes.clone()),
-        }
-    }
-}
-
-fn rectangle_shape(window: &Rect) -> Shapes {
-    let (a, b) = (window.min(), window.max());
-    Shapes::from_rings([[a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)]])
-}
-
-/// How geometries are cut.
-#[derive(Debug, Clone)]
-pub struct Cutter {
-    pub mask: Mask,
+/// How a geometry is cut.
+#[derive(Debug, Clone, Copy)]
+pub struct Cutter<'a> {
+    pub mask: &'a Mask,
     /// Intersection, or difference.
     pub op: BooleanOp,
     pub rules: Rules,
@@ -146,9 +87,11 @@ pub struct Cut {
     pub geometry: Option<Geometry>,
     /// Whether its polygons were not valid and have been made so.
     pub repaired: bool,
+    /// Whether a polygon of the mask was smaller than a cell of the grid there.
+    pub lost: bool,
 }
 
-impl Cutter {
+impl Cutter<'_> {
     /// The wanted part of a geometry.
     pub fn cut(&self, geometry: &Geometry) -> Result<Cut> {
         let inside = self.op == BooleanOp::Intersection;
@@ -178,8 +121,10 @@ impl Cutter {
     fn collection(&self, parts: &[Geometry]) -> Result<Cut> {
         let cuts: Vec<Cut> = parts.iter().map(|part| self.cut(part)).collect::<Result<_>>()?;
         let repaired = cuts.iter().any(|cut| cut.repaired);
+        let lost = cuts.iter().any(|cut| cut.lost);
         let left: Vec<Geometry> = cuts.into_iter().filter_map(|cut| cut.geometry).collect();
-        Ok(Cut { geometry: (!left.is_empty()).then_some(Geometry::Collection(left)), repaired })
+        let geometry = (!left.is_empty()).then_some(Geometry::Collection(left));
+        Ok(Cut { geometry, repaired, lost })
     }
 
     fn points(&self, points: &Points) -> Points {
@@ -210,7 +155,7 @@ impl Cutter {
             _ => {
                 let part = if inside { Part::Inside } else { Part::Outside };
                 let options = polyline::Options { part };
-                let near = self.mask.near(bounds)?;
+                let near = self.mask.near(bounds);
                 polyline::clip(&near, &points, &ends, &options, &mut NoTrace)?
             }
         };
@@ -222,16 +167,18 @@ impl Cutter {
         match self.algorithm {
             None | Some(Algorithm::Line(_)) => self.production(geometry, &area, bounds),
             Some(Algorithm::Polygon(clipper)) => {
-                let geometry = self.by_name(clipper, &area)?.into_geometry().map(oriented);
-                Ok(Cut { geometry, repaired: false })
+                // What an SVG says of its paths, for algorithms that take polygons as they are.
+                let as_they_are = !Algorithm::Polygon(clipper).takes_rules();
+                let ruled = as_they_are && self.rules.fill != FillRule::EvenOdd;
+                let area = if ruled { self.rules.clean(geometry)? } else { area };
+                Ok(Cut::of(self.by_name(clipper, &area)?.into_geometry().map(oriented)))
             }
         }
     }
 
     /// Valid polygons by the rectangle clip, all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
-        let plain = self.rules.fill == FillRule::EvenOdd && self.rules.grid.is_none();
-        let valid = plain && is_valid(&area.shapes, Touching::No);
+        let valid = self.rules.keep_valid(&area.shapes) && is_valid(&area.shapes, Touching::No);
         let inside = self.op == BooleanOp::Intersection;
         let covers = |window: &Rect| window.contains(bounds.min()) && window.contains(bounds.max());
         match self.mask.window {
@@ -247,16 +194,17 @@ impl Cutter {
             }
             _ => {}
         }
-        let near = self.mask.near(bounds)?;
+        let near = self.mask.near(bounds);
         let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
         // Rings that touch in points are valid, but nothing for the rectangle clip.
         let even_odd = self.rules.fill == FillRule::EvenOdd;
         let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtPoints);
-        Ok(Cut { geometry: cut.into_geometry(), repaired })
+        let lost = self.rules.loses(area, &near);
+        Ok(Cut { geometry: cut.into_geometry(), repaired, lost })
     }
 
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
-        let mask = &self.mask.shapes;
+        let mask = self.mask.shapes();
         let valid = |shapes: &Shapes| is_valid(shapes, Touching::AtPoints);
         Ok(match (clipper, self.mask.window) {
             (PolygonClipper::Rectangle, Some(window)) => {
@@ -287,7 +235,7 @@ impl Cutter {
 
 impl Cut {
     fn of(geometry: Option<Geometry>) -> Self {
-        Self { geometry, repaired: false }
+        Self { geometry, ..Self::default() }
     }
 }
 
@@ -380,6 +328,24 @@ fn push(out: &mut ClippedLines, p: DVec2, segment: Segment<DVec2>, end: usize) {
 }
 
 impl Rules {
+    /// Whether valid polygons enclose what they enclose by the even-odd rule, and stay where they are.
+    fn keep_valid(&self, shapes: &Shapes) -> bool {
+        let as_even_odd = match self.fill {
+            FillRule::EvenOdd => true,
+            // Holes may run the same way as the rings around them.
+            FillRule::NonZero => shapes.polygons().all(|p| p.holes().len() == 0),
+            FillRule::Positive | FillRule::Negative => false,
+        };
+        as_even_odd && self.grid.is_none()
+    }
+
+    /// Whether the grid is coarser than a polygon of the mask is large: it may be gone.
+    pub fn loses(&self, area: &Area, mask: &Shapes) -> bool {
+        let Some(cell) = self.options(area, mask, self.fill).grid else { return false };
+        let size = |ring: &[DVec2]| Rect::around(ring.iter().copied()).map(|r| r.size());
+        mask.polygons().filter_map(|p| size(p.outer())).any(|size| size.max_element() < cell)
+    }
+
     /// The overlay's options: the finest grid that it takes, unless one is given.
     fn options(&self, area: &Area, clip: &Shapes, subject_rule: FillRule) -> overlay::Options {
         let fit = || finest_grid([area.shapes.bounds(), clip.bounds()]);
@@ -429,10 +395,7 @@ impl Rules {
     /// The same region by polygons that are valid, with outer rings counter-clockwise.
     pub fn clean(&self, geometry: &Geometry) -> Result<Area> {
         let area = Area::of_geometry(geometry);
-        if self.fill == FillRule::EvenOdd
-            && self.grid.is_none()
-            && is_valid(&area.shapes, Touching::No)
-        {
+        if self.keep_valid(&area.shapes) && is_valid(&area.shapes, Touching::No) {
             return Ok(Area::of_geometry(&oriented(geometry.clone())));
         }
         self.overlay(&area, &Shapes::new(), BooleanOp::Union, self.fill)
@@ -458,9 +421,12 @@ mod tests {
         Points::flat(points.iter().map(|&p| DVec2::from(p)).collect())
     }
 
-    fn cutter(op: BooleanOp, algorithm: Option<Algorithm>) -> Cutter {
+    fn cut(geometry: &Geometry, algorithm: Option<Algorithm>) -> Option<Geometry> {
         let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).expect("a window");
-        Cutter { mask: Mask::window(window), op, rules: Rules::default(), algorithm }
+        let mask = &Mask::window(window).expect("finite");
+        let op = BooleanOp::Intersection;
+        let cutter = Cutter { mask, op, rules: Rules::default(), algorithm };
+        cutter.cut(geometry).expect("cut").geometry
     }
 
     #[test]
@@ -468,11 +434,10 @@ mod tests {
         let zigzag =
             line(&[(-5.0, 5.0), (5.0, 5.0), (5.0, 15.0), (7.0, 5.0), (9.0, 9.0), (20.0, 9.0)]);
         let geometry = Geometry::LineString(zigzag);
-        let expected = cutter(BooleanOp::Intersection, None).cut(&geometry).expect("cut").geometry;
+        let expected = cut(&geometry, None);
         assert!(matches!(&expected, Some(Geometry::MultiLineString(parts)) if parts.len() == 2));
         for algorithm in Algorithm::all() {
-            let cut = cutter(BooleanOp::Intersection, Some(algorithm)).cut(&geometry);
-            assert_eq!(cut.expect("cut").geometry, expected, "{}", algorithm.name());
+            assert_eq!(cut(&geometry, Some(algorithm)), expected, "{}", algorithm.name());
         }
     }
 
@@ -482,8 +447,7 @@ mod tests {
         let hole = line(&[(-1.0, 3.0), (2.0, 3.0), (2.0, 4.0), (-1.0, 4.0)]);
         let geometry = Geometry::Polygon(vec![ring, hole]);
         for algorithm in [None].into_iter().chain(Algorithm::all().into_iter().map(Some)) {
-            let cut = cutter(BooleanOp::Intersection, algorithm).cut(&geometry).expect("cut");
-            let area = Area::of_geometry(&cut.geometry.expect("a part")).shapes;
+            let area = Area::of_geometry(&cut(&geometry, algorithm).expect("a part")).shapes;
             let size: f64 = area.rings().map(|r| durer::clip::polygon::signed_area(r).abs()).sum();
             let holes: f64 = area
                 .polygons()
@@ -518,7 +482,9 @@ mod tests {
             ring.push(DVec2::new(0.0, 9.0));
             let mut area = Area::default();
             area.shapes = Shapes::from_rings([ring]);
-            let far = rectangle_shape(&Rect::new(DVec2::splat(5.0), DVec2::splat(6.0)).unwrap());
+            let far = super::super::mask::rectangle_shape(
+                &Rect::new(DVec2::splat(5.0), DVec2::splat(6.0)).unwrap(),
+            );
             for op in BooleanOp::ALL {
                 let cut = Rules::default().overlay(&area, &far, *op, FillRule::EvenOdd);
                 let cut = cut.expect("finite").shapes;

@@ -2,9 +2,11 @@
 
 mod args;
 mod engine;
+mod mask;
 mod report;
 mod shapes;
 mod sink;
+mod srids;
 mod tiles;
 mod validity;
 mod values;
@@ -17,11 +19,13 @@ use crate::messages::Messages;
 use crate::output::{self, Target};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
-use engine::{Algorithm, Cutter, Mask, Rules};
+use engine::{Algorithm, Cutter, Rules};
+use mask::Mask;
 use rayon::prelude::*;
 use report::{Counts, Report};
 use shapes::Area;
 use sink::{Sink, failure};
+use srids::Srids;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, IsTerminal};
@@ -45,10 +49,12 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let start = Instant::now();
     check(args)?;
     let messages = Messages::new(&args.running, 1);
-    let rules = Rules { fill: args.cutting.fill_rule, grid: args.cutting.grid };
+    let mut mask_srids = Srids::default();
     let mask = match (&args.region.window, &args.region.by) {
-        (Some(window), _) => Some(Mask::window(*window)),
-        (_, Some(path)) => Some(read_mask(path, args, rules, &messages)?),
+        (Some(window), _) => {
+            Some(Mask::window(*window).map_err(|e| Failure::Usage(format!("--window: {e}")))?)
+        }
+        (_, Some(path)) => Some(mask::read(path, args, &mut mask_srids, &messages)?),
         _ => None,
     };
     let (from, mut reader) = open(&args.input, args.from)?;
@@ -59,17 +65,18 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         output: args.output.display().to_string(),
         from: from.name(),
         to: to.name(),
+        mask_srids,
         ..Report::default()
     };
-    let mut job =
-        Job { args, rules, to, messages: &messages, reader: &mut reader, report: &mut report };
+    let (source, told) = (&mut reader, &mut report);
+    let mut job = Job { args, to, messages: &messages, reader: source, report: told, failed: None };
     match (args.region.tiles, mask) {
         (Some(zoom), _) => job.tile(zoom)?,
         (None, mask) if joins(args) => job.join(mask.as_ref())?,
         (None, Some(mask)) => job.cut(mask)?,
         (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
     }
-    tell(&messages, args, &reader, &mut report);
+    tell(&messages, args, to, &reader, &mut report);
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
@@ -112,13 +119,20 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     if algorithm.needs_intersection() && difference {
         return Err(Failure::Usage(format!("--algorithm {name} keeps the inside only")));
     }
-    let ruled = args.cutting.grid.is_some() || args.cutting.fill_rule != FillRule::EvenOdd;
+    let ruled = args.cutting.grid.is_some()
+        || args.cutting.fill_rule.is_some_and(|rule| rule != FillRule::EvenOdd);
     if ruled && !algorithm.takes_rules() {
         let message =
             "takes polygons as they are; --grid and --fill-rule go with overlay and vatti";
         return Err(Failure::Usage(format!("--algorithm {name} {message}")));
     }
     Ok(())
+}
+
+/// What holds for one feature: what the options say, or else the feature itself.
+fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
+    let fill = args.cutting.fill_rule.unwrap_or(feature.fill_rule);
+    Rules { fill, grid: args.cutting.grid }
 }
 
 /// Opens a file, or standard input, and finds its format.
@@ -178,40 +192,8 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
     Ok(format)
 }
 
-/// All polygons of a file as one mask.
-///
-/// Without a polygon there is nothing to keep the inside of; else it takes away or adds nothing.
-fn read_mask(
-    path: &Path,
-    args: &ClipArgs,
-    rules: Rules,
-    messages: &Messages,
-) -> Result<Mask, Failure> {
-    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let (_, mut reader) = open(path, None)?;
-    let mut all = Area::default();
-    while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
-        if let Some(geometry) = &feature.geometry {
-            let clean = rules.clean(geometry);
-            all.append(&clean.map_err(|e| fail(e.to_string()))?);
-        }
-    }
-    messages.warnings(&display_name(path), reader.warnings());
-    let union = rules.overlay(&all, &Shapes::new(), BooleanOp::Union, FillRule::Positive);
-    let union = union.map_err(|e| fail(e.to_string()))?;
-    if union.shapes.is_empty() {
-        if !args.region.outside && args.cutting.op == BooleanOp::Intersection {
-            return Err(fail("there is no polygon to cut with".to_owned()));
-        }
-        let message = "there is no polygon in it; nothing is cut away".to_owned();
-        let warning = durer_formats::Warning { place: Default::default(), message };
-        messages.warnings(&display_name(path), &[warning]);
-    }
-    Ok(Mask::polygons(union.shapes))
-}
-
 /// Warnings of reading and of cutting.
-fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Report) {
+fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, report: &mut Report) {
     let name = display_name(&args.input);
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
@@ -220,13 +202,22 @@ fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Repo
         report.warnings.push(format!("and {more} more"));
     }
     let mut found = Vec::new();
-    if report.repaired > 0 {
+    // An SVG says itself what paths that cross enclose.
+    if report.repaired > 0 && report.from != GeoFormat::Svg.name() {
         found.push(format!(
             "polygons of {} features crossed, pinched or overlapped themselves or one another; made \
              valid by the even-odd rule",
             report.repaired
         ));
     }
+    if report.lost > 0 {
+        found.push(format!(
+            "polygons of the mask smaller than a cell of the grid, by default 2^-40 of the feature's \
+             extent, may be lost at {} features",
+            report.lost
+        ));
+    }
+    found.extend(report.srids.told(&report.mask_srids, joins(args), to));
     let (lines, points) = (report.given.lines, report.given.points);
     if joins(args) && lines + points > 0 {
         let op = args.cutting.op;
@@ -249,11 +240,12 @@ fn tell(messages: &Messages, args: &ClipArgs, reader: &Source, report: &mut Repo
 /// One run over the features.
 struct Job<'a> {
     args: &'a ClipArgs,
-    rules: Rules,
     to: GeoFormat,
     messages: &'a Messages,
     reader: &'a mut Source,
     report: &'a mut Report,
+    /// Why reading ended, told when what was read before is written.
+    failed: Option<Failure>,
 }
 
 impl Job<'_> {
@@ -263,14 +255,23 @@ impl Job<'_> {
 
     /// The next features; none at the end.
     fn batch(&mut self) -> Result<Vec<Feature>, Failure> {
+        if let Some(failure) = self.failed.take() {
+            return Err(failure);
+        }
         let mut features = Vec::new();
         let mut positions = 0;
         while features.len() < BATCH && positions < BATCH_POSITIONS {
-            let Some(feature) = self.reader.next_feature().map_err(|e| self.fail(words(&e)))?
-            else {
-                break;
+            let feature = match self.reader.next_feature() {
+                Ok(Some(feature)) => feature,
+                Ok(None) => break,
+                Err(e) if features.is_empty() => return Err(self.fail(words(&e))),
+                Err(e) => {
+                    self.failed = Some(self.fail(words(&e)));
+                    break;
+                }
             };
             self.report.given.add(feature.geometry.as_ref());
+            self.report.srids.add(feature.srid);
             positions += feature.geometry.as_ref().map_or(0, Geometry::len);
             features.push(feature);
         }
@@ -318,8 +319,11 @@ impl Job<'_> {
     fn cut(&mut self, mask: Mask) -> Result<(), Failure> {
         let outside = self.args.region.outside;
         let op = if outside { BooleanOp::Difference } else { self.args.cutting.op };
-        let algorithm = self.args.cutting.algorithm;
-        let cutter = Cutter { mask, op, rules: self.rules, algorithm };
+        let (args, algorithm) = (self.args, self.args.cutting.algorithm);
+        let cut = |feature: &Feature| {
+            let cutter = Cutter { mask: &mask, op, rules: rules(args, feature), algorithm };
+            feature.geometry.as_ref().map(|g| cutter.cut(g)).transpose()
+        };
         let mut writer = None;
         loop {
             let features = self.batch()?;
@@ -327,16 +331,15 @@ impl Job<'_> {
                 return self.end(writer);
             }
             let first = self.report.given.features - features.len() as u64;
-            let cuts: Vec<_> = features
-                .par_iter()
-                .map(|f| f.geometry.as_ref().map(|g| cutter.cut(g)).transpose())
-                .collect();
+            let cuts: Vec<_> = features.par_iter().map(cut).collect();
             for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
                 let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 let cut = cut.unwrap_or_default();
                 self.report.repaired += u64::from(cut.repaired);
+                self.report.lost += u64::from(cut.lost);
                 if cut.geometry.is_some() {
                     feature.geometry = cut.geometry;
+                    feature.fill_rule = FillRule::EvenOdd;
                     self.put(&mut writer, &feature)?;
                 }
             }
@@ -349,7 +352,7 @@ impl Job<'_> {
 
     /// All polygons, those of the mask too, to one feature.
     fn join(&mut self, mask: Option<&Mask>) -> Result<(), Failure> {
-        let mut all = Area::default();
+        let (args, mut all) = (self.args, Area::default());
         loop {
             let features = self.batch()?;
             if features.is_empty() {
@@ -358,8 +361,7 @@ impl Job<'_> {
             let first = self.report.given.features - features.len() as u64;
             let areas: Vec<_> = features
                 .par_iter()
-                .filter_map(|f| f.geometry.as_ref())
-                .map(|g| self.rules.clean(g))
+                .filter_map(|f| f.geometry.as_ref().map(|g| rules(args, f).clean(g)))
                 .collect();
             for (i, area) in areas.into_iter().enumerate() {
                 all.append(&area.map_err(|e| self.of_feature(first + i as u64, &e))?);
@@ -369,23 +371,23 @@ impl Job<'_> {
         let rule = if op == BooleanOp::Xor { FillRule::EvenOdd } else { FillRule::Positive };
         let none = Shapes::new();
         let mask = mask.map_or(&none, Mask::shapes);
+        let rules = Rules { fill: rule, grid: self.args.cutting.grid };
         let joined = match self.args.cutting.algorithm {
-            Some(Algorithm::Polygon(PolygonClipper::Vatti)) => {
-                self.rules.vatti(&all, mask, op, rule)
-            }
-            _ => self.rules.overlay(&all, mask, op, rule),
+            Some(Algorithm::Polygon(PolygonClipper::Vatti)) => rules.vatti(&all, mask, op, rule),
+            _ => rules.overlay(&all, mask, op, rule),
         };
         let joined = joined.map_err(|e| self.fail(e))?;
         let mut writer = None;
         if let Some(geometry) = joined.into_geometry() {
-            self.put(&mut writer, &Feature::of_geometry(geometry))?;
+            let srid = self.report.srids.common();
+            self.put(&mut writer, &Feature { srid, ..Feature::of_geometry(geometry) })?;
         }
         self.end(writer)
     }
 
     /// Each feature to the tiles that it touches.
     fn tile(&mut self, zoom: u8) -> Result<(), Failure> {
-        let coordinates = self.args.region.tile_coordinates;
+        let (args, coordinates) = (self.args, self.args.region.tile_coordinates);
         let one_file = self.to != GeoFormat::GeoJson || is_stream(&self.args.output);
         if one_file && self.to == GeoFormat::GeoJson {
             self.to = GeoFormat::GeoJsonSeq;
@@ -402,7 +404,7 @@ impl Job<'_> {
             let cuts: Vec<_> = features
                 .par_iter()
                 .map(|f| {
-                    let cut = |g| tiles::cut(g, zoom, coordinates, self.rules);
+                    let cut = |g| tiles::cut(g, zoom, coordinates, rules(args, f));
                     f.geometry.as_ref().map(cut).transpose()
                 })
                 .collect();

@@ -1,5 +1,6 @@
 //! What `durer clip --json` says.
 
+use super::srids::Srids;
 use durer::clip::polygon::signed_area;
 use durer_formats::geo::{Geometry, Points};
 use serde::Serialize;
@@ -24,6 +25,15 @@ pub struct Report {
     pub out: Counts,
     /// Features whose polygons crossed themselves or one another and were made valid.
     pub repaired: u64,
+    /// Features at which polygons of the mask may have been lost, smaller than a cell of the grid.
+    #[serde(skip)]
+    pub lost: u64,
+    /// The coordinate systems of what was read.
+    #[serde(skip)]
+    pub srids: Srids,
+    /// Those of the mask.
+    #[serde(skip)]
+    pub mask_srids: Srids,
     /// Features whose own member was replaced by the name of their tile.
     #[serde(skip)]
     pub replaced: u64,

@@ -2,7 +2,8 @@
 //! the world, x counts to the east, y to the south.
 
 use super::args::TileCoordinates;
-use super::engine::{Cutter, Mask, Rules};
+use super::engine::{Cutter, Rules};
+use super::mask::Mask;
 use durer::clip::polygon::BooleanOp;
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::Geometry;
@@ -77,12 +78,8 @@ pub fn cut(
     let mut done = Vec::new();
     let mut open = vec![(Tile::WORLD, geometry.clone())];
     while let Some((tile, geometry)) = open.pop() {
-        let cutter = Cutter {
-            mask: Mask::window(tile.bounds(coordinates)?),
-            op: BooleanOp::Intersection,
-            rules,
-            algorithm: None,
-        };
+        let mask = &Mask::window(tile.bounds(coordinates)?)?;
+        let cutter = Cutter { mask, op: BooleanOp::Intersection, rules, algorithm: None };
         let cut = cutter.cut(&geometry)?;
         repaired |= cut.repaired;
         let Some(part) = cut.geometry else { continue };

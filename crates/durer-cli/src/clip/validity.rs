@@ -1,4 +1,4 @@
-//! Whether polygons are valid, exactly; and whether a point lies in them.
+//! Whether polygons are valid, exactly.
 
 use durer::clip::polygon::{Polygon, Shapes};
 use durer::math::{DVec2, Orientation, Rect, orient2d};
@@ -184,12 +184,6 @@ fn crossings(ring: &[DVec2], p: DVec2) -> usize {
     ring.iter().zip(next).filter(crosses).count()
 }
 
-/// Whether a point lies in the closed polygons, by the even-odd rule.
-pub fn contains(shapes: &Shapes, p: DVec2) -> bool {
-    shapes.rings().map(|ring| crossings(ring, p)).sum::<usize>() % 2 == 1
-        || shapes.rings().any(|ring| on_border(ring, p))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -249,19 +243,5 @@ mod tests {
         assert!(!is_valid(&shapes(&[&[pinched]]), Touching::AtPoints));
         let across = shapes(&[&[SQUARE, &[(8.0, 4.0), (10.0, 4.0), (8.0, 5.0)]]]);
         assert!(!is_valid(&across, Touching::AtPoints));
-    }
-
-    #[test]
-    fn borders_belong_to_polygons() {
-        let donut = shapes(&[&[SQUARE, SMALL]]);
-        for (x, y, inside) in [
-            (0.5, 0.5, true),
-            (1.5, 1.5, false),
-            (1.0, 1.5, true),
-            (9.0, 9.0, true),
-            (9.5, 9.0, false),
-        ] {
-            assert_eq!(contains(&donut, DVec2::new(x, y)), inside, "{x}, {y}");
-        }
     }
 }

@@ -11,7 +11,7 @@ const SQUARE: &str = r#"{"type":"FeatureCollection","name":"n","features":[
 {"type":"Feature","properties":null,"geometry":{"type":"MultiPoint","coordinates":[[0,0],[9,9],[2,2]]}},
 {"type":"Feature","properties":null,"geometry":null}]}"#;
 
-fn folder() -> Folder {
+pub fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("in.geojson", SQUARE);
     folder
@@ -22,7 +22,7 @@ fn features(folder: &Folder, name: &str) -> Vec<Value> {
     whole["features"].as_array().unwrap().clone()
 }
 
-fn piped(folder: &Folder, arguments: &str, input: &[u8]) -> Ended {
+pub fn piped(folder: &Folder, arguments: &str, input: &[u8]) -> Ended {
     let mut command = folder.command(arguments);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
@@ -448,7 +448,7 @@ fn threads_change_nothing() {
     assert_eq!(folder.read("a.geojson"), folder.read("b.geojson"));
 }
 
-fn text(ended: Ended) -> String {
+pub fn text(ended: Ended) -> String {
     String::from_utf8(ended.out).unwrap()
 }
 

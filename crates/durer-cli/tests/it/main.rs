@@ -2,6 +2,7 @@
 
 mod algorithms;
 mod clip;
+mod clip_told;
 mod conformance_clip;
 mod conformance_models;
 mod draw;

@@ -1,5 +1,6 @@
 //! Features and their geometry, as all formats of geodata share them.
 
+use durer::clip::polygon::FillRule;
 use durer::math::{DVec2, Rect};
 
 /// Which ordinates positions have beside x and y.
@@ -209,6 +210,8 @@ pub struct Feature {
     pub members: Vec<Member>,
     /// The number of the coordinate system, of EWKT and EWKB.
     pub srid: Option<i32>,
+    /// Which points its polygons enclose: even-odd, but for paths of an SVG.
+    pub fill_rule: FillRule,
 }
 
 impl Feature {

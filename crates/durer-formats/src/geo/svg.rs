@@ -1,12 +1,13 @@
 //! Features as SVG: what a plain viewer shows as a map.
 
 use super::{Feature, Geometry, Points, number};
+use durer::clip::polygon::FillRule;
 use durer::math::{DVec2, Rect};
 use std::io::{self, Write};
 
 /// How geometries look, but for the width of lines.
 const STYLE: &str = "path{stroke:#224;stroke-linejoin:round;stroke-linecap:round}\
-.area{fill:#9bc;fill-rule:evenodd}.line{fill:none}.points{fill:none}";
+.area{fill:#9bc}.line{fill:none}.points{fill:none}";
 
 /// The width of lines and of points, in pixels.
 const WIDTHS: [(&str, f64); 2] = [("path", 1.0), (".points", 4.0)];
@@ -36,7 +37,7 @@ pub fn write(out: &mut impl Write, features: &[Feature]) -> io::Result<()> {
         number::write(out, width / scale)?;
         write!(out, "}}")?;
     }
-    writeln!(out, "</style>\n<g transform=\"scale(1 -1)\">")?;
+    writeln!(out, "</style>\n<g fill-rule=\"evenodd\" transform=\"scale(1 -1)\">")?;
     for feature in features {
         if let Some(geometry) = &feature.geometry {
             write_feature(out, feature, geometry)?;
@@ -62,6 +63,9 @@ fn write_feature(out: &mut impl Write, feature: &Feature, geometry: &Geometry) -
     out.write_all(b"<g")?;
     if let Some(id) = id {
         write!(out, " id=\"{}\"", quick_xml::escape::escape(&id))?;
+    }
+    if feature.fill_rule == FillRule::NonZero {
+        out.write_all(b" fill-rule=\"nonzero\"")?;
     }
     out.write_all(b">")?;
     write_geometry(out, geometry)?;

@@ -2,12 +2,15 @@
 //!
 //! Read are `path`, `polygon`, `polyline`, `line`, `rect`, `circle` and `ellipse`, with the
 //! `transform`s and `id`s on them and on the groups around them. Bézier curves become [`STEPS`] edges
-//! each, arcs and round corners as many per quarter turn, with all corners on the curve. Closed parts become polygons (several of one path: by the even-odd rule of a clip), open
-//! parts lines. Styles, `use`, text, clipping and nested documents are not looked at. Coordinates are
+//! each, arcs and round corners as many per quarter turn, with all corners on the curve. Closed parts become polygons,
+//! open parts lines, and open parts without length points. Which points the closed parts of a path enclose
+//! is told by `fill-rule`, as attribute or in `style`, on it or around it; non-zero where nothing is said.
+//! Other styles, style sheets, `use`, text, clipping and nested documents are not looked at. Coordinates are
 //! those of the document turned over, so that y is up, as [`super::svg`] writes them.
 
 use super::{Feature, Geometry, Points, Warnings};
 use crate::{Error, Place, Result};
+use durer::clip::polygon::FillRule;
 use durer::math::DVec2;
 use quick_xml::events::{BytesStart, Event};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -38,12 +41,16 @@ fn compose(outer: &Matrix, inner: &Matrix) -> Matrix {
 struct Level {
     matrix: Matrix,
     id: Option<String>,
+    fill_rule: FillRule,
 }
+
+/// Around the whole document.
+const OUTERMOST: Level = Level { matrix: UPRIGHT, id: None, fill_rule: FillRule::NonZero };
 
 /// Reads the shapes of a document.
 pub fn read(text: &[u8], warnings: &mut Warnings) -> Result<Vec<Feature>> {
     let mut reader = quick_xml::Reader::from_reader(text);
-    let mut levels = vec![Level { matrix: UPRIGHT, id: None }];
+    let mut levels = vec![OUTERMOST];
     let mut features = Vec::new();
     let mut seen_svg = false;
     loop {
@@ -70,6 +77,7 @@ pub fn read(text: &[u8], warnings: &mut Warnings) -> Result<Vec<Feature>> {
                             .id
                             .as_ref()
                             .map(|id| serde_json::Value::from(&id[..]).to_string()),
+                        fill_rule: level.fill_rule,
                         ..Feature::of_geometry(geometry)
                     }),
                     Ok(None) => {}
@@ -103,10 +111,25 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>, Str
 }
 
 fn enter(element: &BytesStart<'_>, outer: Option<&Level>) -> Result<Level, String> {
-    let (matrix, outer_id) = outer.map_or((UPRIGHT, None), |l| (l.matrix, l.id.clone()));
+    let outer = outer.cloned().unwrap_or(OUTERMOST);
     let transform = attribute(element, "transform")?.unwrap_or_default();
-    let id = attribute(element, "id")?;
-    Ok(Level { matrix: compose(&matrix, &transforms(&transform)?), id: id.or(outer_id) })
+    let matrix = compose(&outer.matrix, &transforms(&transform)?);
+    let fill_rule = fill_rule(element)?.unwrap_or(outer.fill_rule);
+    Ok(Level { matrix, id: attribute(element, "id")?.or(outer.id), fill_rule })
+}
+
+/// What an element says itself: its style before its attribute.
+fn fill_rule(element: &BytesStart<'_>) -> Result<Option<FillRule>, String> {
+    let style = attribute(element, "style")?.unwrap_or_default();
+    let declared = style.split(';').filter_map(|declaration| declaration.split_once(':'));
+    let declared = declared.filter(|(name, _)| name.trim() == "fill-rule").last();
+    let rule = |value: &str| match value.trim() {
+        "evenodd" => Some(FillRule::EvenOdd),
+        "nonzero" => Some(FillRule::NonZero),
+        _ => None,
+    };
+    let by_attribute = attribute(element, "fill-rule")?;
+    Ok(declared.and_then(|(_, value)| rule(value)).or(by_attribute.as_deref().and_then(rule)))
 }
 
 fn transforms(text: &str) -> Result<Matrix, String> {
@@ -384,7 +407,7 @@ impl Path {
 
     fn geometry(mut self, matrix: &Matrix) -> Result<Option<Geometry>, String> {
         self.end();
-        let (mut rings, mut lines) = (Vec::new(), Vec::new());
+        let (mut rings, mut lines, mut dots) = (Vec::new(), Vec::new(), Points::default());
         for (points, closed) in &self.done {
             let mut xy: Vec<DVec2> = points.iter().map(|&p| apply(matrix, p)).collect();
             if xy.iter().any(|p| !p.is_finite()) {
@@ -395,6 +418,8 @@ impl Path {
             }
             match (closed, xy.len()) {
                 (true, 3..) => rings.push(vec![Points::flat(xy)]),
+                // How a point is drawn: a line without length, with round ends.
+                (false, 2..) if xy.iter().all(|p| *p == xy[0]) => dots.push(xy[0], [0.0; 2]),
                 (false, 2..) => lines.push(Points::flat(xy)),
                 _ => {}
             }
@@ -409,10 +434,13 @@ impl Path {
             1 => lines.pop().map(Geometry::LineString),
             _ => Some(Geometry::MultiLineString(lines)),
         };
-        Ok(match (area, line) {
-            (Some(area), Some(line)) => Some(Geometry::Collection(vec![area, line])),
-            (area, line) => area.or(line),
-        })
+        let dot = match dots.len() {
+            0 => None,
+            1 => Some(Geometry::Point(dots)),
+            _ => Some(Geometry::MultiPoint(dots)),
+        };
+        let mut parts: Vec<Geometry> = [area, line, dot].into_iter().flatten().collect();
+        Ok(if parts.len() > 1 { Some(Geometry::Collection(parts)) } else { parts.pop() })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Geodata: all formats give back what they were given, and errors say where.
 
+use durer::clip::polygon::FillRule;
 use durer::math::DVec2;
 use durer_formats::geo::{
     Dimensions, Feature, GeoFormat, Geometry, Points, Reader, Writer, read_all,
@@ -275,9 +276,39 @@ fn shapes_of_svg_are_read_and_written() {
     let bounds = all[2].geometry.as_ref().and_then(Geometry::bounds).expect("bounds");
     assert_eq!((bounds.min(), bounds.max()), (DVec2::new(12.0, -12.0), DVec2::new(18.0, -4.0)));
     let again = read_all(&written(GeoFormat::Svg, &all), "").expect("read").0;
-    let bare = |all: &[Feature]| all.iter().map(|f| f.geometry.clone()).collect::<Vec<_>>();
+    let bare =
+        |all: &[Feature]| all.iter().map(|f| (f.geometry.clone(), f.fill_rule)).collect::<Vec<_>>();
     assert_eq!(bare(&again), bare(&all));
     assert!(read_all(b"<svg><g", "").expect_err("cut").to_string().contains("line 1"));
+}
+
+#[test]
+fn points_of_svg_come_back_as_points() {
+    let text = r#"{"type":"FeatureCollection","features":[
+        {"type":"Feature","properties":null,"geometry":{"type":"Point","coordinates":[1,1]}},
+        {"type":"Feature","properties":null,"geometry":{"type":"MultiPoint","coordinates":[[1,2],[3,4]]}}]}"#;
+    let all = read_all(text.as_bytes(), "").expect("read").0;
+    let again = read_all(&written(GeoFormat::Svg, &all), "").expect("read").0;
+    let bare = |all: &[Feature]| all.iter().map(|f| f.geometry.clone()).collect::<Vec<_>>();
+    assert_eq!(bare(&again), bare(&all));
+    let mixed = read_all(b"<svg><path d='M1 1h0M0 0h3M0 0h3v3z'/></svg>", "").expect("read").0;
+    let Some(Geometry::Collection(parts)) = &mixed[0].geometry else { panic!("{mixed:?}") };
+    let names: Vec<_> = parts.iter().map(Geometry::name).collect();
+    assert_eq!(names, ["Polygon", "LineString", "Point"]);
+}
+
+#[test]
+fn fill_rules_of_svg_are_read_where_they_stand() {
+    let path = "d='M0 0h9v9h-9z'";
+    let text = format!(
+        "<svg><path {path}/><g fill-rule='evenodd'><path {path}/><path {path} fill-rule='nonzero'/>\
+         <path {path} fill-rule='nonzero' style='fill: red; fill-rule : evenodd'/><g><path {path}/></g>\
+         <path {path} style='fill-rule:inherit'/></g><path {path} fill-rule='evenodd'/></svg>"
+    );
+    let found: Vec<FillRule> =
+        read_all(text.as_bytes(), "").expect("read").0.iter().map(|f| f.fill_rule).collect();
+    let (odd, not) = (FillRule::EvenOdd, FillRule::NonZero);
+    assert_eq!(found, [not, odd, not, odd, odd, odd, odd]);
 }
 
 #[test]
@@ -396,7 +427,7 @@ fn geometry() -> impl Strategy<Value = Geometry> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
     fn every_format_gives_back_what_it_was_given(

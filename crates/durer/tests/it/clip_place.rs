@@ -87,7 +87,7 @@ fn point() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     /// Snapping may move a vertex by one step of the grid, 1/256 pixel on each axis, and its two
     /// edges with it; no other pixel may differ.
@@ -170,7 +170,7 @@ fn replay(input: Vec<DVec4>, steps: &[Step]) -> Vec<DVec4> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
     fn replaying_the_steps_rebuilds_the_output(t in [point(), point(), point()], perspective: bool) {

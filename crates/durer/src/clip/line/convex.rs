@@ -230,8 +230,9 @@ pub(super) fn crossing<const N: usize, H: HalfSpace<N>>(
         point
     };
     let point = on_border(line.at(parameter(space, line)));
-    settled(spaces, point, scale)
-        .or_else(|| settled(spaces, on_border(exact_crossing(space, line)), scale))
+    let inside = |p| slid(spaces, p, scale).or_else(|| settled(spaces, p, scale));
+    inside(point)
+        .or_else(|| inside(on_border(exact_crossing(space, line))))
         .or_else(|| nearest_corner(space, point, scale))
         .unwrap_or(point)
 }
@@ -294,6 +295,40 @@ fn settled<const N: usize, H: HalfSpace<N>>(
 /// Turns around the borders after which a window is taken to hold no floating-point point near the
 /// cut: enough for steps to grow from an ulp of the point to one of the segment's ends.
 const SETTLE_ROUNDS: i32 = 64;
+
+/// Moves a cut point that rounding has put outside along one axis to the first number inside the border
+/// that it is beyond, if that is inside all others and near; `None` where no axis does.
+///
+/// Where coordinates differ much in size, a step of an ulp of the larger one leads through the tip of
+/// a needle and out again; the smaller one has numbers inside.
+fn slid<const N: usize, H: HalfSpace<N>>(
+    spaces: &[H],
+    point: [f64; N],
+    scale: f64,
+) -> Option<[f64; N]> {
+    let outside = |p: [f64; N]| spaces.iter().find(move |s| s.sign(p) == Ordering::Less);
+    let Some(space) = outside(point) else { return Some(point) };
+    if space.coordinate().is_some() {
+        // The border itself; there is nothing to look for.
+        let moved = pushed(space, point, scale);
+        return outside(moved).is_none().then_some(moved);
+    }
+    let normal = space.normal();
+    let (mut axes, off) = (std::array::from_fn::<usize, N, _>(|k| k), space.exact(point));
+    axes.sort_by(|&a, &b| normal[b].abs().total_cmp(&normal[a].abs()));
+    axes.into_iter().filter(|&k| normal[k] != 0.0 && normal[k].is_finite()).find_map(|k| {
+        let mut moved = point;
+        moved[k] -= off.ratio(&Exact::from(normal[k]));
+        // The quotient and the difference are rounded: an ulp or two are missing at most.
+        for _ in 0..4 {
+            if moved[k].is_finite() && space.sign(moved) == Ordering::Less {
+                moved[k] = if normal[k] > 0.0 { moved[k].next_up() } else { moved[k].next_down() };
+            }
+        }
+        let near = (moved[k] - point[k]).abs() <= scale * (64.0 * EPSILON);
+        (near && outside(moved).is_none()).then_some(moved)
+    })
+}
 
 /// The point moved inwards by a quarter ulp of `scale`.
 fn pushed<const N: usize, H: HalfSpace<N>>(space: &H, point: [f64; N], scale: f64) -> [f64; N] {

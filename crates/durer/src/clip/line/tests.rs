@@ -374,6 +374,32 @@ fn names_are_read_back() {
 }
 
 #[test]
+fn in_the_tip_of_a_needle_the_smaller_coordinate_has_numbers_inside() {
+    let p = DVec2::new;
+    let tip = p(-187_399_625_501.856_45, 5.074_507_911_728_825e-6);
+    let ring = [tip, p(452_969_585_983.105_16, -608_884.956_942_382), p(1.0, 1.0)];
+    let ends = [
+        p(-238_774_825_123.150_73, 3.286_452_362_468_028_7e-9),
+        p(2_734.282_439_447_801_6, 6.614_489_055_946_68e-8),
+    ];
+    // The same case mirrored at both axes, and with the axes exchanged.
+    let turns: [fn(DVec2) -> DVec2; 3] = [|p| p, |p| -p, |p| DVec2::new(p.y, p.x)];
+    for turn in turns {
+        let window = ConvexPolygon::new(&ring.map(turn)).unwrap();
+        let s = Segment::new(turn(ends[0]), turn(ends[1]));
+        let got = cyrus_beck::clip_polygon(&window, s, &mut NoTrace).unwrap().unwrap();
+        let inside =
+            |p: DVec2| window.edges().iter().all(|e| e.sign(p.to_array()) != Ordering::Less);
+        assert!(inside(got.start) && inside(got.end), "{got:?}");
+        let twice = cyrus_beck::clip_polygon(&window, got, &mut NoTrace).unwrap();
+        assert_eq!(bits(twice), bits(Some(got)));
+        // The exact crossing, to some ulps of the larger coordinate.
+        let expected = turn(p(-187_399_625_496.537, 1.681e-8));
+        assert!((got.start - expected).abs().max_element() < 1e-3, "{got:?}");
+    }
+}
+
+#[test]
 fn rings_that_are_not_convex_are_refused() {
     let p = DVec2::new;
     let square = [p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)];

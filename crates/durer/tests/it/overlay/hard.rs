@@ -62,7 +62,7 @@ fn whole((x, y): (i32, i32)) -> DVec2 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Triangles with hardly any area, beside and across others, add hardly any to a union
     /// (AngusJohnson/Clipper2#1067).

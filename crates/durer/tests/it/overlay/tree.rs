@@ -47,7 +47,7 @@ fn doubled(shapes: &Shapes<I64Vec2>) -> Shapes<I64Vec2> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn parents_are_the_smallest_rings_around(

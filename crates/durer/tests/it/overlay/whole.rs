@@ -43,7 +43,7 @@ fn floats(shapes: &Shapes<I64Vec2>) -> Shapes {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn whole_numbers_give_what_floats_on_their_grid_give(

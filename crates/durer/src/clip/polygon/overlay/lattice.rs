@@ -327,7 +327,8 @@ impl Lattice {
     fn new(bounds: Rect, cell: Option<f64>) -> Result<Self> {
         let farthest = bounds.min().abs().max(bounds.max().abs()).max_element();
         if farthest > FARTHEST {
-            return Err(Error::parameter("coordinate", farthest, "within ±1e300"));
+            let value = format!("{farthest:e}");
+            return Err(Error::parameter("coordinate", value, "within ±1e300"));
         }
         let middle = bounds.min() * 0.5 + bounds.max() * 0.5;
         let half = (bounds.max() - middle).max(middle - bounds.min()).max_element();

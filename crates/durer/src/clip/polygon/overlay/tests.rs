@@ -39,7 +39,7 @@ const RULES: [FillRule; 4] =
     [FillRule::EvenOdd, FillRule::NonZero, FillRule::Positive, FillRule::Negative];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
     fn patches_find_what_a_sweep_finds(

@@ -18,9 +18,12 @@
 
 mod border;
 mod lines;
+mod prepared;
 mod rings;
+mod tree;
 
 pub use lines::{ClippedLines, clip_lines};
+pub use prepared::Prepared;
 
 use super::Shapes;
 use crate::clip::attribute::{NoSources, Provenance, Source};
@@ -28,7 +31,7 @@ use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
 use crate::{Error, Result};
-use rings::Clipper;
+use rings::{Clipper, Unprepared};
 
 /// The facts of the rectangle clip.
 pub const INFO: Info = Info {
@@ -153,7 +156,12 @@ fn run<P: Provenance>(
                 t.step(|| Step::Inside { polygon: index });
                 clipper.copy(shapes, rings);
             }
-            Extent::Crossing => clipper.cut(shapes, rings, t),
+            Extent::Crossing => {
+                let (outer, holes) = (rings.start, rings.start + 1..rings.end);
+                let near = |&hole: &usize| extent(window, shapes.ring(hole)) != Extent::Outside;
+                let rings = std::iter::once(outer).chain(holes.filter(near));
+                clipper.cut(shapes, rings, &Unprepared, t);
+            }
             Extent::NonFinite => return Err(non_finite(shapes.points())),
         }
     }
@@ -190,7 +198,7 @@ impl Bounds {
 }
 
 fn extent(window: &Rect, points: &[DVec2]) -> Extent {
-    let first = points.first().copied().unwrap_or_default();
+    let Some(&first) = points.first() else { return Extent::Outside };
     // Four at a time, so that no comparison waits for the one before.
     let mut four = [Bounds { min: first, max: first, zero: DVec2::ZERO }; 4];
     let (chunks, rest) = points.as_chunks::<4>();

@@ -1,7 +1,7 @@
 //! Chains of one polygon's rings inside the window, and how they close to rings again.
 
+use super::Step;
 use super::border::{BorderPoint, corners};
-use super::{Extent, Step, extent};
 use crate::clip::attribute::{Provenance, Source};
 use crate::clip::exact;
 use crate::clip::line::cut_inside;
@@ -35,13 +35,62 @@ pub(super) struct Clipper<P> {
 }
 
 /// One ring in the direction in which its inside is on the left.
-struct Directed<'a> {
+pub(super) struct Directed<'a> {
+    /// Its index over all polygons.
+    pub(super) number: usize,
     ring: &'a Ring,
     first: usize,
     backwards: bool,
 }
 
-impl Directed<'_> {
+/// What is known of rings before their edges are looked at.
+pub(super) trait Guide {
+    /// Whether a ring runs counter-clockwise.
+    fn turns_left(&self, number: usize, ring: &Ring) -> bool;
+    /// Where a walk once around from `start` may meet the open window, as ranges of edges in their order.
+    fn stretches(
+        &self,
+        window: &Rect,
+        ring: &Directed<'_>,
+        start: usize,
+    ) -> impl Iterator<Item = Range<usize>>;
+    /// Whether a point lies in a ring by the even-odd rule; exact but for points on the ring.
+    fn holds(&self, ring: &Directed<'_>, p: DVec2) -> bool;
+}
+
+/// Looks at every edge.
+pub(super) struct Unprepared;
+
+impl Guide for Unprepared {
+    fn turns_left(&self, _number: usize, ring: &Ring) -> bool {
+        signed_area(ring) > 0.0
+    }
+
+    #[inline]
+    fn stretches(
+        &self,
+        _window: &Rect,
+        ring: &Directed<'_>,
+        start: usize,
+    ) -> impl Iterator<Item = Range<usize>> {
+        std::iter::once(start..start + ring.len())
+    }
+
+    fn holds(&self, ring: &Directed<'_>, p: DVec2) -> bool {
+        contains(ring.ring, p)
+    }
+}
+
+impl<'a> Directed<'a> {
+    pub(super) fn new(shapes: &'a Shapes, number: usize, backwards: bool) -> Self {
+        let first = shapes.ring_range(number).start;
+        Self { number, ring: shapes.ring(number), first, backwards }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.ring.len()
+    }
+
     /// The index in the ring of the k-th point, counted around and around.
     #[inline]
     fn index(&self, k: usize) -> usize {
@@ -51,7 +100,7 @@ impl Directed<'_> {
     }
 
     #[inline]
-    fn point(&self, k: usize) -> DVec2 {
+    pub(super) fn point(&self, k: usize) -> DVec2 {
         self.ring[self.index(k)]
     }
 
@@ -87,8 +136,15 @@ impl<P: Provenance> Clipper<P> {
         self.output.end_polygon();
     }
 
-    /// Clips a polygon that crosses the window's border or surrounds the window.
-    pub(super) fn cut(&mut self, shapes: &Shapes, rings: Range<usize>, t: &mut impl Tracer<Step>) {
+    /// Clips a polygon that crosses the window's border or surrounds the window, given by its outer ring
+    /// and those of its holes that do not lie outside of the window.
+    pub(super) fn cut(
+        &mut self,
+        shapes: &Shapes,
+        rings: impl Iterator<Item = usize>,
+        guide: &impl Guide,
+        t: &mut impl Tracer<Step>,
+    ) {
         self.points.clear();
         self.point_sources.truncate(0);
         self.chains.clear();
@@ -98,14 +154,12 @@ impl<P: Provenance> Clipper<P> {
         if size.x == 0.0 || size.y == 0.0 {
             return;
         }
-        for (k, ring) in rings.enumerate() {
-            let range = shapes.ring_range(ring);
-            let ring = shapes.ring(ring);
-            if ring.len() < 3 || (k > 0 && extent(&self.window, ring) == Extent::Outside) {
-                continue;
+        for (k, number) in rings.enumerate() {
+            let ring = shapes.ring(number);
+            if ring.len() >= 3 {
+                let backwards = guide.turns_left(number, ring) != (k == 0);
+                self.collect(&Directed::new(shapes, number, backwards), guide, t);
             }
-            let backwards = (signed_area(ring) > 0.0) != (k == 0);
-            self.collect(&Directed { ring, first: range.start, backwards }, t);
         }
         self.assemble(t);
     }
@@ -133,7 +187,7 @@ impl<P: Provenance> Clipper<P> {
     }
 
     /// Finds the chains of one ring.
-    fn collect(&mut self, ring: &Directed<'_>, t: &mut impl Tracer<Step>) {
+    fn collect(&mut self, ring: &Directed<'_>, guide: &impl Guide, t: &mut impl Tracer<Step>) {
         let n = ring.ring.len();
         let Some(start) = (0..n).find(|&k| !self.strictly_inside(ring.point(k))) else {
             self.collect_island(ring);
@@ -142,17 +196,24 @@ impl<P: Provenance> Clipper<P> {
         let found_before = self.chains.len() + self.islands.len();
         let mut k = start;
         let mut a = ring.point(k);
-        while k < start + n {
-            let b = ring.point(k + 1);
-            if self.apart(a, b) {
-                a = b;
-                k += 1;
-                continue;
+        let window = self.window;
+        for stretch in guide.stretches(&window, ring, start) {
+            if k < stretch.start {
+                k = stretch.start;
+                a = ring.point(k);
             }
-            (k, a) = self.follow(ring, k, a, t);
+            while k < stretch.end {
+                let b = ring.point(k + 1);
+                if self.apart(a, b) {
+                    a = b;
+                    k += 1;
+                    continue;
+                }
+                (k, a) = self.follow(ring, k, a, t);
+            }
         }
         let found = self.chains.len() + self.islands.len();
-        if found == found_before && self.window_is_in(ring.ring) {
+        if found == found_before && guide.holds(ring, self.middle()) {
             self.surrounded = !self.surrounded;
         }
     }
@@ -215,10 +276,10 @@ impl<P: Provenance> Clipper<P> {
         self.push(point, || Source::on_edge(point, (from, a), (to, b)));
     }
 
-    /// Whether the window, which no edge of the ring enters, is inside the ring.
-    fn window_is_in(&self, ring: &Ring) -> bool {
+    /// The window's middle: inside of those rings that have no edge in the window and are around it.
+    fn middle(&self) -> DVec2 {
         let (min, max) = (self.window.min(), self.window.max());
-        contains(ring, min + (max - min) * 0.5)
+        min + (max - min) * 0.5
     }
 
     /// Closes the chains to rings and gives each its holes.
@@ -377,10 +438,13 @@ fn followers(ends: &[ChainEnd], chains: usize) -> Vec<usize> {
 /// Whether a point lies in a ring by the even-odd rule; exact but for points on the ring.
 pub(super) fn contains(ring: &Ring, p: DVec2) -> bool {
     let previous = ring.iter().cycle().skip(ring.len().saturating_sub(1));
-    let crossings = previous.zip(ring).filter(|(a, b)| {
-        let upwards = a.y <= p.y;
-        let wanted = if upwards { Ordering::Greater } else { Ordering::Less };
-        upwards != (b.y <= p.y) && exact::side(**a, **b, p) == wanted
-    });
-    crossings.count() % 2 == 1
+    previous.zip(ring).filter(|(a, b)| crosses(**a, **b, p)).count() % 2 == 1
+}
+
+/// Whether an edge crosses the ray from a point to the right.
+#[inline]
+pub(super) fn crosses(a: DVec2, b: DVec2, p: DVec2) -> bool {
+    let upwards = a.y <= p.y;
+    let wanted = if upwards { Ordering::Greater } else { Ordering::Less };
+    upwards != (b.y <= p.y) && exact::side(a, b, p) == wanted
 }
