@@ -41,7 +41,8 @@ pub struct FillArgs {
     pub output: PathBuf,
     /// A pixel to start from, counted from 0 at the upper left of the picture as viewers show it; may be given several times
     ///
-    /// The fills are done one after the other, each on what the one before has left.
+    /// The fills are done one after the other, each on what the one before has left. A point between whole
+    /// numbers means the pixel in which it lies: 1.5,0 is the pixel 1,0.
     #[arg(long, value_name = "X,Y", required = true, allow_hyphen_values = true, value_parser = values::point)]
     pub at: Vec<DVec2>,
     /// The colour that filled pixels get, also one that is not opaque

@@ -2,7 +2,7 @@
 
 use super::layers::Style;
 use crate::failure::Failure;
-use durer::clip::polygon::{Shapes, rectangle};
+use durer::clip::polygon::{Polygon, Shapes, rectangle};
 use durer::curve::text::{Font, TextLine};
 use durer::math::{DAffine2, DVec2, Rect};
 use durer::raster::coverage::FillRule;
@@ -38,16 +38,40 @@ pub struct Label {
 }
 
 /// Where a label belongs, in pixels.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Anchor {
     at: DVec2,
     /// Of a point, beside which it stands; else it stands on it.
     beside: bool,
     /// What is larger comes first: pixels of area or length.
     size: f64,
+    /// The area in which there may be other places.
+    area: Option<Shapes>,
 }
 
 impl Anchor {
+    /// Other points within the area, if the best has no room: those farthest from the border of its left, right, upper
+    /// and lower part.
+    fn others(&self) -> Vec<DVec2> {
+        let Some((area, bounds)) = self.area.as_ref().and_then(|a| a.bounds().map(|b| (a, b)))
+        else {
+            return Vec::new();
+        };
+        let (low, high, at) = (bounds.min(), bounds.max(), self.at);
+        let halves = [
+            (DVec2::new(low.x, low.y), DVec2::new(high.x, at.y)),
+            (DVec2::new(low.x, at.y), DVec2::new(high.x, high.y)),
+            (DVec2::new(low.x, low.y), DVec2::new(at.x, high.y)),
+            (DVec2::new(at.x, low.y), DVec2::new(high.x, high.y)),
+        ];
+        let within = |(low, high)| {
+            let half = Rect::new(low, high).ok()?;
+            let cut = rectangle::clip(&half, area, &rectangle::Options, &mut NoTrace).ok()?;
+            middle(largest(std::slice::from_ref(&cut))?)
+        };
+        halves.into_iter().filter_map(within).collect()
+    }
+
     /// The place for the label of a feature, within what is seen.
     pub fn of(geometry: &Geometry, screen: &WindowToViewport, seen: &Rect) -> Option<Self> {
         let parts =
@@ -101,15 +125,12 @@ impl Parts<'_> {
         let cut =
             |s: &Shapes| rectangle::clip(self.seen, s, &rectangle::Options, &mut NoTrace).ok();
         let pieces: Vec<Shapes> = self.areas.iter().filter_map(cut).collect();
-        let polygons = pieces.iter().flat_map(Shapes::polygons);
-        let largest = polygons.max_by(|a, b| a.area().abs().total_cmp(&b.area().abs()))?;
-        let narrow = DVec2::new(1.0 / WIDTH, 1.0);
-        let rings: Vec<Vec<DVec2>> =
-            largest.rings().map(|r| r.iter().map(|p| *p * narrow).collect()).collect();
-        let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
-        let found = interior_point(&rings, &Options::default(), &mut NoTrace)?;
-        let size = largest.area().abs();
-        Some(Anchor { at: found.point / narrow, beside: false, size })
+        let largest = largest(&pieces)?;
+        let (at, size) = (middle(largest)?, largest.area().abs());
+        let mut area = Shapes::new();
+        largest.rings().for_each(|ring| area.push_ring(ring.iter().copied()));
+        area.end_polygon();
+        Some(Anchor { at, beside: false, size, area: Some(area) })
     }
 
     /// In the middle of the longest line.
@@ -122,7 +143,7 @@ impl Parts<'_> {
             let piece = pair[0].distance(pair[1]);
             if piece >= left && piece > 0.0 {
                 let at = pair[0].lerp(pair[1], left / piece);
-                return Some(Anchor { at, beside: false, size });
+                return Some(Anchor { at, beside: false, size, area: None });
             }
             left -= piece;
         }
@@ -131,8 +152,24 @@ impl Parts<'_> {
 
     fn first_point(&self) -> Option<Anchor> {
         let at = self.points.iter().copied().find(|p| self.seen.contains(*p))?;
-        Some(Anchor { at, beside: true, size: 0.0 })
+        Some(Anchor { at, beside: true, size: 0.0, area: None })
     }
+}
+
+/// The polygon of the largest area.
+fn largest(pieces: &[Shapes]) -> Option<Polygon<'_>> {
+    let polygons = pieces.iter().flat_map(Shapes::polygons);
+    polygons.max_by(|a, b| a.area().abs().total_cmp(&b.area().abs()))
+}
+
+/// The point of a polygon that is farthest from its border, as labels see it.
+fn middle(polygon: Polygon<'_>) -> Option<DVec2> {
+    let narrow = DVec2::new(1.0 / WIDTH, 1.0);
+    let rings: Vec<Vec<DVec2>> =
+        polygon.rings().map(|r| r.iter().map(|p| *p * narrow).collect()).collect();
+    let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+    let found = interior_point(&rings, &Options::default(), &mut NoTrace)?;
+    Some(found.point / narrow)
 }
 
 /// What became of labels.
@@ -165,14 +202,18 @@ pub fn draw(
         let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
         let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
         let line = font.line(&label.text, style.label_size);
-        let places = places(&label.anchor, &line, style);
-        let boxes = places.iter().filter_map(|corner| taken(*corner, &line, style));
-        match placer.place(boxes) {
-            Some(number) => {
+        let anchor = &label.anchor;
+        let mut place = |at: DVec2| {
+            let places = places(at, anchor.beside, &line, style);
+            let boxes = places.iter().filter_map(|corner| taken(*corner, &line, style));
+            placer.place(boxes).and_then(|number| places.get(number).copied())
+        };
+        let found = place(anchor.at).or_else(|| anchor.others().into_iter().find_map(place));
+        match found {
+            Some(corner) => {
                 drawn.counts[label.layer].0 += 1;
                 drawn.missing.extend(label.text.chars().filter(|c| !font.has(*c)));
-                write(canvas, &line, places[number], style)
-                    .map_err(|e| Failure::Usage(e.to_string()))?;
+                write(canvas, &line, corner, style).map_err(|e| Failure::Usage(e.to_string()))?;
             }
             None => drawn.counts[label.layer].1 += 1,
         }
@@ -181,14 +222,14 @@ pub fn draw(
 }
 
 /// Starts of the base line, the best first.
-fn places(anchor: &Anchor, line: &TextLine, style: &Style) -> Vec<DVec2> {
+fn places(at: DVec2, beside: bool, line: &TextLine, style: &Style) -> Vec<DVec2> {
     let size = style.label_size;
     // Capitals stand in the middle of the line.
-    let middle = anchor.at + DVec2::new(0.0, LETTERS * 0.5 * size);
+    let middle = at + DVec2::new(0.0, LETTERS * 0.5 * size);
     let centered = middle - DVec2::new(line.advance * 0.5, 0.0);
     let apart = GAP * size + 0.5 * (style.marker_size + style.stroke_width);
     let above = DVec2::new(0.0, LETTERS * 0.5 * size + apart);
-    if anchor.beside {
+    if beside {
         let right = middle + DVec2::new(apart, 0.0);
         let left = middle - DVec2::new(apart + line.advance, 0.0);
         vec![right, left, centered - above, centered + above]

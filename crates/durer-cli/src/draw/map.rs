@@ -10,7 +10,7 @@ use crate::input::display_name;
 use durer::curve::Path;
 use durer::math::{DVec2, Rect};
 use durer::raster::coverage::FillRule;
-use durer::raster::line::wide::{Cap, Join, Stroke};
+use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
 use durer::raster::paint::{Canvas, Paint};
 use durer::view::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
 use durer_formats::geo::{Feature, Geometry, Points, Reader};
@@ -50,7 +50,7 @@ impl Job<'_> {
         let viewport = self.viewport(size)?;
         let screen = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
         let (seen, counts) = (seen(&viewport)?, MapCounts::default());
-        let mut map = Map { canvas, screen, seen, counts, joined: None };
+        let mut map = Map { canvas, screen, seen, counts, joined: None, solid: false };
         map.canvas.push_clip(&frame(&viewport), FillRule::NonZero);
         let mut labels = Vec::new();
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
@@ -65,6 +65,11 @@ impl Job<'_> {
             map.joined = joins(style).then(Joined::default);
             features.iter().try_for_each(|f| map.feature(f, style)).map_err(usage)?;
             map.fill_joined(style);
+            if std::mem::take(&mut map.solid) {
+                let message = "what has more than 100,000 dashes and gaps is drawn solid";
+                self.messages.warning(&name, message);
+                self.report.warnings.push(message.to_owned());
+            }
             if fade {
                 map.canvas.pop(style.opacity);
             }
@@ -77,9 +82,15 @@ impl Job<'_> {
             }
             self.report.layers[index].map = Some(map.counts);
         }
-        if !labels.is_empty() {
+        let given_fonts = !self.args.fonts.font.is_empty();
+        // What is no font is wrong also where nothing is written.
+        let fonts = if labels.is_empty() && !given_fonts {
+            None
+        } else {
+            Some(fonts::load(&self.args.fonts)?)
+        };
+        if let (false, Some(fonts)) = (labels.is_empty(), fonts) {
             self.messages.progress.stage(|| "placing labels".to_owned());
-            let fonts = fonts::load(&self.args.fonts)?;
             let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
             let drawn = super::label::draw(&mut map.canvas, &map.seen, labels, &styles, &fonts)?;
             for (layer, placed) in self.report.layers.iter_mut().zip(drawn.counts) {
@@ -187,6 +198,8 @@ struct Map {
     counts: MapCounts,
     /// The layer's areas so far, where they are painted as one.
     joined: Option<Joined>,
+    /// Whether something has so many dashes that it is drawn without.
+    solid: bool,
 }
 
 /// Whether the areas of a layer can be painted as one: one opaque colour, and no borders that the
@@ -237,6 +250,7 @@ impl Map {
         let cap = if style.dashes.is_empty() { Cap::Round } else { Cap::Butt };
         let (width, dashes) = (style.stroke_width, style.dashes.clone());
         let stroke = Stroke { width, cap, join: Join::Round, dashes, ..Stroke::default() };
+        self.solid |= has_too_many_dashes(path, &stroke);
         self.canvas.stroke(path, &stroke, &Paint::Color(color), 1.0)
     }
 

@@ -196,6 +196,33 @@ fn labels_are_drawn_once_and_never_overlap() {
 }
 
 #[test]
+fn an_area_whose_best_place_is_taken_has_others() {
+    let folder = folder();
+    let area = |name: &str, [x0, y0, x1, y1]: [i32; 4]| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}}}"#
+        )
+    };
+    // Both have the same best place.
+    let both = ["one", "two"].map(|name| area(name, [0, 0, 100, 100]));
+    folder.write("areas.geojsonl", both.join("\n"));
+    let report = folder.must("draw areas.geojsonl --label name -o m.png --size 200x --json").json();
+    let map = &report["layers"][0]["map"];
+    assert_eq!((map["labels"].as_u64(), map["labels_left_out"].as_u64()), (Some(2), Some(0)));
+}
+
+#[test]
+fn what_a_map_cannot_use_is_told() {
+    let folder = folder();
+    folder.write("no.ttf", "no font");
+    folder.run("draw map.geojson --font no.ttf -o m.png").fails(1, "it is no TrueType");
+    let told = folder.must("draw map.geojson --dashes 0.0001 -o m.png").err;
+    assert!(told.contains("more than 100,000 dashes"), "{told}");
+    let told = folder.must("draw map.geojson --dashes 4 --stroke hsl(0,100%,50%) -o m.png").err;
+    assert!(!told.contains("dashes"), "{told}");
+}
+
+#[test]
 fn threads_change_nothing() {
     let folder = folder();
     for threads in [1, 3] {

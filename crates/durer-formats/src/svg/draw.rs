@@ -4,7 +4,7 @@ use super::{image, paint};
 use crate::Limits;
 use durer::math::DAffine2;
 use durer::raster::coverage::FillRule;
-use durer::raster::line::wide::{Cap, Join, Stroke};
+use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
 use durer::raster::paint::{Canvas, MaskKind, Paint};
 use std::collections::BTreeSet;
 use usvg::{BlendMode, Group, Node};
@@ -154,6 +154,9 @@ impl<'a> Painter<'a> {
                 let Some(paint) = this.paint(stroke.paint(), map) else { return };
                 this.set(map, smooth);
                 let style = this.style(stroke);
+                if has_too_many_dashes(&outline, &style) {
+                    this.warn("a path with more than 100,000 dashes and gaps is drawn solid");
+                }
                 if let Err(error) = this.canvas.stroke(&outline, &style, &paint, opacity) {
                     this.warn(format!("a stroke is left out: {error}"));
                 }

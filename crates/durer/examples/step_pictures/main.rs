@@ -11,13 +11,14 @@ mod polygons;
 #[path = "../algorithm_pictures/scene.rs"]
 mod scene;
 mod sketch;
+mod strokes;
 
 type Picture = (&'static str, durer::Result<String>);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
-    let pictures: [&[fn() -> Picture]; 5] =
-        [lines::ALL, polygons::ALL, pixels::ALL, curves::ALL, hidden::ALL];
+    let pictures: [&[fn() -> Picture]; 6] =
+        [lines::ALL, polygons::ALL, pixels::ALL, curves::ALL, hidden::ALL, strokes::ALL];
     for picture in pictures.into_iter().flatten() {
         let (name, svg) = picture();
         std::fs::write(format!("{folder}/{name}.svg"), svg?)?;

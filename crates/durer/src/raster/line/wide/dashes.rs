@@ -19,6 +19,21 @@ const MEASURED: f64 = 1e4;
 /// short to be seen, long enough to have a direction.
 const DOT: f64 = 1e-4;
 
+/// Whether a path has so many dashes and gaps that it is drawn solid.
+pub(super) fn are_too_many(path: impl Iterator<Item = PathElement>, stroke: &Stroke) -> bool {
+    period(stroke) > 0.0
+        && count(control_length(&path.map(to_kurbo).collect()), stroke) >= MAX_DASHES
+}
+
+fn period(stroke: &Stroke) -> f64 {
+    stroke.dashes.iter().sum()
+}
+
+/// The dashes and gaps on a length.
+fn count(length: f64, stroke: &Stroke) -> f64 {
+    length / period(stroke) * stroke.dashes.len() as f64
+}
+
 /// Whether all dashes are dots, whose corners are round whatever the join.
 pub(super) fn only_dots(stroke: &Stroke) -> bool {
     stroke.cap != Cap::Butt && repeated(&stroke.dashes).step_by(2).all(|d| d == 0.0)
@@ -36,14 +51,13 @@ pub(super) fn dashed(
     stroke: &Stroke,
     tolerance: f64,
 ) -> Option<Path> {
-    let period: f64 = stroke.dashes.iter().sum();
-    if period <= 0.0 {
+    if period(stroke) <= 0.0 {
         return None;
     }
     let source: BezPath = path.map(to_kurbo).collect();
     let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
     let length = control_length(&source);
-    let count = length / period * stroke.dashes.len() as f64;
+    let count = count(length, stroke);
     if !(length > 0.0 && count < MAX_DASHES) {
         return None;
     }

@@ -166,6 +166,21 @@ pub fn outline(
     Ok(out)
 }
 
+/// Whether a path has more than 100,000 dashes and gaps: then [`outline`] leaves it solid.
+///
+/// ```
+/// use durer::curve::Path;
+/// use durer::raster::line::wide::{Stroke, has_too_many_dashes};
+///
+/// let line = Path::rectangle(0.0, 0.0, 1000.0, 1000.0);
+/// let dashed = |length| Stroke { dashes: vec![length], ..Stroke::default() };
+/// assert!(has_too_many_dashes(&line, &dashed(0.01)));
+/// assert!(!has_too_many_dashes(&line, &dashed(1.0)));
+/// ```
+pub fn has_too_many_dashes(path: &Path, stroke: &Stroke) -> bool {
+    dashes::are_too_many(elements(path), stroke)
+}
+
 /// Tells the steps of the outline of one straight line, whose corners are those of its ends.
 fn trace(outline: &Contours, t: &mut impl Tracer<Step>) {
     for (i, point) in outline.points().iter().enumerate() {
