@@ -1,7 +1,9 @@
 //! Whether polygons are valid, exactly.
 
-use durer::clip::polygon::{Polygon, Shapes};
+use durer::clip::polygon::Shapes;
+use durer::clip::polygon::rectangle::Prepared;
 use durer::math::{DVec2, Orientation, Rect, orient2d};
+use std::cell::OnceCell;
 
 /// So many pairs of edges are looked at per edge, at most; beyond that polygons count as not valid,
 /// and the overlay, which fears no edge, takes them.
@@ -130,58 +132,78 @@ fn allowed(p: &Edge, q: &Edge, size: usize, touching: Touching) -> bool {
 /// Whether holes lie in their outer rings, not in one another, and polygons not in one another;
 /// the edges are apart.
 fn nests(shapes: &Shapes) -> bool {
-    let polygons: Vec<Polygon<'_>> = shapes.polygons().collect();
-    let boxes: Vec<Option<Rect>> =
-        polygons.iter().map(|p| Rect::around(p.outer().iter().copied())).collect();
-    for (i, polygon) in polygons.iter().enumerate() {
-        let holes: Vec<&[DVec2]> = polygon.holes().collect();
-        for (k, hole) in holes.iter().enumerate() {
-            let others = holes.iter().enumerate().filter(|(j, _)| *j != k);
-            let nested = others.into_iter().any(|(_, other)| lies_in(hole, other));
-            if nested || !lies_in(hole, polygon.outer()) {
-                return false;
-            }
+    let numbers = shapes.polygons().map(|polygon| polygon.ring_indices()).enumerate();
+    let rings: Vec<Ring<'_>> = numbers
+        .flat_map(|(polygon, all)| all.clone().map(move |ring| (polygon, ring > all.start, ring)))
+        .filter_map(|(polygon, hole, ring)| {
+            let points = shapes.ring(ring);
+            let around = Rect::around(points.iter().copied())?;
+            Some(Ring { points, around, polygon, hole, prepared: OnceCell::new() })
+        })
+        .collect();
+    let mut at_home = vec![false; rings.len()];
+    let mut within = Vec::new();
+    let mut apart = true;
+    each_within(&rings, |inner, outer| {
+        let (a, b) = (&rings[inner], &rings[outer]);
+        let (same, holes) = (a.polygon == b.polygon, (a.hole, b.hole));
+        match (same, holes) {
+            (true, (true, false)) => at_home[inner] = a.lies_in(b),
+            (true, (true, true)) => apart = apart && !a.lies_in(b),
+            (false, (false, _)) if a.lies_in(b) => within.push((inner, b.polygon)),
+            _ => {}
         }
-        let overlap =
-            |j: usize| matches!((boxes[i], boxes[j]), (Some(a), Some(b)) if a.overlaps(&b));
-        for j in (0..polygons.len()).filter(|&j| j != i && overlap(j)) {
-            let rings = polygons[j].rings();
-            let depth: usize = rings.filter(|ring| lies_in(polygon.outer(), ring)).count();
-            if depth % 2 == 1 {
-                return false;
-            }
-        }
+        apart
+    });
+    // In another polygon's ring and hole: in its hole.
+    within.sort_unstable();
+    let in_holes = within.chunk_by(|a, b| a == b).all(|rings| rings.len() % 2 == 0);
+    apart && in_holes && rings.iter().zip(at_home).all(|(ring, home)| !ring.hole || home)
+}
+
+struct Ring<'a> {
+    points: &'a [DVec2],
+    around: Rect,
+    polygon: usize,
+    hole: bool,
+    prepared: OnceCell<Option<Prepared>>,
+}
+
+impl Ring<'_> {
+    /// Whether it lies in another, which it may touch: told by a vertex, or else the middle of an edge,
+    /// that is not on its border.
+    fn lies_in(&self, outer: &Self) -> bool {
+        let prepare = || Prepared::new(Shapes::from_rings([outer.points])).ok();
+        let Some(outer) = outer.prepared.get_or_init(prepare) else { return false };
+        let inner = self.points;
+        let ends = inner.iter().zip(inner.iter().cycle().skip(1));
+        let middles = ends.map(|(&a, &b)| a * 0.5 + b * 0.5);
+        let free = inner.iter().copied().chain(middles).find(|&p| !outer.has_on_border(p));
+        free.is_some_and(|p| outer.contains(p))
     }
-    true
 }
 
-/// Whether a ring lies in another, which it may touch: told by a vertex, or else the middle of an
-/// edge, that is not on its border.
-fn lies_in(inner: &[DVec2], outer: &[DVec2]) -> bool {
-    let ends = inner.iter().zip(inner.iter().cycle().skip(1));
-    let middles = ends.map(|(&a, &b)| a * 0.5 + b * 0.5);
-    let free = inner.iter().copied().chain(middles).find(|&p| !on_border(outer, p));
-    free.is_some_and(|p| crossings(outer, p) % 2 == 1)
-}
-
-/// Whether a point lies on a ring.
-fn on_border(ring: &[DVec2], p: DVec2) -> bool {
-    let on_edge = |a: DVec2, b: DVec2| {
-        let (low, high) = (a.min(b), a.max(b));
-        p.cmpge(low).all() && p.cmple(high).all() && orient2d(a, b, p) == Orientation::Collinear
+/// Calls for each ring and each other one whose box holds its box, as long as the answer is yes: in the
+/// order of their left ends, each with those that it may lie in or around.
+fn each_within(rings: &[Ring<'_>], mut f: impl FnMut(usize, usize) -> bool) {
+    let mut order: Vec<usize> = (0..rings.len()).collect();
+    order.sort_by(|&i, &j| rings[i].around.min().x.total_cmp(&rings[j].around.min().x));
+    let holds = |i: usize, j: usize| {
+        let (outer, inner) = (&rings[i].around, &rings[j].around);
+        outer.contains(inner.min()) && outer.contains(inner.max())
     };
-    ring.iter().zip(ring.iter().cycle().skip(1)).any(|(a, b)| on_edge(*a, *b))
-}
-
-/// How many edges of a ring a ray from a point to the right crosses.
-fn crossings(ring: &[DVec2], p: DVec2) -> usize {
-    let next = ring.iter().cycle().skip(1);
-    let crosses = |(a, b): &(&DVec2, &DVec2)| {
-        let upwards = a.y <= p.y;
-        let wanted = if upwards { Orientation::CounterClockwise } else { Orientation::Clockwise };
-        upwards != (b.y <= p.y) && orient2d(**a, **b, p) == wanted
-    };
-    ring.iter().zip(next).filter(crosses).count()
+    let mut active: Vec<usize> = Vec::new();
+    for next in order {
+        active.retain(|&i| rings[i].around.max().x >= rings[next].around.min().x);
+        for &other in &active {
+            let go_on =
+                (!holds(other, next) || f(next, other)) && (!holds(next, other) || f(other, next));
+            if !go_on {
+                return;
+            }
+        }
+        active.push(next);
+    }
 }
 
 #[cfg(test)]
@@ -220,6 +242,53 @@ mod tests {
         ] {
             assert_eq!(is_valid(&shapes(polygons), Touching::No), valid, "{polygons:?}");
         }
+    }
+
+    #[test]
+    fn squares_nest_as_their_sides_say() {
+        let mut state = 5_u64;
+        let mut random = |range: u64| {
+            let step = (6_364_136_223_846_793_005, 1_442_695_040_888_963_407);
+            state = state.wrapping_mul(step.0).wrapping_add(step.1);
+            (state >> 33) % range
+        };
+        let mut seen = [0; 2];
+        for _ in 0..20_000 {
+            let mut shapes = Shapes::new();
+            let mut squares: Vec<(usize, [u64; 3])> = Vec::new();
+            for polygon in 0..2 + random(2) as usize {
+                for _ in 0..1 + random(3) {
+                    let [x, y, side] = [random(12), random(12), 1 + 2 * random(6)];
+                    squares.push((polygon, [x, y, side]));
+                    let corners = [(0, 0), (side, 0), (side, side), (0, side)];
+                    shapes.push_ring(
+                        corners.map(|(u, v)| DVec2::new((x + u) as f64, (y + v) as f64)),
+                    );
+                }
+                shapes.end_polygon();
+            }
+            if !edges_are_apart(&shapes, Touching::No) {
+                continue;
+            }
+            let within = |[x, y, s]: [u64; 3], [u, v, t]: [u64; 3]| {
+                x > u && y > v && x + s < u + t && y + s < v + t
+            };
+            let first = |i: usize| i == 0 || squares[i - 1].0 != squares[i].0;
+            let expected = (0..squares.len()).all(|i| {
+                let (own, square) = squares[i];
+                let others = (0..squares.len()).filter(|&j| j != i && within(square, squares[j].1));
+                let (mut home, mut nested, mut depths) = (first(i), false, [0; 4]);
+                for j in others {
+                    home |= squares[j].0 == own && first(j);
+                    nested |= squares[j].0 == own && !first(j) && !first(i);
+                    depths[squares[j].0] += usize::from(squares[j].0 != own && first(i));
+                }
+                home && !nested && depths.iter().all(|depth| depth % 2 == 0)
+            });
+            assert_eq!(is_valid(&shapes, Touching::No), expected, "{squares:?}");
+            seen[usize::from(expected)] += 1;
+        }
+        assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
     }
 
     #[test]

@@ -121,8 +121,8 @@ fn enter(element: &BytesStart<'_>, outer: Option<&Level>) -> Result<Level, Strin
 /// What an element says itself: its style before its attribute.
 fn fill_rule(element: &BytesStart<'_>) -> Result<Option<FillRule>, String> {
     let style = attribute(element, "style")?.unwrap_or_default();
-    let declared = style.split(';').filter_map(|declaration| declaration.split_once(':'));
-    let declared = declared.filter(|(name, _)| name.trim() == "fill-rule").last();
+    let mut declarations = style.split(';').filter_map(|declaration| declaration.split_once(':'));
+    let declared = declarations.rfind(|(name, _)| name.trim() == "fill-rule");
     let rule = |value: &str| match value.trim() {
         "evenodd" => Some(FillRule::EvenOdd),
         "nonzero" => Some(FillRule::NonZero),

@@ -39,6 +39,7 @@ const RULES: [FillRule; 4] =
     [FillRule::EvenOdd, FillRule::NonZero, FillRule::Positive, FillRule::Negative];
 
 proptest! {
+    // A case takes milliseconds in patches so tiny; the laws of tests/it/overlay have more of them.
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]

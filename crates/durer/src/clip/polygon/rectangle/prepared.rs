@@ -117,16 +117,24 @@ impl Prepared {
 
     /// Whether a point lies in the closed polygons, by the even-odd rule over all rings; exact.
     pub fn contains(&self, p: DVec2) -> bool {
-        let Ok(at) = Rect::new(p, p) else { return false };
-        let mut odd = false;
+        let place = self.place(p);
+        place.odd || place.on_border
+    }
+
+    /// Whether a point lies on a ring; exact.
+    pub fn has_on_border(&self, p: DVec2) -> bool {
+        self.place(p).on_border
+    }
+
+    fn place(&self, p: DVec2) -> Place {
+        let mut all = Place::default();
+        let Ok(at) = Rect::new(p, p) else { return all };
         for number in self.rings_near(&at) {
-            let place = self.place(&self.directed(number), p);
-            if place.on_border {
-                return true;
-            }
-            odd ^= place.odd;
+            let place = self.place_of(&self.directed(number), p);
+            all.odd ^= place.odd;
+            all.on_border |= place.on_border;
         }
-        odd
+        all
     }
 
     fn directed(&self, number: usize) -> Directed<'_> {
@@ -150,8 +158,8 @@ impl Prepared {
         found
     }
 
-    fn place(&self, ring: &Directed<'_>, p: DVec2) -> Place {
-        let mut place = Place { odd: false, on_border: false };
+    fn place_of(&self, ring: &Directed<'_>, p: DVec2) -> Place {
+        let mut place = Place::default();
         self.rings[ring.number].tree.visit(|node| {
             let (low, high) = (node.around.min(), node.around.max());
             if p.x > high.x || p.y < low.y || p.y > high.y {
@@ -175,7 +183,8 @@ impl Prepared {
     }
 }
 
-/// Where a point lies of a ring.
+/// Where a point lies of rings.
+#[derive(Default)]
 struct Place {
     /// Whether a ray to the right crosses the ring an odd number of times.
     odd: bool,
@@ -220,7 +229,7 @@ impl Guide for Prepared {
     }
 
     fn holds(&self, ring: &Directed<'_>, p: DVec2) -> bool {
-        self.place(ring, p).odd
+        self.place_of(ring, p).odd
     }
 }
 
@@ -332,8 +341,9 @@ mod tests {
         fn points_lie_where_every_edge_says(shapes in rings(), x in -14i32..=14, y in -14i32..=14) {
             let at = p((x, y)) * 0.5;
             let prepared = Prepared::new(shapes.clone()).unwrap();
-            let inside = locate(shapes.rings(), at) != Place::Outside;
-            prop_assert_eq!(prepared.contains(at), inside, "{} {:?}", at, shapes);
+            let place = locate(shapes.rings(), at);
+            prop_assert_eq!(prepared.contains(at), place != Place::Outside, "{} {:?}", at, shapes);
+            prop_assert_eq!(prepared.has_on_border(at), place == Place::Border, "{} {:?}", at, shapes);
         }
     }
 
