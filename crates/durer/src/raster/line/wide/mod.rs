@@ -129,8 +129,8 @@ pub enum Part {
 /// let small = Path::rectangle(95.0, 95.0, 10.0, 10.0);
 /// let stroke = Stroke { width: 60.0, join: Join::Miter, ..Stroke::default() };
 /// let outline = outline(&small, &stroke, 0.025, &mut NoTrace).unwrap();
-/// // The outer ring is a square; the inner one goes through all corners and covers what is inside.
-/// assert_eq!(outline.iter().map(|(ring, _)| ring.len()).collect::<Vec<_>>(), [4, 12]);
+/// // The inner ring goes through all corners and covers what is inside; the outer one is a square.
+/// assert_eq!(outline.iter().map(|(ring, _)| ring.len()).collect::<Vec<_>>(), [12, 4]);
 /// ```
 ///
 /// # Errors

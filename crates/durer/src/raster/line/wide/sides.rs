@@ -276,7 +276,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     fn cap(&mut self, p: DVec2, along: DVec2, curved: bool) {
         let (left, beyond) = (self.left(along), along * self.half);
         match self.cap {
-            Cap::Round => return self.arc(p, left, std::f64::consts::PI, Part::Cap),
+            Cap::Round => self.arc(p, left, std::f64::consts::PI, Part::Cap),
             Cap::Butt => {
                 self.push(p, p + left, Part::Cap);
                 self.push(p, p - left, Part::Cap);
