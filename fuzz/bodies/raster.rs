@@ -77,7 +77,8 @@ fn any_raster(u: &mut Unstructured<'_>) -> Result<()> {
 /// Outlines of more elements, of fine dashes along lines that go far, take seconds and show nothing new.
 const LONG: usize = 2_000;
 
-const OVERLAPS: [Overlap; 3] = [Overlap::Exact, Overlap::Adaptive, Overlap::Accumulated];
+const OVERLAPS: [Overlap; 4] =
+    [Overlap::Exact, Overlap::Measured, Overlap::Adaptive, Overlap::Accumulated];
 
 fn any_fill(contours: &Contours, rule: FillRule, size: (u32, u32)) {
     let masks = OVERLAPS.map(|overlap| {

@@ -35,6 +35,21 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Orientation {
     }
 }
 
+/// Whether x lies in the open sector around an apex from the ray through one point counter-clockwise to the ray through
+/// another; exact as [`orient2d`] is. Where both rays are the same, everything but that ray is in it.
+///
+/// ```
+/// use durer::math::{DVec2, in_sector};
+/// let (east, north) = (DVec2::X, DVec2::Y);
+/// assert!(in_sector(DVec2::ZERO, east, DVec2::ONE, north));
+/// assert!(!in_sector(DVec2::ZERO, north, DVec2::ONE, east));
+/// ```
+pub fn in_sector(apex: DVec2, from: DVec2, x: DVec2, to: DVec2) -> bool {
+    let left = |a, b, c| orient2d(a, b, c) == Orientation::CounterClockwise;
+    let (first, second) = (left(to, apex, x), left(apex, from, x));
+    if left(to, apex, from) { first && second } else { first || second }
+}
+
 /// Twice the signed area of the triangle a, b, c; its sign is exact, its size approximate.
 pub fn orient2d_value(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| robust::Coord { x: p.x, y: p.y };

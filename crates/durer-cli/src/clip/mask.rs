@@ -4,6 +4,7 @@ use super::args::ClipArgs;
 use super::engine::{Algorithm, Rules};
 use super::shapes::Area;
 use super::srids::Srids;
+use super::validity::{Touching, is_valid};
 use super::{open, rules, words};
 use crate::failure::Failure;
 use crate::input::display_name;
@@ -11,6 +12,7 @@ use crate::messages::Messages;
 use durer::clip::polygon::rectangle::Prepared;
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
 use durer::math::{DVec2, Rect};
+use durer_formats::geo::GeoFormat;
 use std::path::Path;
 
 type Result<T> = durer::Result<T>;
@@ -81,12 +83,16 @@ pub fn read(
     messages: &Messages,
 ) -> std::result::Result<Mask, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let (_, mut reader) = open(path, None)?;
-    let (mut all, mut rings) = (Area::default(), false);
+    let (from, mut reader) = open(path, None)?;
+    let (mut all, mut rings, mut repaired) = (Area::default(), false, false);
     while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
         if let Some(geometry) = &feature.geometry {
             srids.add(feature.srid);
-            rings |= !Area::of_geometry(geometry).shapes.is_empty();
+            let area = Area::of_geometry(geometry);
+            rings |= !area.shapes.is_empty();
+            // An SVG, or an option, says what polygons that cross enclose.
+            let asked = args.cutting.fill_rule.is_some() || from == GeoFormat::Svg;
+            repaired |= !asked && !is_valid(&area.shapes, Touching::AtPoints);
             let clean = rules(args, &feature).clean(geometry);
             all.append(&clean.map_err(|e| fail(e.to_string()))?);
         }
@@ -98,6 +104,11 @@ pub fn read(
     if rules.loses(&all, &all.shapes) {
         let message = "polygons smaller than a cell of the grid, by default 2^-40 of the whole \
                        mask's extent, may be lost";
+        messages.warning(&display_name(path), message);
+    }
+    if repaired {
+        let message = "polygons crossed, pinched or overlapped themselves or one another; made valid by the \
+                       even-odd rule";
         messages.warning(&display_name(path), message);
     }
     if union.shapes.is_empty() {

@@ -2,7 +2,7 @@
 
 use durer::clip::polygon::Shapes;
 use durer::clip::polygon::rectangle::Prepared;
-use durer::math::{DVec2, Orientation, Rect, orient2d};
+use durer::math::{DVec2, Orientation, Rect, in_sector, orient2d};
 use std::cell::OnceCell;
 
 /// So many pairs of edges are looked at per edge, at most; beyond that polygons count as not valid,
@@ -55,7 +55,7 @@ pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
     edges.sort_by(|p, q| p.low.total_cmp(&q.low));
     let mut budget = edges.len().saturating_mul(PAIRS_PER_EDGE);
     let size = |ring: usize| shapes.ring_range(ring).len();
-    slabs(&edges).iter().all(|slab| {
+    let apart = slabs(&edges).iter().all(|slab| {
         let mut active: Vec<&Edge> = Vec::new();
         slab.iter().all(|edge| {
             active.retain(|other| other.high >= edge.low);
@@ -64,6 +64,28 @@ pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
             let apart = !active.iter().any(|other| meet(edge, other, size(edge.ring), touching));
             active.push(edge);
             apart
+        })
+    });
+    apart && (touching == Touching::No || ways_are_apart(shapes))
+}
+
+/// Whether rings that meet in a vertex only touch there, and do not pass through each other.
+fn ways_are_apart(shapes: &Shapes) -> bool {
+    let way = |ring: &[DVec2], i: usize| {
+        let (before, after) = ((i + ring.len() - 1) % ring.len(), (i + 1) % ring.len());
+        [ring[i], ring[before], ring[after]]
+    };
+    let of_ring = |ring| (0..shapes.ring(ring).len()).map(move |i| way(shapes.ring(ring), i));
+    let mut ways: Vec<[DVec2; 3]> = (0..shapes.ring_count()).flat_map(of_ring).collect();
+    // Zeros of either sign are one place.
+    let order = |p: &DVec2, q: &DVec2| {
+        (p.x + 0.0).total_cmp(&(q.x + 0.0)).then((p.y + 0.0).total_cmp(&(q.y + 0.0)))
+    };
+    ways.sort_by(|[p, ..], [q, ..]| order(p, q));
+    ways.chunk_by(|[p, ..], [q, ..]| p == q).all(|through| {
+        through.iter().enumerate().all(|(i, &[at, from, to])| {
+            let left = |x: DVec2| in_sector(at, to, x, from);
+            through[..i].iter().all(|&[_, a, b]| left(a) == left(b))
         })
     })
 }
@@ -242,6 +264,17 @@ mod tests {
         ] {
             assert_eq!(is_valid(&shapes(polygons), Touching::No), valid, "{polygons:?}");
         }
+    }
+
+    #[test]
+    fn rings_may_touch_in_a_vertex_but_not_pass_through_it() {
+        let square = |x: f64| [(x, x), (x + 4.0, x), (x + 4.0, x + 4.0), (x, x + 4.0)];
+        let corners = shapes(&[&[&square(0.0)], &[&square(4.0)]]);
+        assert!(edges_are_apart(&corners, Touching::AtVertices));
+        // They cross in the two vertices that they share.
+        let left = [(0.0, 0.0), (2.0, 1.0), (4.0, 0.0), (4.0, 4.0), (2.0, 3.0), (0.0, 4.0)];
+        let right = [(1.0, 2.0), (2.0, 1.0), (1.5, -3.0), (9.0, 2.0), (1.5, 7.0), (2.0, 3.0)];
+        assert!(!edges_are_apart(&shapes(&[&[&left], &[&right]]), Touching::AtVertices));
     }
 
     #[test]

@@ -32,6 +32,18 @@ fn what_is_wrong_with_the_mask_is_told_of_the_mask() {
 }
 
 #[test]
+fn masks_that_are_made_valid_are_told() {
+    let folder = Folder::new();
+    folder.write("in.wkt", "POLYGON((0 0,4 0,4 4,0 4,0 0))");
+    folder.write("bow.wkt", "POLYGON((0 0,3 3,3 0,0 3,0 0))");
+    folder.write("right.wkt", "POLYGON((0 0,3 0,0 3,0 0))");
+    let told = |mask: &str| folder.must(&format!("clip in.wkt --by {mask} -o o.wkt")).err;
+    assert!(told("bow.wkt").contains("bow.wkt: polygons crossed"), "{}", told("bow.wkt"));
+    assert_eq!(told("right.wkt"), "");
+    assert_eq!(told("bow.wkt --fill-rule non-zero"), "");
+}
+
+#[test]
 fn paths_of_an_svg_enclose_what_their_fill_rule_says() {
     let folder = Folder::new();
     let path = "d='M0 0h9v9h-9zM3 3h3v3h-3z'";

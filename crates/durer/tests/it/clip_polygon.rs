@@ -136,6 +136,39 @@ fn a_vertex_that_another_ring_touches_stays() {
     assert_eq!(union.shapes.points().iter().filter(|q| **q == p(4.0, 2.0)).count(), 2);
 }
 
+/// Rounded, the crossing nearest to a vertex may have its coordinates.
+#[test]
+fn crossings_rounded_to_a_vertex_do_not_turn_a_walk_round() {
+    let shape = |points: [(f64, f64); 3]| Shapes::from_rings([points.map(|(x, y)| p(x, y))]);
+    let small = [
+        shape([(0.4, 0.1), (0.15000000000000002, 0.1), (0.0, 0.4)]),
+        shape([(0.2, 0.30000000000000004), (0.2, 0.2), (0.1, 0.2)]),
+    ];
+    let far = [
+        shape([
+            (100000.33333333333, 100001.66666666667),
+            (100000.5, 100002.0),
+            (100000.66666666667, 100002.0),
+        ]),
+        shape([
+            (100003.0, 100000.0),
+            (100000.54545454546, 100001.63636363637),
+            (100001.0, 100003.0),
+        ]),
+    ];
+    for [subject, clip] in [small, far] {
+        for &op in BooleanOp::ALL {
+            let options = overlay::Options::default();
+            let expected = overlay::overlay(&subject, &clip, op, &options, &mut NoTrace).unwrap();
+            for clipper in [PolygonClipper::WeilerAtherton, PolygonClipper::GreinerHormann] {
+                let found = clipper.clip(&subject, &clip, op).unwrap();
+                let off = (found.area() - expected.shapes.area()).abs();
+                assert!(off < 1e-9, "{clipper:?} {op:?}: {off}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_vertex_on_the_border_comes_out_once() {
     let window = Rect::new(DVec2::ZERO, DVec2::splat(4.0)).expect("window");

@@ -191,6 +191,47 @@ fn a_small_square_with_a_wide_stroke_has_no_hole() {
     }
 }
 
+/// The pen sweeps what lies beyond the centre of a bend, however few ends are near that.
+#[test]
+fn tight_bends_are_swept_on_both_sides() {
+    let (centre, r) = (DVec2::new(100.0, 110.0), 10.0);
+    let k = r * 0.552_284_75;
+    let at = |x: f64, y: f64| centre + DVec2::new(x, y);
+    let mut arch = Path::new();
+    arch.push(PathElement::MoveTo(at(-r, 0.0)));
+    arch.push(PathElement::CubicTo(at(-r, -k), at(-k, -r), at(0.0, -r)));
+    arch.push(PathElement::CubicTo(at(k, -r), at(r, -k), at(r, 0.0)));
+    for cap in [Cap::Butt, Cap::Square] {
+        let stroke = Stroke { width: 80.0, cap, ..Stroke::default() };
+        let outline = outline(&arch, &stroke, TOLERANCE, &mut NoTrace).expect("style");
+        let mut random = Random(7);
+        for _ in 0..5000 {
+            let p = random.point(-60.0, 60.0);
+            let (away, winding) = (p.length(), winding(&outline, centre + p));
+            assert!(winding <= 0, "{cap:?} {p}");
+            // Above, half a ring's outer half; below, what the other end of the pen sweeps.
+            let reach = if p.y < 0.0 { 50.0 } else { 30.0 };
+            if away < reach - 0.1 {
+                assert!(winding < 0, "{cap:?} {p}");
+            } else if away > reach + 0.1 && cap == Cap::Butt {
+                assert_eq!(winding, 0, "{p}");
+            }
+        }
+    }
+}
+
+#[test]
+fn curves_without_length_do_not_end_dashes() {
+    let mut path = Path::polyline([DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)]);
+    path.quad_to(30.0, 10.0, 30.0, 10.0).line_to(90.0, 10.0);
+    let stroke = Stroke { width: 4.0, dashes: vec![10.0, 10.0], ..Stroke::default() };
+    let outline = outline(&path, &stroke, TOLERANCE, &mut NoTrace).expect("style");
+    for i in 0..16 {
+        let p = DVec2::new(12.5 + 5.0 * f64::from(i), 10.0);
+        assert_eq!(winding(&outline, p) != 0, i % 4 < 2, "{p}");
+    }
+}
+
 #[test]
 fn strokes_wider_than_any_picture_cover_it() {
     let square = Path::rectangle(95.0, 95.0, 10.0, 10.0);

@@ -230,11 +230,13 @@ pub(super) fn crossing<const N: usize, H: HalfSpace<N>>(
         point
     };
     let point = on_border(line.at(parameter(space, line)));
-    let inside = |p| slid(spaces, p, scale).or_else(|| settled(spaces, p, scale));
-    inside(point)
-        .or_else(|| inside(on_border(exact_crossing(space, line))))
-        .or_else(|| nearest_corner(space, point, scale))
-        .unwrap_or(point)
+    let near = |point| {
+        let exact = on_border(exact_crossing(space, line));
+        settled(spaces, exact, scale)
+            .or_else(|| slid(spaces, exact, scale))
+            .or_else(|| nearest_corner(space, point, scale))
+    };
+    settled(spaces, point, scale).or_else(|| near(point)).unwrap_or(point)
 }
 
 fn size<const N: usize>(v: [f64; N]) -> f64 {

@@ -84,22 +84,12 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
     found
 }
 
-/// For each vertex that crosses: whether its list enters the other's region there. The first of a
-/// ring is told by where the ring starts, the others alternate.
+/// For each vertex that crosses: whether its list enters the other's region there.
+///
+/// In theory these alternate along a ring, from where it starts. The edges that cross tell it of each one alone, and
+/// exactly, also where rounding has put several crossings in one place.
 fn entries(lists: &Lists) -> Vec<bool> {
-    let mut entries = vec![false; lists.vertices.len()];
-    for start in &lists.starts {
-        let mut inside = start.inside;
-        for v in lists.ring(lists.leaves(start.vertex)).skip(1) {
-            if lists.vertices[v].twin.is_some() {
-                inside = !inside;
-                entries[v] = inside;
-            }
-        }
-        let v = lists.leaves(start.vertex);
-        entries[v] = start.inside;
-    }
-    entries
+    lists.vertices.iter().map(|vertex| vertex.enters).collect()
 }
 
 /// Walks from a crossing of the subject until it comes back. Rings that are not simple may lead a walk

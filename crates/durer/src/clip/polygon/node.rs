@@ -7,7 +7,7 @@
 
 use super::cyclic::{Lists, NOT_SIMPLE};
 use crate::Result;
-use crate::math::{DVec2, Orientation, orient2d};
+use crate::math::{DVec2, in_sector};
 use std::cmp::Ordering;
 
 /// A border's way through the point.
@@ -49,13 +49,6 @@ fn order(a: DVec2, b: DVec2) -> Ordering {
     (a.x + 0.0).total_cmp(&(b.x + 0.0)).then((a.y + 0.0).total_cmp(&(b.y + 0.0)))
 }
 
-/// Whether x lies in the open sector counter-clockwise from one direction to another, around `at`.
-pub(super) fn between(at: DVec2, from: DVec2, x: DVec2, to: DVec2) -> bool {
-    let left = |a, b, c| orient2d(a, b, c) == Orientation::CounterClockwise;
-    let (first, second) = (left(to, at, x), left(at, from, x));
-    if left(to, at, from) { first && second } else { first || second }
-}
-
 impl Node {
     /// How its place compares with a point.
     pub fn compare(&self, p: DVec2) -> Ordering {
@@ -64,7 +57,7 @@ impl Node {
 
     /// Whether a direction that is none of its own lies to the left of a passage.
     fn is_left(&self, of: &Passage, x: DVec2) -> bool {
-        between(self.at, of.to, x, of.from)
+        in_sector(self.at, of.to, x, of.from)
     }
 
     /// Whether the passages of each operand keep apart from one another.
@@ -106,7 +99,7 @@ impl Node {
                 return Some(if k == 0 { subject } else { grown });
             }
             // The first clockwise: what goes away has its inside there.
-            if nearest.is_none_or(|(other, _)| between(self.at, other, ray, x)) {
+            if nearest.is_none_or(|(other, _)| in_sector(self.at, other, ray, x)) {
                 nearest = Some((ray, goes));
             }
         }

@@ -5,8 +5,7 @@
 //! has one wedge of the inside on its left; then each closed way is divided where it meets itself.
 
 use super::locate::is_flat;
-use super::node::between;
-use crate::math::DVec2;
+use crate::math::{DVec2, in_sector};
 use std::cmp::Ordering;
 
 /// A directed edge between two places, the inside on its left.
@@ -96,7 +95,7 @@ fn joints(edges: &[Edge], places: &[DVec2]) -> Vec<usize> {
         let count = leaving[k..].iter().take_while(|&&j| edges[j].from == at).count();
         let nearest = |best: usize, j: usize| {
             let ray = |j: usize| places[edges[leaving[j]].to];
-            if between(places[at], ray(best), ray(j), places[edges[i].from]) { j } else { best }
+            if in_sector(places[at], ray(best), ray(j), places[edges[i].from]) { j } else { best }
         };
         let best = (k + 1..k + count).fold(k, nearest);
         leaving[k..=best].rotate_right(1);

@@ -174,6 +174,7 @@ impl BandFiller {
         let any = cells.any_shared != 0;
         let noise = match overlap {
             Overlap::Exact => Noise::Resolved,
+            Overlap::Measured => Noise::Measured { edges },
             Overlap::Adaptive | Overlap::Accumulated => Noise::Left { edges },
         };
         let shared = if any { resolver.begin(cells, rows, words, noise) } else { 0 };

@@ -12,12 +12,10 @@ use super::edge::{BITS, Edge, ONE};
 use crate::raster::bands::BAND_ROWS;
 
 /// Pixels crossed by more pieces than this are not cut into slabs, for which the cost grows with the third power, but
-/// measured along lines,
-const MAX_PIECES: usize = 24;
-/// so many for all pieces together,
-const MEASURES: usize = 6144;
-/// and at least and at most so many.
-const LINES: (usize, usize) = (16, 256);
+/// measured along lines.
+const ALL: Limits = Limits { exact: 24, measured: u32::MAX, measures: 6144, lines: (16, 256) };
+/// The same in noise that is to be measured.
+const IN_NOISE: Limits = Limits { exact: 4, measured: 32, measures: 512, lines: (16, 64) };
 /// A band with at most so many edges is resolved, whatever it shows: that takes no long time, and in small drawings
 /// each pixel is looked at.
 const FEW_EDGES: u32 = 256;
@@ -31,6 +29,25 @@ const PER_EDGE: u32 = 4;
 const MANY_EDGES: u32 = 1024;
 /// End of a list.
 const NONE: u32 = u32::MAX;
+
+/// How pixels are resolved.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Up to so many pieces exactly,
+    exact: usize,
+    /// with up to so many along lines; those of more keep the integral's answer.
+    measured: u32,
+    /// So many for all pieces together,
+    measures: usize,
+    /// and at least and at most so many.
+    lines: (usize, usize),
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        ALL
+    }
+}
 
 /// What one edge does within one row, relative to a pixel that it touches.
 #[derive(Debug, Clone, Copy)]
@@ -82,6 +99,7 @@ pub(crate) struct Resolver {
     segments: Vec<Segment>,
     cuts: Vec<f64>,
     active: Vec<(f64, i32)>,
+    limits: Limits,
 }
 
 /// Which bands are resolved.
@@ -89,6 +107,11 @@ pub(crate) struct Resolver {
 pub(crate) enum Noise {
     /// All.
     Resolved,
+    /// All, those that show noise roughly.
+    Measured {
+        /// Edges of the band.
+        edges: u32,
+    },
     /// All but those that show noise.
     Left {
         /// Edges of the band.
@@ -118,13 +141,17 @@ impl Resolver {
                 found |= u64::from(mark.shared != 0) << row;
             }
         }
-        if let Noise::Left { edges } = noise
-            && edges > FEW_EDGES
-            && shared > FEW_SHARED
-            && shared > touched / OFTEN
-            && (edges > MANY_EDGES || shared < edges * PER_EDGE)
-        {
-            return 0;
+        let is_noise = |edges: u32| {
+            edges > FEW_EDGES
+                && shared > FEW_SHARED
+                && shared > touched / OFTEN
+                && (edges > MANY_EDGES || shared < edges.saturating_mul(PER_EDGE))
+        };
+        self.limits = ALL;
+        match noise {
+            Noise::Left { edges } if is_noise(edges) => return 0,
+            Noise::Measured { edges } if is_noise(edges) => self.limits = IN_NOISE,
+            _ => {}
         }
         self.pieces.clear();
         self.pixels.clear();
@@ -229,7 +256,8 @@ impl Resolver {
         // Each piece changes the winding number by one, so it has one sign all over the pixel where its
         // mean is so far from zero.
         let mean = sum.unsigned_abs() >> BITS;
-        if rule == FillRule::NonZero && mean >= pixel.count {
+        let many = pixel.count > self.limits.measured;
+        if many || (rule == FillRule::NonZero && mean >= pixel.count) {
             return None;
         }
         self.segments.clear();
@@ -253,8 +281,8 @@ impl Resolver {
         if rule == FillRule::NonZero && (base - down > 0 || base + up < 0) {
             return Some(1.0);
         }
-        if self.segments.len() > MAX_PIECES {
-            lines(self.segments.len(), &mut self.cuts);
+        if self.segments.len() > self.limits.exact {
+            lines(self.segments.len(), &self.limits, &mut self.cuts);
         } else {
             cuts(&self.segments, &mut self.cuts);
         }
@@ -267,7 +295,7 @@ impl Resolver {
             FillRule::NonZero => winding != 0,
             FillRule::EvenOdd => winding & 1 != 0,
         };
-        let many = self.segments.len() > MAX_PIECES;
+        let many = self.segments.len() > ALL.exact;
         let mut area = 0.0;
         for pair in self.cuts.windows(2) {
             let (upper, lower) = (pair[0], pair[1]);
@@ -352,8 +380,8 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
 }
 
 /// Heights between which a pixel with so many segments is measured in the middle, from 0 to 1.
-fn lines(segments: usize, cuts: &mut Vec<f64>) {
-    let count = (MEASURES / segments).clamp(LINES.0, LINES.1);
+fn lines(segments: usize, limits: &Limits, cuts: &mut Vec<f64>) {
+    let count = (limits.measures / segments).clamp(limits.lines.0, limits.lines.1);
     cuts.clear();
     cuts.extend((0..=count).map(|i| i as f64 / count as f64));
 }

@@ -53,8 +53,8 @@ pub enum Blending {
 pub struct Options {
     /// In which space colours are mixed.
     pub blending: Blending,
-    /// What happens where a path overlaps itself inside a pixel. Strokes, which do so wherever they bend, are
-    /// [`Overlap::Exact`] unless they are to be accumulated.
+    /// What happens where a path overlaps itself inside a pixel. Strokes, which do so wherever they bend, take
+    /// [`Overlap::Measured`] for [`Overlap::Adaptive`].
     pub overlap: Overlap,
     /// Largest distance between a curve and its chords in pixels. 0.025 is at most 6/255 of coverage
     /// where a curve bends most; the number of chords grows with its inverse square root.
@@ -199,7 +199,7 @@ impl Canvas {
         let tolerance = self.options.tolerance / stretch(self.transform).max(1e-9);
         let outline = wide::outline(path, stroke, tolerance, &mut NoTrace)?;
         let overlap = match self.options.overlap {
-            Overlap::Adaptive => Overlap::Exact,
+            Overlap::Adaptive => Overlap::Measured,
             chosen => chosen,
         };
         let how = coverage::Options { rule: FillRule::NonZero, overlap };

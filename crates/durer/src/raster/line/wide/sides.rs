@@ -4,7 +4,8 @@
 //! the outline passes through vertices its strips are the rectangles of the pieces. On the inner side of a corner
 //! the two offset lines may be cut where they meet as long as that takes no more than half of either piece: what
 //! is cut from one strip is nearer to the other piece and in its rectangle, so by going on from nearer to nearer every
-//! point of the stroke is found in a strip that was not cut there.
+//! point of the stroke is found in a strip that was not cut there. Within curves the wedges on the inner side belong to
+//! the stroke, too: what the pen sweeps beyond the centre of a tight bend is near to nothing but the ends of the curve.
 
 use super::contour::{Contour, Piece, Vertex};
 use super::{Cap, Join, Part, Step, Stroke};
@@ -166,7 +167,19 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
             self.outer(p, from, to, join, part);
         } else if let Some(meeting) = self.meeting(before, after) {
             self.push(p, p + meeting, Part::Side);
+        } else if part == Part::Side {
+            self.sweep(p, from, to);
         } else {
+            self.push(p, p + self.left(from), Part::Side);
+            self.push(p, p, Part::Pivot);
+            self.push(p, p + self.left(to), Part::Side);
+        }
+    }
+
+    /// The inner side of a bend within a curve that is tighter than the width: the pen's edge, which turns on from one
+    /// direction to the other, sweeps a wedge beyond the centre of the bend. It is added the way that all the rest turns.
+    fn sweep(&mut self, p: DVec2, from: DVec2, to: DVec2) {
+        for _ in 0..2 {
             self.push(p, p + self.left(from), Part::Side);
             self.push(p, p, Part::Pivot);
             self.push(p, p + self.left(to), Part::Side);
@@ -232,9 +245,7 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
         let small = self.half * (1.0 - from.dot(to)) <= self.tolerance;
         if cross > 0.0 {
             if !small || self.half * cross > piece.length / 2.0 {
-                self.push(p, p + self.left(from), Part::Side);
-                self.push(p, p, Part::Pivot);
-                self.push(p, p + self.left(to), Part::Side);
+                self.sweep(p, from, to);
             }
         } else if !small {
             self.outer(p, from, to, Join::Round, Part::Side);
