@@ -97,6 +97,30 @@ proptest! {
         walks_agree(&window(x, y), &a)?;
     }
 
+    /// No longer on a lattice, borders that touched pass by an ulp from one another, and crossings are rounded to
+    /// vertices. Rings of one operand that cross then are refused.
+    #[test]
+    fn walks_find_the_region_of_rounded_coordinates(
+        a in polygons(5), b in polygons(5), scale in 0..4usize, offset in 0..3usize,
+    ) {
+        let scale = [1.0 / 3.0, 0.1, 1e-7, 1e6 / 3.0][scale];
+        let offset = [-OFFSET, 0.3 - OFFSET, 4115.226][offset];
+        let [a, b] = [a, b].map(|mut shapes| {
+            shapes.points_mut().iter_mut().for_each(|p| *p = (*p + DVec2::splat(offset)) * scale);
+            shapes
+        });
+        for &op in BooleanOp::ALL {
+            let expected = PolygonClipper::Overlay.clip(&a, &b, op).expect("finite");
+            for clipper in [PolygonClipper::WeilerAtherton, PolygonClipper::GreinerHormann] {
+                let Ok(found) = clipper.clip(&a, &b, op) else { continue };
+                let options = Options::default();
+                let apart = overlay(&found, &expected, BooleanOp::Xor, &options, &mut NoTrace);
+                let apart = apart.expect("finite").shapes.area() / (scale * scale);
+                prop_assert!(apart < 1e-6, "{} {}: {} {:?}", clipper, op, apart, found);
+            }
+        }
+    }
+
     /// Bridges are allowed, but no ring without an area, and no hole without its outer ring.
     #[test]
     fn convex_clips_leave_no_flat_rings(
