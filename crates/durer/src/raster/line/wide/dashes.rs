@@ -54,16 +54,16 @@ pub(super) fn dashed(
     if period(stroke) <= 0.0 {
         return None;
     }
-    let mut at = DVec2::ZERO;
+    let mut at = None;
     let source: BezPath = path
         .map(|element| {
             // What has no length has no direction either, which ends kurbo's dashes of quadratic curves.
-            let element = match element {
-                PathElement::QuadTo(c, p) if c == at && p == at => PathElement::LineTo(p),
+            let element = match to_kurbo(element) {
+                PathEl::QuadTo(c, p) if at == Some(c) && c == p => PathEl::LineTo(p),
                 other => other,
             };
-            at = end_of(&element).unwrap_or(at);
-            to_kurbo(element)
+            at = element.end_point().or(at);
+            element
         })
         .collect();
     let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
@@ -149,14 +149,6 @@ fn with_dots(path: &BezPath, width: f64) -> BezPath {
         }
     }
     out
-}
-
-fn end_of(element: &PathElement) -> Option<DVec2> {
-    use PathElement::{Close, CubicTo, LineTo, MoveTo, QuadTo};
-    match *element {
-        MoveTo(p) | LineTo(p) | QuadTo(_, p) | CubicTo(_, _, p) => Some(p),
-        Close => None,
-    }
 }
 
 fn to_kurbo(element: PathElement) -> PathEl {
