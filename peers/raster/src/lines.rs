@@ -11,7 +11,6 @@ use durer::raster::paint::{Canvas, Paint};
 use durer::raster::seed_fill::{self, Connectivity, SeedFill, flood_fill};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
-use durer::trace::NoTrace;
 
 /// 10⁶ lines of up to 100 pixels in mixed colours at 2048².
 pub fn aliased() {
