@@ -17,8 +17,6 @@ use crate::math::DVec2;
 use crate::raster::bands::{BAND_ROWS, Edges};
 use crate::simd::default_level;
 
-/// Paths that are not wider have cells of their own, few enough for the first-level cache.
-const NARROW: u32 = 112;
 /// Convex paths with so many edges are filled without cells; with more, finding the two that cross a row costs more than
 /// cells do.
 const SIMPLE: usize = 3;
@@ -72,6 +70,12 @@ impl Path<'_> {
         self.path.rows
     }
 
+    /// The same within the band at row `top`, from there.
+    fn rows_of_band(&self, top: i32) -> (i32, i32) {
+        let (first, end) = self.path.rows;
+        ((first - top).max(0), (end - top).min(BAND_ROWS))
+    }
+
     /// The edges of the band at row `top` in the order of the path, perhaps with others too.
     #[inline(always)]
     fn of_band(&self, top: i32) -> impl Iterator<Item = &[Edge]> {
@@ -105,49 +109,18 @@ pub(super) fn is_convex(points: &[DVec2]) -> bool {
 /// The buffers for filling paths in a band; used again for the next path and band.
 #[derive(Debug, Default)]
 pub(crate) struct BandFiller {
-    /// For paths of any width.
-    wide: Cells,
-    /// For narrow ones, wherever they are.
-    narrow: Cells,
-    /// For small convex ones.
+    cells: Cells,
+    /// For small convex paths.
     small: SmallCells,
     resolver: Resolver,
     width: usize,
 }
 
-/// Which pixels of a band a path may touch.
-#[derive(Debug, Clone, Copy)]
-struct Extent {
-    /// Rows of the band.
-    rows: (i32, i32),
-    /// The pixel of the first cell.
-    first: usize,
-    /// Words of marks.
-    words: (usize, usize),
-}
-
 impl BandFiller {
     /// Buffers for rows of `width` pixels.
     pub fn new(width: u32) -> Self {
-        let (wide, narrow) = (Cells::new(width), Cells::new(NARROW));
         let (small, resolver) = (SmallCells::default(), Resolver::default());
-        Self { wide, narrow, small, resolver, width: width as usize }
-    }
-
-    /// The cells for a path, and what it touches of the band that starts at row `top`.
-    fn choose(&mut self, path: Path<'_>, top: i32) -> (&mut Cells, &mut Resolver, Extent) {
-        let path = path.path;
-        let rows = ((path.rows.0 - top).max(0), (path.rows.1 - top).min(BAND_ROWS));
-        let first = path.columns.0.max(0) as usize;
-        // Edges also change the two cells after the last pixel they touch.
-        let last = (path.columns.1.max(0) as usize + 2).min(self.width + 2);
-        if last <= first + NARROW as usize {
-            let words = (0, ((last - first) >> 6) + 1);
-            (&mut self.narrow, &mut self.resolver, Extent { rows, first, words })
-        } else {
-            let words = (first >> 6, (last >> 6) + 1);
-            (&mut self.wide, &mut self.resolver, Extent { rows, first: 0, words })
-        }
+        Self { cells: Cells::new(width), small, resolver, width: width as usize }
     }
 
     /// Adds the edges of a path to the cells; says whether there are pixels that have to be resolved.
@@ -159,8 +132,9 @@ impl BandFiller {
         top: i32,
         overlap: Overlap,
     ) -> bool {
-        let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
-        let x = (first as i32) << BITS;
+        let Self { cells, resolver, .. } = this;
+        cells.lay_out(path.path.columns);
+        let x = (cells.first() as i32) << BITS;
         cells.any_shared = 0;
         let exact = overlap != Overlap::Accumulated;
         let mut edges = 0;
@@ -177,7 +151,7 @@ impl BandFiller {
             Overlap::Measured => Noise::Measured { edges },
             Overlap::Adaptive | Overlap::Accumulated => Noise::Left { edges },
         };
-        let shared = if any { resolver.begin(cells, rows, words, noise) } else { 0 };
+        let shared = if any { resolver.begin(cells, path.rows_of_band(top), noise) } else { 0 };
         if shared != 0 {
             let marks = |row: i32| cells.marks_of(row);
             let edges = path.of_band(top).flatten();
@@ -209,10 +183,9 @@ impl BandFiller {
         // Nothing of a convex path overlaps.
         let overlap = if convex { Overlap::Accumulated } else { overlap };
         let resolved = Self::collect(simd, this, path, top, overlap);
-        let width = this.width;
-        let (cells, resolver, Extent { rows, first, words }) = this.choose(path, top);
-        let resolver = resolved.then_some(resolver);
-        sweep(simd, cells, Rows { rows, first, words, width, rule }, resolver, sink);
+        let Self { cells, resolver, width, .. } = this;
+        let at = Rows { rows: path.rows_of_band(top), width: *width, rule };
+        sweep(simd, cells, at, resolved.then_some(resolver), sink);
     }
 
     /// Fills one face of a partition: calls `add(row of the band, pixel, area)` with the area of each
@@ -220,11 +193,11 @@ impl BandFiller {
     pub fn areas(&mut self, path: Path<'_>, top: i32, mut add: impl FnMut(i32, usize, i32)) {
         let width = self.width;
         dispatch!(default_level(), simd => Self::collect(simd, self, path, top, Overlap::Accumulated));
-        let (cells, _, Extent { rows, first, words }) = self.choose(path, top);
+        let rows = path.rows_of_band(top);
         for row in rows.0..rows.1 {
-            let (cells, marks) = cells.row(row, words);
+            let start = self.cells.first();
+            let (cells, marks) = self.cells.row(row);
             let mut sum = 0_i32;
-            let start = first + words.0 * 64;
             for (x, cell) in (start..).zip(&mut *cells) {
                 sum = sum.wrapping_add(std::mem::take(cell));
                 let area = sum.saturating_abs().min(ONE);

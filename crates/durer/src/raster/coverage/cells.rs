@@ -15,7 +15,7 @@ use super::parts::{COUNTED, LONG, Parts, ROOM, TOUCHED};
 use super::ramp::{Ramp, area};
 use crate::raster::bands::BAND_ROWS;
 
-/// Cells to the right of the last pixel that edges on the border may write to.
+/// Cells after the last pixel that edges on the border may write to.
 const SPILL: usize = 64;
 
 /// Which of 64 pixels have been touched, and which by several chains of edges.
@@ -26,13 +26,19 @@ pub(crate) struct Marks {
 }
 
 /// The cells of a band; area in 1/65,536 of a pixel.
+///
+/// Rows are as long as the path is wide that is being filled, and lie one after the other: those of all but the widest
+/// paths are then in the same few kilobytes, wherever the path is.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Cells {
     cells: Vec<i32>,
     marks: Vec<Marks>,
+    /// The pixels of a row of the target.
+    width: usize,
+    /// The pixel that rows begin at.
+    first: usize,
+    /// Marks of a row.
     words: usize,
-    /// Columns an edge may start in.
-    columns: i32,
     /// Not 0 once a pixel has become shared.
     pub any_shared: u64,
     /// What is still to be added.
@@ -40,25 +46,40 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// Empty cells for rows of `width` pixels.
+    /// Empty cells for rows of up to `width` pixels.
     pub fn new(width: u32) -> Self {
         let words = (width as usize + SPILL).div_ceil(64);
         let rows = BAND_ROWS as usize;
         Self {
-            cells: vec![0; words * 64 * rows],
+            cells: vec![0; words * 64 * rows + SPILL],
             marks: vec![Marks::default(); words * rows],
+            width: width as usize,
+            first: 0,
             words,
-            columns: width as i32,
             any_shared: 0,
             parts: Box::default(),
         }
     }
 
-    /// One row of the band, between two words: its cells and its marks, 64 cells to a mark.
+    /// Makes room for a path between two columns of pixels; the cells have to be empty.
+    pub fn lay_out(&mut self, columns: (i32, i32)) {
+        // Rounding may move an edge by less than a pixel; groups of eight pixels begin where those of the target do.
+        self.first = (columns.0 - 1).max(0) as usize & !7;
+        // Edges also change the two cells after the last pixel they touch.
+        let last = (columns.1.max(0) as usize).min(self.width) + 2;
+        self.words = (last.max(self.first) - self.first) / 64 + 1;
+    }
+
+    /// The pixel that rows begin at.
     #[inline(always)]
-    pub fn row(&mut self, row: i32, words: (usize, usize)) -> (&mut [i32], &mut [Marks]) {
-        let start = row as usize * self.words;
-        let (from, to) = (start + words.0, start + words.1.min(self.words));
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
+    /// One row of the band: its cells and its marks, 64 cells to a mark.
+    #[inline(always)]
+    pub fn row(&mut self, row: i32) -> (&mut [i32], &mut [Marks]) {
+        let (from, to) = (row as usize * self.words, (row as usize + 1) * self.words);
         let cells = self.cells.get_mut(from * 64..to * 64).unwrap_or_default();
         (cells, self.marks.get_mut(from..to).unwrap_or_default())
     }
@@ -72,14 +93,14 @@ impl Cells {
     /// The marks of one row of the band.
     pub fn marks_of(&self, row: i32) -> &[Marks] {
         let start = row.clamp(0, BAND_ROWS - 1) as usize * self.words;
-        &self.marks[start..start + self.words]
+        self.marks.get(start..start + self.words).unwrap_or_default()
     }
 
     /// Adds the part of an edge within the band whose first row is `top`, at the latest when they are flushed; with
     /// `shared`, keeps account of the pixels that several chains touch.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, edge: &Edge, top: i32, shared: bool) {
-        self.parts.add(edge, top, (self.words * 64) as u32);
+        self.parts.add(simd, edge, top, (self.words * 64) as u32);
         if self.parts.is_full() {
             Self::flush(simd, self, shared);
         }
@@ -88,7 +109,8 @@ impl Cells {
     /// Adds what is still in the queue.
     #[simd]
     pub fn flush<S: Simd>(simd: S, this: &mut Self, shared: bool) {
-        Parts::make(simd, &mut this.parts, this.columns << BITS);
+        let columns = (this.width - this.first.min(this.width)) as i32;
+        Parts::make(simd, &mut this.parts, columns << BITS);
         if shared {
             this.add_parts::<S, true>(simd);
         } else {

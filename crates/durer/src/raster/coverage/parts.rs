@@ -5,13 +5,15 @@ use fearless_simd::{i32x8, u32x8};
 use fearless_simd_macros::simd;
 
 use super::edge::{BITS, Edge, ONE};
-use super::ramp::eight_deltas;
+use super::ramp::{Stepped, eight_deltas};
 use crate::raster::bands::BAND_ROWS;
 
 /// Parts that fit in the queue.
 pub(super) const ROOM: usize = 128;
 /// An edge adds one for each row of a band at most.
 const FULL: usize = ROOM - BAND_ROWS as usize;
+/// Places of a list: eight are written at a time, whether so many are meant or not.
+const PLACES: usize = ROOM + 8;
 
 /// The edge goes upwards in its path.
 const UP: u32 = 1;
@@ -31,33 +33,33 @@ pub(super) const LONG: u32 = 1 << 4;
 pub(super) struct Parts {
     pub count: usize,
     /// The first cell of the row; later the cell of the first pixel.
-    pub cells: [u32; ROOM],
+    pub cells: [u32; PLACES],
     /// The two ends, 16.16; later the one on the left, moved into the target, and the one on the right as seen from
     /// the pixel that the left one is in.
-    pub left: [i32; ROOM],
-    pub right: [i32; ROOM],
+    pub left: [i32; PLACES],
+    pub right: [i32; PLACES],
     /// 16.16 rows.
-    pub height: [i32; ROOM],
+    pub height: [i32; PLACES],
     /// [`UP`], [`OWN_LEFT`], [`OWN_RIGHT`].
-    flags: [u32; ROOM],
+    flags: [u32; PLACES],
     /// See [`TOUCHED`], [`COUNTED`] and [`LONG`].
-    pub marks: [u32; ROOM],
+    pub marks: [u32; PLACES],
     /// Changes of covered area at the first pixel, the next and the one after, with the edge's sign, for parts that
     /// touch at most two.
-    pub deltas: [[i32; ROOM]; 3],
+    pub deltas: [[i32; PLACES]; 3],
 }
 
 impl Default for Parts {
     fn default() -> Self {
         Self {
             count: 0,
-            cells: [0; ROOM],
-            left: [0; ROOM],
-            right: [0; ROOM],
-            height: [0; ROOM],
-            flags: [0; ROOM],
-            marks: [0; ROOM],
-            deltas: [[0; ROOM]; 3],
+            cells: [0; PLACES],
+            left: [0; PLACES],
+            right: [0; PLACES],
+            height: [0; PLACES],
+            flags: [0; PLACES],
+            marks: [0; PLACES],
+            deltas: [[0; PLACES]; 3],
         }
     }
 }
@@ -69,26 +71,20 @@ impl Parts {
         self.count > FULL
     }
 
-    #[inline(always)]
-    fn push(&mut self, cell: u32, x: (i32, i32), height: i32, flags: u32) {
-        let i = self.count & (ROOM - 1);
-        self.cells[i] = cell;
-        self.left[i] = x.0;
-        self.right[i] = x.1;
-        self.height[i] = height;
-        self.flags[i] = flags;
-        self.count += 1;
-    }
-
     /// Adds what an edge does in the rows of the band whose first row is `top`; a row has so many cells.
+    ///
+    /// Edges of several rows are added eight rows at a time, the first and the last among them: to guess how long an edge
+    /// is costs more than rows that are not meant.
     #[inline(always)]
-    pub fn add(&mut self, edge: &Edge, top: i32, cells: u32) {
+    pub fn add<S: Simd>(&mut self, simd: S, edge: &Edge, top: i32, cells: u32) {
         let (first, last) = (edge.y0 >> BITS, edge.y1 >> BITS);
+        // Horizontal edges leave their mark, but not on the border of two rows.
+        let end = (edge.y1 + ONE - 1) >> BITS;
+        let (from, to) = (first.max(top), end.min(top + BAND_ROWS));
         // Of paths with few edges all come by in each band.
-        if last < top || first >= top + BAND_ROWS {
+        if from >= to {
             return;
         }
-        let flags = u32::from(edge.sign() < 0) * UP;
         // What the edge shares with its neighbour in the path at their common vertex does not count.
         let (upper, lower) = edge.chained();
         let rightwards = edge.x0 <= edge.x1;
@@ -98,50 +94,49 @@ impl Parts {
             (true, false) => OWN_RIGHT,
         };
         let (upper, lower) = (own(upper, rightwards), own(lower, !rightwards));
+        let up = u32::from(edge.sign() < 0) * UP;
         if first == last {
-            // Within one row, horizontal edges too: those only leave their mark.
-            let height = edge.y1 - edge.y0;
-            if edge.y0 & (ONE - 1) != 0 || height != 0 {
-                self.push(
-                    (first - top) as u32 * cells,
-                    (edge.x0, edge.x1),
-                    height,
-                    flags | upper | lower,
-                );
-            }
+            let i = self.count & (ROOM - 1);
+            self.cells[i] = (first - top) as u32 * cells;
+            (self.left[i], self.right[i]) = (edge.x0, edge.x1);
+            self.height[i] = edge.y1 - edge.y0;
+            self.flags[i] = up | upper | lower;
+            self.count += 1;
             return;
         }
-        // The first row in part, the whole rows, the last row in part.
+        let splat = |v: i32| i32x8::splat(simd, v);
+        let bits = |v: u32| u32x8::splat(simd, v);
+        let up = bits(up);
+        let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let lane_bits: u32x8<S> = lane.bitcast();
         let steps = edge.steps();
-        let head = ONE - (edge.y0 & (ONE - 1));
-        let whole = if head == ONE { first } else { first + 1 };
-        if head != ONE && first >= top {
-            self.push((first - top) as u32 * cells, (edge.x0, steps.crossing), head, flags | upper);
-        }
-        let (from, to) = (whole.max(top), last.min(top + BAND_ROWS));
-        let mut x = steps.at(from - whole);
-        let mut cell = (from - top) as u32 * cells;
-        if steps.slope.unsigned_abs() > 1 << 32 {
-            for _ in from..to {
-                let ends = ((x >> BITS) as i32, ((x + steps.slope) >> BITS) as i32);
-                self.push(cell, ends, ONE, flags);
-                x += steps.slope;
-                cell += cells;
-            }
-        } else {
-            let across = (steps.slope.unsigned_abs() >> BITS) as i32;
-            x += steps.slope.min(0);
-            for _ in from..to {
-                let left = (x >> BITS) as i32;
-                self.push(cell, (left, left + across), ONE, flags);
-                x += steps.slope;
-                cell += cells;
-            }
-        }
-        let tail = edge.y1 & (ONE - 1);
-        if tail != 0 && last < top + BAND_ROWS {
-            let x = (steps.at(last - whole) >> BITS) as i32;
-            self.push((last - top) as u32 * cells, (x, edge.x1), tail, flags | lower);
+        // The row below the first border that the edge crosses.
+        let whole = (edge.y0 + ONE - 1) >> BITS;
+        let across = (steps.slope.unsigned_abs() >> BITS) as i32;
+        // Edges that cross no more than two pixels of a row are equally wide in all whole ones.
+        let steep = if steps.slope.unsigned_abs() <= 1 << 32 { ONE } else { i32::MIN };
+        let mut row = from;
+        while row < to {
+            let stepped = Stepped::new(simd, steps.at(row - whole), steps.slope);
+            let (x, next) = (stepped.x(), stepped.next());
+            let rows = splat(row) + lane;
+            let (is_first, is_last) = (rows.simd_eq(splat(first)), rows.simd_eq(splat(last)));
+            let border = rows << BITS;
+            let height = (border + splat(ONE)).min(splat(edge.y1)) - border.max(splat(edge.y0));
+            let is_steep = height.simd_eq(splat(steep));
+            let left = if steps.slope < 0 { next } else { x };
+            let right = is_steep.select(left + splat(across), is_last.select(splat(edge.x1), next));
+            let left = is_steep.select(left, is_first.select(splat(edge.x0), x));
+            let flags = is_first.select(bits(upper), bits(0)) | is_last.select(bits(lower), up);
+            let cell = bits((row - top) as u32 * cells) + lane_bits * bits(cells);
+            let at = self.count.min(ROOM);
+            cell.store_slice(&mut self.cells[at..at + 8]);
+            left.store_slice(&mut self.left[at..at + 8]);
+            right.store_slice(&mut self.right[at..at + 8]);
+            height.store_slice(&mut self.height[at..at + 8]);
+            (flags | up).store_slice(&mut self.flags[at..at + 8]);
+            self.count += (to - row).min(8) as usize;
+            row += 8;
         }
     }
 

@@ -143,6 +143,43 @@ pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
     i.simd_lt(zero).select(zero, area)
 }
 
+/// Where an edge is in eight rows one below the other.
+#[derive(Clone, Copy)]
+pub(super) struct Stepped<S: Simd> {
+    /// x in the first of them, 16.16, and what it is more in each of them.
+    whole: i32x8<S>,
+    /// The 16 bits below that, with what carries over.
+    below: i32x8<S>,
+    slope: i64,
+    simd: S,
+}
+
+impl<S: Simd> Stepped<S> {
+    /// By x in the first row and the slope, 32.32.
+    #[inline(always)]
+    pub fn new(simd: S, x: i64, slope: i64) -> Self {
+        let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let splat = |v: i32| i32x8::splat(simd, v);
+        let whole = lane * splat((slope >> BITS) as i32) + splat((x >> BITS) as i32);
+        let below = lane * splat(slope as i32 & (ONE - 1)) + splat(x as i32 & (ONE - 1));
+        Self { whole, below, slope, simd }
+    }
+
+    /// x in each row, 16.16.
+    #[inline(always)]
+    pub fn x(&self) -> i32x8<S> {
+        self.whole + (self.below >> BITS)
+    }
+
+    /// x one row below each, 16.16.
+    #[inline(always)]
+    pub fn next(&self) -> i32x8<S> {
+        let splat = |v: i32| i32x8::splat(self.simd, v);
+        let below = self.below + splat(self.slope as i32 & (ONE - 1));
+        self.whole + splat((self.slope >> BITS) as i32) + (below >> BITS)
+    }
+}
+
 /// A steep edge in the next eight rows.
 pub(super) struct Eight<S: Simd> {
     /// The left end in the first of them, 32.32, and its change in eight rows.

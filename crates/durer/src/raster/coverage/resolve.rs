@@ -92,8 +92,8 @@ impl Segment {
 pub(crate) struct Resolver {
     /// The number of the first shared pixel of each word of marks, row by row.
     ranks: Vec<u32>,
-    /// First word of the rows, and words per row.
-    words: (usize, usize),
+    /// Words per row.
+    words: usize,
     pixels: Vec<Shared>,
     pieces: Vec<Piece>,
     segments: Vec<Segment>,
@@ -122,19 +122,13 @@ pub(crate) enum Noise {
 impl Resolver {
     /// Numbers the shared pixels of a band; returns a bit for each row that has some, 0 where it is noise that is
     /// left as it is.
-    pub fn begin(
-        &mut self,
-        cells: &Cells,
-        rows: (i32, i32),
-        words: (usize, usize),
-        noise: Noise,
-    ) -> u64 {
-        self.words = (words.0, words.1 - words.0);
+    pub fn begin(&mut self, cells: &Cells, rows: (i32, i32), noise: Noise) -> u64 {
+        self.words = cells.marks_of(0).len();
         self.ranks.clear();
-        self.ranks.resize(rows.0.max(0) as usize * self.words.1, 0);
+        self.ranks.resize(rows.0.max(0) as usize * self.words, 0);
         let (mut shared, mut touched, mut found) = (0, 0, 0);
         for row in rows.0..rows.1 {
-            for mark in cells.marks_of(row).get(words.0..words.1).unwrap_or_default() {
+            for mark in cells.marks_of(row) {
                 self.ranks.push(shared);
                 shared += mark.shared.count_ones();
                 touched += mark.touched.count_ones();
@@ -172,13 +166,16 @@ impl Resolver {
         if first >= last {
             return;
         }
+        let mut left = rows & (u64::MAX << first) & (u64::MAX >> (64 - last));
+        if left == 0 {
+            return;
+        }
         let steps = edge.steps();
         let first_border = (edge.y0 + ONE - 1) >> BITS;
         let x_at = |border: i32| {
             let x = (steps.at((border >> BITS) - first_border) >> BITS) as i32;
             x.clamp(edge.x0.min(edge.x1), edge.x0.max(edge.x1))
         };
-        let mut left = rows & (u64::MAX << first) & (u64::MAX >> (64 - last));
         while left != 0 {
             let row = left.trailing_zeros() as i32;
             left &= left - 1;
@@ -222,7 +219,7 @@ impl Resolver {
     /// The number of the shared pixel at a bit of a word of the row.
     #[inline(always)]
     fn number(&self, (row, word): (i32, usize), shared: u64, bit: u32) -> usize {
-        let word = (row.max(0) as usize) * self.words.1 + word.wrapping_sub(self.words.0);
+        let word = (row.max(0) as usize) * self.words + word;
         let before = (shared & !(u64::MAX << bit)).count_ones();
         self.ranks.get(word).map_or(usize::MAX, |rank| (rank + before) as usize)
     }
@@ -348,8 +345,9 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     let (mut x0, mut y0) = (unit(upper.0), unit(upper.1));
     let (mut x1, mut y1) = (unit(lower.0), unit(lower.1));
     let sign = piece.sign;
-    let y_at = |x: f64| y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
-    let (left, right) = (y_at(0.0), y_at(1.0));
+    // Most lie inside, and need no division.
+    let (height, width) = (y1 - y0, x1 - x0);
+    let y_at = move |x: f64| y0 + height * ((x - x0) / width);
     // Crossing the left border changes the winding number along it from there on.
     let mut border = |y0: f64, y1: f64| {
         if y1 > y0 {
@@ -359,10 +357,12 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     match (upper.0 < 0, lower.0 < 0) {
         (true, true) => return,
         (true, false) => {
+            let left = y_at(0.0);
             border(0.0, left);
             (x0, y0) = (0.0, left);
         }
         (false, true) => {
+            let left = y_at(0.0);
             border(left, 1.0);
             (x1, y1) = (0.0, left);
         }
@@ -370,8 +370,8 @@ fn push_segments(piece: &Piece, out: &mut Vec<Segment>) {
     }
     match (upper.0 > ONE, lower.0 > ONE) {
         (true, true) => return,
-        (true, false) => (x0, y0) = (1.0, right),
-        (false, true) => (x1, y1) = (1.0, right),
+        (true, false) => (x0, y0) = (1.0, y_at(1.0)),
+        (false, true) => (x1, y1) = (1.0, y_at(1.0)),
         (false, false) => {}
     }
     if y1 > y0 {

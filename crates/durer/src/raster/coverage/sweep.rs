@@ -38,10 +38,6 @@ pub(crate) fn unpacked<S: Simd>(simd: S, coverage: u32) -> u32x8<S> {
 pub(crate) struct Rows {
     /// Rows of the band, the last not included.
     pub rows: (i32, i32),
-    /// The pixel of the first cell.
-    pub first: usize,
-    /// The words of marks that are concerned, the last not included.
-    pub words: (usize, usize),
     /// Pixels of the row.
     pub width: usize,
     /// What is inside.
@@ -71,15 +67,15 @@ pub(crate) fn sweep<S: Simd, K: Sink<S>>(
     mut resolver: Option<&mut Resolver>,
     sink: &mut K,
 ) {
-    let Rows { rows, first, words: (from, to), width, rule } = at;
-    let zero = i32x8::splat(simd, 0);
+    let Rows { rows, width, rule } = at;
+    let (zero, first) = (i32x8::splat(simd, 0), cells.first());
     let (cells, marks, words) = cells.words();
     for row in rows.0..rows.1 {
         let (mut carry, mut spill) = (0_i32, 0_u64);
-        let mut done = first + from * 64;
-        let mut base = done;
+        let mut done = first;
+        let mut base = first;
         let start = row as usize * words;
-        for word in start + from..start + to.min(words) {
+        for word in start..start + words {
             let (Some(marks), Some(cells)) = (marks.get_mut(word), cells.get_mut(word)) else {
                 break;
             };

@@ -309,23 +309,34 @@ impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
     }
 }
 
-/// Sets pixels, mostly few; those at the end perhaps twice.
+/// Sets pixels; those in the middle perhaps twice, for then there are few lengths to be told apart.
 #[inline(always)]
 fn fill<P: Copy>(pixels: &mut [P], color: P) {
-    if let Some(last) = pixels.last_chunk_mut::<8>() {
-        *last = [color; 8];
-        for eight in pixels.as_chunks_mut::<8>().0 {
-            *eight = [color; 8];
+    match pixels.len() {
+        0..4 => pixels.iter_mut().for_each(|pixel| *pixel = color),
+        4..8 => fill_ends::<P, 4>(pixels, color),
+        8..16 => fill_ends::<P, 8>(pixels, color),
+        16..32 => fill_ends::<P, 16>(pixels, color),
+        32..64 => fill_ends::<P, 32>(pixels, color),
+        _ => {
+            if let Some(last) = pixels.last_chunk_mut::<64>() {
+                *last = [color; 64];
+            }
+            for some in pixels.as_chunks_mut::<64>().0 {
+                *some = [color; 64];
+            }
         }
-    } else if let Some(last) = pixels.last_chunk_mut::<4>() {
-        *last = [color; 4];
-        if let Some(first) = pixels.first_chunk_mut::<4>() {
-            *first = [color; 4];
-        }
-    } else {
-        for pixel in pixels {
-            *pixel = color;
-        }
+    }
+}
+
+/// Sets the first and the last so many pixels.
+#[inline(always)]
+fn fill_ends<P: Copy, const COUNT: usize>(pixels: &mut [P], color: P) {
+    if let Some(first) = pixels.first_chunk_mut::<COUNT>() {
+        *first = [color; COUNT];
+    }
+    if let Some(last) = pixels.last_chunk_mut::<COUNT>() {
+        *last = [color; COUNT];
     }
 }
 
