@@ -115,10 +115,12 @@ impl Parts {
         let across = (steps.slope.unsigned_abs() >> BITS) as i32;
         // Edges that cross no more than two pixels of a row are equally wide in all whole ones.
         let steep = if steps.slope.unsigned_abs() <= 1 << 32 { ONE } else { i32::MIN };
+        let stepped = Stepped::new(simd, steps.slope);
         let mut row = from;
         while row < to {
-            let stepped = Stepped::new(simd, steps.at(row - whole), steps.slope);
-            let (x, next) = (stepped.x(), stepped.next());
+            let first_x = steps.at(row - whole);
+            let x = stepped.from(simd, first_x);
+            let next = stepped.from(simd, first_x + steps.slope);
             let rows = splat(row) + lane;
             let (is_first, is_last) = (rows.simd_eq(splat(first)), rows.simd_eq(splat(last)));
             let border = rows << BITS;

@@ -143,40 +143,30 @@ pub(super) fn area<S: Simd>(simd: S, ramp: &Ramp, x: i32) -> i32x8<S> {
     i.simd_lt(zero).select(zero, area)
 }
 
-/// Where an edge is in eight rows one below the other.
+/// How far an edge moves to the right in eight rows one below the other.
 #[derive(Clone, Copy)]
 pub(super) struct Stepped<S: Simd> {
-    /// x in the first of them, 16.16, and what it is more in each of them.
+    /// From the first of them on, 16.16, and the 16 bits below, not carried over.
     whole: i32x8<S>,
-    /// The 16 bits below that, with what carries over.
     below: i32x8<S>,
-    slope: i64,
-    simd: S,
 }
 
 impl<S: Simd> Stepped<S> {
-    /// By x in the first row and the slope, 32.32.
+    /// By its slope, 32.32.
     #[inline(always)]
-    pub fn new(simd: S, x: i64, slope: i64) -> Self {
+    pub fn new(simd: S, slope: i64) -> Self {
         let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
-        let splat = |v: i32| i32x8::splat(simd, v);
-        let whole = lane * splat((slope >> BITS) as i32) + splat((x >> BITS) as i32);
-        let below = lane * splat(slope as i32 & (ONE - 1)) + splat(x as i32 & (ONE - 1));
-        Self { whole, below, slope, simd }
+        Self {
+            whole: lane * i32x8::splat(simd, (slope >> BITS) as i32),
+            below: lane * i32x8::splat(simd, slope as i32 & (ONE - 1)),
+        }
     }
 
-    /// x in each row, 16.16.
+    /// x in each of the rows, 16.16, by x in the first, 32.32.
     #[inline(always)]
-    pub fn x(&self) -> i32x8<S> {
-        self.whole + (self.below >> BITS)
-    }
-
-    /// x one row below each, 16.16.
-    #[inline(always)]
-    pub fn next(&self) -> i32x8<S> {
-        let splat = |v: i32| i32x8::splat(self.simd, v);
-        let below = self.below + splat(self.slope as i32 & (ONE - 1));
-        self.whole + splat((self.slope >> BITS) as i32) + (below >> BITS)
+    pub fn from(&self, simd: S, x: i64) -> i32x8<S> {
+        let below = self.below + i32x8::splat(simd, x as i32 & (ONE - 1));
+        self.whole + i32x8::splat(simd, (x >> BITS) as i32) + (below >> BITS)
     }
 }
 
@@ -185,9 +175,7 @@ pub(super) struct Eight<S: Simd> {
     /// The left end in the first of them, 32.32, and its change in eight rows.
     left: i64,
     step: i64,
-    /// What that is more in each of the rows, 16.16, and the bits below.
-    whole: i32x8<S>,
-    below: i32x8<S>,
+    stepped: Stepped<S>,
     across: i32x8<S>,
     half_inverse: f32,
     limit: i32x8<S>,
@@ -197,13 +185,11 @@ impl<S: Simd> Eight<S> {
     /// An edge by its left end in the first of the rows and its slope, 32.32; moved between 0 and the limit, 16.16.
     #[inline(always)]
     pub fn new(simd: S, left: i64, slope: i64, limit: i32) -> Self {
-        let lane = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let across = (slope.unsigned_abs() >> BITS) as i32;
         Self {
             left,
             step: 8 * slope,
-            whole: lane * i32x8::splat(simd, (slope >> BITS) as i32),
-            below: lane * i32x8::splat(simd, slope as i32 & (ONE - 1)),
+            stepped: Stepped::new(simd, slope),
             across: i32x8::splat(simd, across),
             half_inverse: half_inverse(across),
             limit: i32x8::splat(simd, limit),
@@ -215,8 +201,7 @@ impl<S: Simd> Eight<S> {
     #[inline(always)]
     pub fn next(&mut self, simd: S) -> [i32x8<S>; 4] {
         let (one, zero) = (i32x8::splat(simd, ONE), i32x8::splat(simd, 0));
-        let below = self.below + i32x8::splat(simd, self.left as i32 & (ONE - 1));
-        let x = self.whole + i32x8::splat(simd, (self.left >> BITS) as i32) + (below >> BITS);
+        let x = self.stepped.from(simd, self.left);
         self.left += self.step;
         let x = x.max(zero).min(self.limit);
         let a = x & i32x8::splat(simd, ONE - 1);
