@@ -220,6 +220,27 @@ fn tight_bends_are_swept_on_both_sides() {
     }
 }
 
+/// What the pen sweeps beyond the centre of a bend ends in a circle, however few chords the bend itself needs.
+#[test]
+fn the_far_side_of_a_tight_bend_is_round() {
+    let (centre, r) = (DVec2::new(100.0, 100.0), 0.2);
+    let k = r * 0.552_284_75;
+    let at = |x: f64, y: f64| centre + DVec2::new(x, y);
+    let mut arch = Path::new();
+    arch.push(PathElement::MoveTo(at(-r, 0.0)));
+    arch.push(PathElement::CubicTo(at(-r, -k), at(-k, -r), at(0.0, -r)));
+    arch.push(PathElement::CubicTo(at(k, -r), at(r, -k), at(r, 0.0)));
+    let stroke = Stroke { width: 80.0, ..Stroke::default() };
+    let outline = outline(&arch, &stroke, TOLERANCE, &mut NoTrace).expect("style");
+    for i in 1..180 {
+        let way = DVec2::from_angle(f64::from(i).to_radians());
+        for (away, inside) in [(39.75, true), (40.05, false)] {
+            let p = centre + way * away;
+            assert_eq!(winding(&outline, p) != 0, inside, "{i} degrees, {away}");
+        }
+    }
+}
+
 #[test]
 fn curves_without_length_do_not_end_dashes() {
     let mut path = Path::polyline([DVec2::new(10.0, 10.0), DVec2::new(30.0, 10.0)]);

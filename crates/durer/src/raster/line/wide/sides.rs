@@ -177,13 +177,17 @@ impl<'a, T: Tracer<Step>> Pen<'a, T> {
     }
 
     /// The inner side of a bend within a curve that is tighter than the width: the pen's edge, which turns on from one
-    /// direction to the other, sweeps a wedge beyond the centre of the bend. It is added the way that all the rest turns.
+    /// direction to the other, sweeps a wedge beyond the centre of the bend, with a part of a circle as its far side. It is
+    /// added the way that all the rest turns.
     fn sweep(&mut self, p: DVec2, from: DVec2, to: DVec2) {
-        for _ in 0..2 {
-            self.push(p, p + self.left(from), Part::Side);
-            self.push(p, p, Part::Pivot);
-            self.push(p, p + self.left(to), Part::Side);
-        }
+        let wedge = |pen: &mut Self| {
+            pen.push(p, p + pen.left(from), Part::Side);
+            pen.push(p, p, Part::Pivot);
+            pen.push(p, p + pen.left(to), Part::Side);
+        };
+        wedge(self);
+        self.outer(p, to, from, Join::Round, Part::Side);
+        wedge(self);
     }
 
     /// Where the offset lines on the inner side meet, seen from the vertex, if both pieces are long enough.
