@@ -213,6 +213,36 @@ fn gradients_pad_repeat_and_reflect() {
     assert!(target.get(29, 20).unwrap()[0].abs_diff(134) < 6);
 }
 
+/// Two stops at one place make a border between two colours, which is where it should be to a fraction of a pixel however
+/// long the gradient is.
+#[test]
+fn hard_stops_are_sharp_and_in_place() {
+    let (red, green, blue) = ([255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]);
+    let row = |stops: &[(f64, [u8; 4])], (start, end): (f64, f64), spread| {
+        let shape = Shape::Linear { start: DVec2::new(start, 0.0), end: DVec2::new(end, 0.0) };
+        let (stops, transform) = (stops.to_vec(), DAffine2::IDENTITY);
+        let paint = Paint::Gradient(Arc::new(Gradient { shape, stops, spread, transform }));
+        let mut c = canvas(40);
+        c.fill(&Path::rectangle(0.0, 0.0, 40.0, 40.0), FillRule::NonZero, &paint, 1.0);
+        let target = rendered(&c, 40, WHITE);
+        (0..40).map(|x| target.get(x, 7).unwrap()).collect::<Vec<_>>()
+    };
+    // A step of a table of 512 colours would be eight pixels here.
+    let long = [(0.0, red), (0.501, red), (0.501, blue), (1.0, blue)];
+    let found = row(&long, (-2000.0, 2000.0), Spread::Pad);
+    let expected: Vec<_> = (0..40).map(|x| if x < 4 { red } else { blue }).collect();
+    assert_eq!(found, expected);
+    // Where a gradient turns round, what would come after its end is not seen.
+    let turned = [(0.0, red), (1.0, red), (1.0, blue)];
+    for spread in [Spread::Reflect, Spread::Repeat] {
+        assert_eq!(row(&turned, (-3.1, 4.0), spread), vec![red; 40], "{spread:?}");
+    }
+    // Beyond the ends are the first and the last stop.
+    let twice = [(0.0, red), (0.0, green), (1.0, green), (1.0, blue)];
+    let found = row(&twice, (10.0, 30.0), Spread::Pad);
+    assert_eq!([found[9], found[10], found[29], found[30]], [red, green, green, blue]);
+}
+
 #[test]
 fn clearing_is_filling_before() {
     for background in [[1, 2, 3, 255], [90, 80, 70, 60]] {

@@ -90,6 +90,10 @@ impl From<Color> for Paint {
 /// Entries of a gradient's table: twice what 8 bits can tell apart.
 const RAMP: usize = 512;
 
+/// Within half a step of a table's entry colours differ from it by no more than this, of 255; where they do they are
+/// found from the stops, so that hard borders between colours stand where they should and are sharp.
+const FLAT: f64 = 2.0;
+
 /// A paint made ready: colours premultiplied in the space of the canvas, maps inverted.
 #[derive(Debug, Clone)]
 pub(crate) enum Source<P> {
@@ -101,11 +105,47 @@ pub(crate) enum Source<P> {
 /// A gradient made ready.
 #[derive(Debug, Clone)]
 pub(crate) struct Ramp<P> {
-    shape: Shape,
+    gradient: Arc<Gradient>,
     paint_from_pixel: DAffine2,
-    spread: Spread,
-    /// Colours at equal steps of the parameter.
-    colors: Vec<P>,
+    opacity: f64,
+    /// Colours at equal steps of the parameter; `None` where they change too fast for a table.
+    colors: Vec<Option<P>>,
+}
+
+impl<P: Space> Ramp<P> {
+    fn new(gradient: &Arc<Gradient>, paint_from_pixel: DAffine2, opacity: f64) -> Self {
+        let color = |steps: f64| stop_color(&gradient.stops, steps / (RAMP - 1) as f64);
+        let is_near =
+            |a: [f64; 4], b: [f64; 4]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= FLAT);
+        let mut before = color(-0.5);
+        let entry = |i: usize| {
+            let (at, after) = (color(i as f64), color(i as f64 + 0.5));
+            let even = is_near(at, std::mem::replace(&mut before, after)) && is_near(at, after);
+            even.then(|| premultiply_f(at, opacity))
+        };
+        let mut colors: Vec<Option<P>> = (0..RAMP).map(entry).collect();
+        for stop in &gradient.stops {
+            let place = stop.0 * (RAMP - 1) as f64 + 0.5;
+            if let Some(entry) = colors.get_mut(place as usize)
+                && !is_near(stop.1.map(f64::from), color(place.floor()))
+            {
+                *entry = None;
+            }
+        }
+        Self { gradient: gradient.clone(), paint_from_pixel, opacity, colors }
+    }
+
+    /// The colour at a parameter.
+    fn color(&self, t: f64) -> P {
+        let within = spread_over(self.gradient.spread, t);
+        let place = (within * (RAMP - 1) as f64 + 0.5) as usize;
+        let tabled = self.colors.get(place).copied().flatten();
+        tabled.unwrap_or_else(|| {
+            // Before a first stop at 0 comes its own colour, not that of another stop at 0.
+            let t = if self.gradient.spread == Spread::Pad { t } else { within };
+            premultiply_f(stop_color(&self.gradient.stops, t), self.opacity)
+        })
+    }
 }
 
 /// A pattern made ready.
@@ -138,7 +178,7 @@ impl<P: Space> Source<P> {
         }
     }
 
-    fn gradient(g: &Gradient, pixel_from_paint: DAffine2, opacity: f64) -> Self {
+    fn gradient(g: &Arc<Gradient>, pixel_from_paint: DAffine2, opacity: f64) -> Self {
         let Some(last) = g.stops.last() else { return Self::Solid(P::CLEAR) };
         let flat = match g.shape {
             Shape::Linear { start, end } => start == end,
@@ -150,10 +190,7 @@ impl<P: Space> Source<P> {
         let (false, Some(paint_from_pixel)) = (flat || g.stops.len() == 1, inverse) else {
             return Self::Solid(premultiply(last.1, opacity as f32));
         };
-        let at =
-            |i: usize| premultiply_f(stop_color(&g.stops, i as f64 / (RAMP - 1) as f64), opacity);
-        let colors = (0..RAMP).map(at).collect();
-        Self::Ramp(Box::new(Ramp { shape: g.shape, paint_from_pixel, spread: g.spread, colors }))
+        Self::Ramp(Box::new(Ramp::new(g, paint_from_pixel, opacity)))
     }
 
     /// The colours of the eight pixels of row `y` from column `x` on.
@@ -161,15 +198,9 @@ impl<P: Space> Source<P> {
         match self {
             Self::Solid(color) => out.fill(*color),
             Self::Ramp(ramp) => {
-                let Ramp { shape, paint_from_pixel, spread, colors } = &**ramp;
-                for (point, pixel) in centers(paint_from_pixel, x, y).zip(out) {
-                    *pixel = match parameter(shape, point) {
-                        Some(t) => {
-                            let place = spread_over(*spread, t) * (RAMP - 1) as f64 + 0.5;
-                            colors.get(place as usize).copied().unwrap_or(P::CLEAR)
-                        }
-                        None => P::CLEAR,
-                    };
+                for (point, pixel) in centers(&ramp.paint_from_pixel, x, y).zip(out) {
+                    let t = parameter(&ramp.gradient.shape, point);
+                    *pixel = t.map_or(P::CLEAR, |t| ramp.color(t));
                 }
             }
             Self::Image(image) => {
