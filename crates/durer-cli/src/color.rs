@@ -15,14 +15,19 @@ pub fn color(text: &str) -> Result<Vec4, String> {
     Ok(Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0))
 }
 
-/// A colour of CSS as sRGB bytes with straight alpha: a name of CSS 3, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`,
+/// A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`,
 /// `rgba()`, `hsl()` or `hsla()`.
 pub fn bytes(text: &str) -> Result<[u8; 4], String> {
     let wanted = || {
-        "a colour is a name of CSS 3, #rgb, #rrggbb, #rrggbbaa, rgb(R,G,B), rgba(R,G,B,A) or hsl(H,S%,L%)"
+        "a colour is a name of CSS 4, #rgb, #rrggbb, #rrggbbaa, rgb(R,G,B), rgba(R,G,B,A) or hsl(H,S%,L%)"
             .to_owned()
     };
-    let color = svgtypes::Color::from_str(&text.to_ascii_lowercase()).map_err(|_| wanted())?;
+    let text = match text.to_ascii_lowercase() {
+        // The one name that CSS 4 adds to those of CSS 3.
+        name if name == "rebeccapurple" => "#663399".to_owned(),
+        other => other,
+    };
+    let color = svgtypes::Color::from_str(&text).map_err(|_| wanted())?;
     Ok([color.red, color.green, color.blue, color.alpha])
 }
 
@@ -64,6 +69,7 @@ mod tests {
         for (text, expected) in [
             ("papayawhip", [255, 239, 213, 255]),
             ("LightGrey", [211, 211, 211, 255]),
+            ("RebeccaPurple", [0x66, 0x33, 0x99, 255]),
             ("rgb(1, 2,3)", [1, 2, 3, 255]),
             ("rgba(255,0,0,0)", [255, 0, 0, 0]),
             ("hsl(120,100%,25%)", [0, 128, 0, 255]),

@@ -150,7 +150,8 @@ impl Job<'_> {
         let anti_alias = picture.aa == Smoothing::Coverage;
         let options = Options { anti_alias, ..Options::default() };
         let canvas = Canvas::new(width, height, options);
-        let mut canvas = canvas.map_err(|e| Failure::Usage(format!("--size: {e}")))?;
+        let mut canvas =
+            canvas.map_err(|e| Failure::Usage(format!("the size {width}x{height}: {e}")))?;
         canvas.clear(picture.background.unwrap_or(background));
         Ok(canvas)
     }

@@ -40,7 +40,14 @@ impl Job<'_> {
         let whole = Rect::new(DVec2::ZERO, drawing.size()).map_err(|e| fail(e.to_string()))?;
         let shown = picture.window.unwrap_or(whole);
         let size = sides(picture.size, shown.size());
-        let mut canvas = self.canvas(size, [0; 4])?;
+        // A size that was not given whole is the drawing's own.
+        let given = picture.size.is_some_and(|s| s.width.is_some() && s.height.is_some());
+        let mut canvas = self.canvas(size, [0; 4]).map_err(|failure| match failure {
+            Failure::Usage(message) if !given => {
+                fail(format!("{}{message}, or --size draws it smaller", drawing.place()))
+            }
+            failure => failure,
+        })?;
         let viewport = self.viewport(size)?;
         let (lo, hi) = (shown.min(), shown.max());
         let window =

@@ -23,10 +23,12 @@
 //! # Ok::<(), durer_formats::Error>(())
 //! ```
 
+mod arcs;
 mod draw;
 mod fonts;
 mod image;
 mod paint;
+mod values;
 
 pub use fonts::{Fonts, no_glyphs};
 
@@ -77,6 +79,7 @@ impl Default for ReadOptions<'_> {
 #[derive(Debug, Clone)]
 pub struct Drawing {
     tree: usvg::Tree,
+    place: Place,
     limits: Limits,
     warnings: Vec<Warning>,
 }
@@ -92,8 +95,7 @@ impl Drawing {
         let text = std::str::from_utf8(&bytes).map_err(|e| {
             Error::byte(e.valid_up_to() as u64, "an SVG must be text in UTF-8 or UTF-16")
         })?;
-        let xml = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
-        let document = roxmltree::Document::parse_with_options(text, xml).map_err(not_xml)?;
+        let document = parse(text).map_err(not_xml)?;
         let root = document.root_element().tag_name();
         if root != ROOT.into() {
             let name = root.name();
@@ -102,6 +104,10 @@ impl Drawing {
         }
         check_arcs(&document)?;
         let mut warnings = passed_over(&document);
+        let mut found = values::Found::new(&document);
+        warnings.append(&mut found.warnings);
+        let amended = found.amended(text);
+        let amended = amended.as_deref().and_then(|text| parse(text).ok());
         let (tree, told) = {
             let told = Told::default();
             let usvg_options = usvg::Options {
@@ -111,7 +117,9 @@ impl Drawing {
                 image_href_resolver: images(options, &told),
                 ..usvg::Options::default()
             };
-            let tree = usvg::Tree::from_xmltree(&document, &usvg_options).map_err(wrong)?;
+            let tree =
+                usvg::Tree::from_xmltree(amended.as_ref().unwrap_or(&document), &usvg_options)
+                    .map_err(wrong)?;
             drop(usvg_options);
             (tree, told.take())
         };
@@ -120,7 +128,14 @@ impl Drawing {
         }
         warnings.extend(told.into_iter().map(warning));
         warnings.extend(fonts::missing_letters(&tree).map(warning));
-        Ok(Self { tree, limits: options.limits, warnings })
+        let at = document.text_pos_at(document.root_element().range().start);
+        let place = Place::Line(at.row.into(), at.col.into());
+        Ok(Self { tree, place, limits: options.limits, warnings })
+    }
+
+    /// Where in the document the `svg` element stands that gives the drawing its size.
+    pub fn place(&self) -> &Place {
+        &self.place
     }
 
     /// Width and height in the drawing's own units, above 0.
@@ -164,6 +179,11 @@ impl Told {
     fn take(self) -> BTreeSet<String> {
         self.0.into_inner().unwrap_or_else(|e| e.into_inner())
     }
+}
+
+fn parse(text: &str) -> std::result::Result<roxmltree::Document<'_>, roxmltree::Error> {
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
+    roxmltree::Document::parse_with_options(text, options)
 }
 
 fn not_xml(error: roxmltree::Error) -> Error {

@@ -167,3 +167,84 @@ fn what_is_nested_deeply_is_left_out() {
     let (_, warnings) = paint(&drawing(&body));
     assert!(warnings[0].contains("200 levels deep"), "{warnings:?}");
 }
+
+fn told(body: &str) -> Vec<String> {
+    drawing(body).warnings().iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn values_that_cannot_be_used_are_told_with_their_place() {
+    for (body, name, part) in [
+        (
+            "<rect width='9' height='9'\n stroke='blakc'/>",
+            "line 3, column 2: `stroke` of `rect`",
+            "a colour",
+        ),
+        ("<g\nopacity='half'/>", "line 3, column 1: `opacity` of `g`", "0 to 1"),
+        ("<rect width='abc' height='3'/>", "`width` of `rect` is `abc`", "a length of at least 0"),
+        ("<rect width='3furlongs' height='3'/>", "is `3furlongs`", "passed over"),
+        (
+            "<rect width='-3' height='3'/>",
+            "is `-3`",
+            "at least 0, as `12`, `3.5mm` or `20%`; it counts as 0",
+        ),
+        ("<path d='M0 0L5 5X'/>", "`d` of `path`", "what comes before the error is drawn"),
+        ("<polygon points='1 1 2 3 4'/>", "`points` of `polygon`", "pairs of numbers"),
+        ("<g transform='turn(5)'/>", "`transform` of `g`", "`rotate`"),
+        ("<g transform='scale(1e-7)'/>", "`transform` of `g`", "is left out"),
+        ("<g stroke-linecap='flat'/>", "`stroke-linecap`", "one of butt, round, square"),
+        ("<g style='fill:reddd;x:y'/>", "`fill` of `g` is `reddd`", "a colour"),
+        ("<style>g{stroke-width:-2}</style>", "`stroke-width` of `style`", "at least 0"),
+    ] {
+        let found = told(body);
+        assert_eq!(found.len(), 1, "{body}: {found:?}");
+        assert!(found[0].contains(name) && found[0].contains(part), "{body}: {found:?}");
+        assert!(found[0].starts_with("line "), "{found:?}");
+    }
+    // The same value is told once.
+    assert_eq!(told("<g fill='x'/><g fill='x'/><g stroke='x'/>").len(), 2);
+}
+
+#[test]
+fn values_that_mean_something_are_not_told() {
+    let body = "<g fill='NONE' stroke=' red ' stroke-width=' 2PX ' color='#123' transform=''/>
+        <g fill='currentcolor' stroke='inherit' opacity='50%' stroke-dasharray='none' d='x'/>
+        <rect x='1%' y='2em' width='auto' height='3mm' rx='auto'/><path d=''/><path d='none'/>
+        <g fill='url(#a) none' stroke-dasharray='1,2 3' style='transform:none;cursor:help'/>";
+    assert_eq!(told(body), Vec::<String>::new());
+    assert_eq!(
+        told("<rect><animate fill='freeze' width='x'/></rect>").len(),
+        1,
+        "of the animation"
+    );
+}
+
+#[test]
+fn what_cannot_be_used_counts_as_not_given() {
+    let pixel = |body: &str| paint(&drawing(body)).0.get(10, 10);
+    let lime = Some([0, 255, 0, 255]);
+    let rect = "<rect width='20' height='20'";
+    assert_eq!(pixel(&format!("<g fill='lime'>{rect} fill='blakc'/></g>")), lime);
+    assert_eq!(pixel(&format!("<g fill='lime'>{rect} fill=''/></g>")), lime);
+    assert_eq!(pixel(&format!("{rect} fill=' Lime '/>")), lime);
+    assert_eq!(pixel(&format!("<g color='lime'>{rect} fill='currentcolor'/></g>")), lime);
+}
+
+#[test]
+fn rebeccapurple_is_a_color() {
+    for body in [
+        "<rect width='20' height='20' fill='RebeccaPurple'/>",
+        "<rect width='20' height='20' style='stroke:none;fill: rebeccapurple'/>",
+        "<style>rect{fill:rebeccapurple}</style><rect width='20' height='20'/>",
+    ] {
+        assert_eq!(painted(body).get(10, 10), Some([0x66, 0x33, 0x99, 255]), "{body}");
+        assert_eq!(told(body), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn an_arc_to_where_it_begins_draws_nothing() {
+    let once = "M2 3A14 1.7 40 1 1 12.3 14.1";
+    let path = |d: &str| painted(&format!("<path fill='none' stroke='red' d='{d}'/>"));
+    assert_eq!(path(once), path(&format!("{once}A5 3 159 1 1 12.3 14.1")));
+}
