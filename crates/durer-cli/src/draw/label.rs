@@ -1,6 +1,7 @@
 //! Labels of a map: where they go, and their outlines.
 
 use super::layers::Style;
+use super::places::{self, Fit, Land, Places};
 use crate::failure::Failure;
 use durer::clip::polygon::{Polygon, Shapes, rectangle};
 use durer::curve::text::{Font, TextLine};
@@ -14,9 +15,11 @@ use durer::view::label::Placer;
 use durer::view::window::WindowToViewport;
 use durer_formats::geo::{Geometry, Points};
 use durer_formats::svg::Fonts;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-/// Labels are wider than high: an area counts as if it were narrower by this when a place is sought.
+/// Labels are wider than high: an area counts as if it were narrower by this, or by what is known of its label, when a
+/// place is sought.
 const WIDTH: f64 = 2.0;
 
 /// The halo reaches so far around letters, as a share of their size.
@@ -24,6 +27,9 @@ const HALO: f64 = 0.16;
 
 /// Room between a marker and its label, as a share of the letters' size.
 const GAP: f64 = 0.25;
+
+/// Room between an area and its label's halo, as a share of the letters' size.
+const APART: f64 = 0.15;
 
 /// The em square's share that letters take between a label's top and bottom line.
 const LETTERS: f64 = 0.73;
@@ -50,13 +56,11 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Other points within the area, if the best has no room: those farthest from the border of its left, right, upper
-    /// and lower part.
-    fn others(&self) -> Vec<DVec2> {
-        let Some((area, bounds)) = self.area.as_ref().and_then(|a| a.bounds().map(|b| (a, b)))
-        else {
-            return Vec::new();
-        };
+    /// Points far from the border of an area, as a label of a shape sees it: the best one, and those of its left, right,
+    /// upper and lower part.
+    fn poles(&self, area: &Shapes, wide: f64) -> Vec<DVec2> {
+        let Some(bounds) = area.bounds() else { return vec![self.at] };
+        let own = largest(std::slice::from_ref(area)).and_then(|polygon| middle(polygon, wide));
         let (low, high, at) = (bounds.min(), bounds.max(), self.at);
         let halves = [
             (DVec2::new(low.x, low.y), DVec2::new(high.x, at.y)),
@@ -67,9 +71,16 @@ impl Anchor {
         let within = |(low, high)| {
             let half = Rect::new(low, high).ok()?;
             let cut = rectangle::clip(&half, area, &rectangle::Options, &mut NoTrace).ok()?;
-            middle(largest(std::slice::from_ref(&cut))?)
+            middle(largest(std::slice::from_ref(&cut))?, wide)
         };
-        halves.into_iter().filter_map(within).collect()
+        let others = halves.into_iter().filter_map(within);
+        own.into_iter().chain([self.at]).chain(others).collect()
+    }
+
+    /// The middle of an area, which is to be seen.
+    fn heart(&self) -> Option<Rect> {
+        let area = self.area.as_ref()?.bounds()?.size() / 4.0;
+        Rect::new(self.at - area, self.at + area).ok()
     }
 
     /// The place for the label of a feature, within what is seen.
@@ -126,7 +137,7 @@ impl Parts<'_> {
             |s: &Shapes| rectangle::clip(self.seen, s, &rectangle::Options, &mut NoTrace).ok();
         let pieces: Vec<Shapes> = self.areas.iter().filter_map(cut).collect();
         let largest = largest(&pieces)?;
-        let (at, size) = (middle(largest)?, largest.area().abs());
+        let (at, size) = (middle(largest, WIDTH)?, largest.area().abs());
         let mut area = Shapes::new();
         largest.rings().for_each(|ring| area.push_ring(ring.iter().copied()));
         area.end_polygon();
@@ -162,9 +173,9 @@ fn largest(pieces: &[Shapes]) -> Option<Polygon<'_>> {
     polygons.max_by(|a, b| a.area().abs().total_cmp(&b.area().abs()))
 }
 
-/// The point of a polygon that is farthest from its border, as labels see it.
-fn middle(polygon: Polygon<'_>) -> Option<DVec2> {
-    let narrow = DVec2::new(1.0 / WIDTH, 1.0);
+/// The point of a polygon that is farthest from its border, as labels see it that are so much wider than high.
+fn middle(polygon: Polygon<'_>, wide: f64) -> Option<DVec2> {
+    let narrow = DVec2::new(1.0 / wide, 1.0);
     let rings: Vec<Vec<DVec2>> =
         polygon.rings().map(|r| r.iter().map(|p| *p * narrow).collect()).collect();
     let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
@@ -185,7 +196,8 @@ pub struct Drawn {
 pub fn draw(
     canvas: &mut Canvas,
     seen: &Rect,
-    mut labels: Vec<Label>,
+    land: &Land,
+    labels: Vec<Label>,
     styles: &[&Style],
     fonts: &Fonts,
 ) -> Result<Drawn, Failure> {
@@ -193,36 +205,91 @@ pub fn draw(
     let fonts = opened.collect::<durer::Result<Vec<_>>>();
     let fonts = fonts.map_err(|e| Failure::Data(e.to_string()))?;
     let no_font = || Failure::Data("there is no font for labels".to_owned());
-    // The sort is stable: what is equal stays in the order of the file.
-    labels.sort_by(|a, b| b.layer.cmp(&a.layer).then(b.anchor.size.total_cmp(&a.anchor.size)));
-    let mut placer = Placer::new(*seen);
-    let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
-    for label in &labels {
+    let mut planned = Vec::new();
+    for label in labels {
         let style = styles[label.layer];
         let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
         let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
         let line = font.line(&label.text, style.label_size);
-        let anchor = &label.anchor;
-        let mut place = |at: DVec2| {
-            let places = places(at, anchor.beside, &line, style);
-            let boxes = places.iter().filter_map(|corner| taken(*corner, &line, style));
-            placer.place(boxes).and_then(|number| places.get(number).copied())
-        };
-        let found = place(anchor.at).or_else(|| anchor.others().into_iter().find_map(place));
-        match found {
-            Some(corner) => {
-                drawn.counts[label.layer].0 += 1;
-                drawn.missing.extend(label.text.chars().filter(|c| !font.has(*c)));
-                write(canvas, &line, corner, style).map_err(|e| Failure::Usage(e.to_string()))?;
+        let missing = label.text.chars().filter(|c| !font.has(*c)).collect();
+        planned.push(Planned::new(label, line, missing, style, land));
+    }
+    // The sort is stable: what is equal stays in the order of the file.
+    planned.sort_by(Planned::order);
+    let mut placer = Placer::new(*seen);
+    let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
+    for layer in planned.chunk_by(|a, b| a.label.layer == b.label.layer) {
+        let style = styles[layer[0].label.layer];
+        let held = layer.iter().take_while(|planned| planned.fit == Fit::Held).count();
+        for (i, planned) in layer.iter().enumerate() {
+            if i == held {
+                // Islands that names would hide are kept free; names that have an area of their own stand already.
+                let tiny = layer.iter().filter(|p| p.fit == Fit::Tiny && p.alone);
+                for heart in tiny.filter_map(|p| p.label.anchor.heart()) {
+                    placer.place([heart]);
+                }
             }
-            None => drawn.counts[label.layer].1 += 1,
+            let corners = &planned.corners;
+            let boxes = corners.iter().filter_map(|corner| taken(*corner, &planned.line, style));
+            let counts = &mut drawn.counts[planned.label.layer];
+            match placer.place(boxes).and_then(|number| corners.get(number)) {
+                Some(corner) => {
+                    counts.0 += 1;
+                    drawn.missing.extend(&planned.missing);
+                    write(canvas, &planned.line, *corner, style)
+                        .map_err(|e| Failure::Usage(e.to_string()))?;
+                }
+                None => counts.1 += 1,
+            }
         }
     }
     Ok(drawn)
 }
 
+/// A label that knows where it may stand.
+struct Planned {
+    label: Label,
+    line: TextLine,
+    /// Letters that its font does not have.
+    missing: Vec<char>,
+    fit: Fit,
+    /// The share of it that its area holds.
+    held: f64,
+    /// Whether its area has no neighbours.
+    alone: bool,
+    /// Starts of the base line, the best first.
+    corners: Vec<DVec2>,
+}
+
+impl Planned {
+    fn new(label: Label, line: TextLine, missing: Vec<char>, style: &Style, land: &Land) -> Self {
+        let anchor = &label.anchor;
+        let size = DVec2::new(line.advance.max(1.0), LETTERS * style.label_size);
+        let Some(area) = &anchor.area else {
+            let corners = beside(anchor.at, anchor.beside, &line, style);
+            return Self { label, line, missing, fit: Fit::Over, held: 0.0, alone: false, corners };
+        };
+        let halo = DVec2::splat(2.0 * HALO * style.label_size);
+        let poles = anchor.poles(area, (size.x / size.y).clamp(1.0, 8.0));
+        let gap = APART * style.label_size + 0.5 * style.stroke_width;
+        let Places { fit, held, alone, middles } =
+            places::around(area, &poles, size + halo, gap, land);
+        let corner = |middle: DVec2| middle + DVec2::new(-size.x, size.y) / 2.0;
+        let corners = middles.into_iter().map(corner).collect();
+        Self { label, line, missing, fit, held, alone, corners }
+    }
+
+    /// Upper layers first; then what its area holds, what it nearly holds, and what is larger.
+    fn order(&self, other: &Self) -> Ordering {
+        let held = |label: &Self| if label.fit == Fit::Over { label.held } else { 0.0 };
+        let layers = other.label.layer.cmp(&self.label.layer).then(self.fit.cmp(&other.fit));
+        let size = other.label.anchor.size.total_cmp(&self.label.anchor.size);
+        layers.then(held(other).total_cmp(&held(self))).then(size)
+    }
+}
+
 /// Starts of the base line, the best first.
-fn places(at: DVec2, beside: bool, line: &TextLine, style: &Style) -> Vec<DVec2> {
+fn beside(at: DVec2, beside: bool, line: &TextLine, style: &Style) -> Vec<DVec2> {
     let size = style.label_size;
     // Capitals stand in the middle of the line.
     let middle = at + DVec2::new(0.0, LETTERS * 0.5 * size);

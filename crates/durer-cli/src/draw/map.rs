@@ -3,11 +3,12 @@
 use super::joined::Joined;
 use super::label::{Anchor, Label};
 use super::layers::{Marker, Style};
+use super::places::Land;
 use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, fonts, frame, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
-use durer::curve::Path;
+use durer::curve::{Contours, Path};
 use durer::math::{DVec2, Rect};
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
@@ -50,9 +51,10 @@ impl Job<'_> {
         let viewport = self.viewport(size)?;
         let screen = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
         let (seen, counts) = (seen(&viewport)?, MapCounts::default());
-        let mut map = Map { canvas, screen, seen, counts, joined: None, solid: false };
+        let land = Contours::new();
+        let mut map = Map { canvas, screen, seen, counts, land, joined: None, solid: false };
         map.canvas.push_clip(&frame(&viewport), FillRule::NonZero);
-        let mut labels = Vec::new();
+        let (mut labels, mut land) = (Vec::new(), Vec::new());
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
             let name = display_name(&layer.layer.input);
             self.messages.progress.stage(|| format!("drawing {name}"));
@@ -80,6 +82,7 @@ impl Job<'_> {
                 }
                 labels.append(&mut own);
             }
+            land.push(std::mem::take(&mut map.land));
             self.report.layers[index].map = Some(map.counts);
         }
         let given_fonts = !self.args.fonts.font.is_empty();
@@ -92,7 +95,9 @@ impl Job<'_> {
         if let (false, Some(fonts)) = (labels.is_empty(), fonts) {
             self.messages.progress.stage(|| "placing labels".to_owned());
             let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
-            let drawn = super::label::draw(&mut map.canvas, &map.seen, labels, &styles, &fonts)?;
+            let land = Land::new(land, &map.seen).map_err(usage)?;
+            let drawn =
+                super::label::draw(&mut map.canvas, &map.seen, &land, labels, &styles, &fonts)?;
             for (layer, placed) in self.report.layers.iter_mut().zip(drawn.counts) {
                 if let Some(counts) = &mut layer.map {
                     (counts.labels, counts.labels_left_out) = placed;
@@ -196,6 +201,8 @@ struct Map {
     /// The viewport.
     seen: Rect,
     counts: MapCounts,
+    /// The layer's areas so far, which labels beside theirs keep off.
+    land: Contours,
     /// The layer's areas so far, where they are painted as one.
     joined: Option<Joined>,
     /// Whether something has so many dashes that it is drawn without.
@@ -284,6 +291,8 @@ impl Map {
             self.joined = Some(joined);
             if taken {
                 self.counts.polygons += shown.len() as u64;
+                let rings = shown.into_iter().flatten();
+                rings.for_each(|ring| self.land.push(ring, true));
                 return Ok(());
             }
         }
@@ -292,9 +301,10 @@ impl Map {
             let outer = rings.first().and_then(|ring| self.run(ring, style.stroke_width));
             let Some(outer) = outer else { continue };
             self.counts.polygons += 1;
-            path.extend(&Path::polygon(outer));
-            for hole in rings[1..].iter().filter_map(|r| self.run(r, style.stroke_width)) {
-                path.extend(&Path::polygon(hole));
+            let holes = rings[1..].iter().filter_map(|r| self.run(r, style.stroke_width));
+            for ring in std::iter::once(outer).chain(holes.collect::<Vec<_>>()) {
+                self.land.push(ring.iter().copied(), true);
+                path.extend(&Path::polygon(ring));
             }
         }
         if let Some(fill) = style.fill {

@@ -6,6 +6,7 @@ mod joined;
 mod label;
 mod layers;
 mod map;
+mod places;
 mod report;
 mod svg;
 

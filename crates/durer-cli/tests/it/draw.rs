@@ -325,6 +325,53 @@ fn what_is_not_drawn_is_named_once() {
 }
 
 #[test]
+fn a_drawing_too_large_to_be_drawn_is_bad_data() {
+    let folder = Folder::new();
+    let text =
+        |size: &str| format!("<!-- wide -->\n<svg xmlns='http://www.w3.org/2000/svg' {size}/>");
+    folder.write("wide.svg", text("width='1e9' height='2'"));
+    folder.write("long.svg", text("width='2' height='40000'"));
+    let told =
+        "wide.svg: line 2, column 1: the size 1000000000x2: 2000000000 pixels are above the limit";
+    folder.run("draw wide.svg -o a.png").fails(1, told);
+    folder.run("draw long.svg -o a.png").fails(1, "long.svg: line 2, column 1: the size 2x40000: ");
+    // The other side follows from the drawing's shape.
+    folder.run("draw long.svg -o a.png --size 9x").fails(1, "long.svg: line 2, column 1: the size");
+    folder.must("draw wide.svg -o a.png --size 9x9");
+}
+
+#[test]
+fn an_island_is_not_hidden_by_its_name_and_a_large_country_has_one() {
+    let folder = Folder::new();
+    let area = |name: &str, [x0, y0, x1, y1]: [i32; 4]| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"Polygon","coordinates":[[[{x0},{y0}],[{x1},{y0}],[{x1},{y1}],[{x0},{y1}],[{x0},{y0}]]]}}}}"#
+        )
+    };
+    // In the middle one that just holds its name, between two whose names reach over the border.
+    let areas = [
+        area("Isle", [30, 80, 38, 86]),
+        area("Overlong Neighbour", [60, 20, 130, 60]),
+        area("Landia", [130, 20, 190, 40]),
+        area("Overlong Neighbour", [190, 20, 260, 60]),
+    ];
+    folder.write("areas.geojsonl", areas.join("\n"));
+    let report = folder
+        .must("draw areas.geojsonl --label name -o m.png --window 0,0,300,100 --size 300x100 --fill red --stroke none --json")
+        .json();
+    assert_eq!(report["layers"][0]["map"]["labels_left_out"], 0, "{report}");
+    let found = picture(&folder, "m.png");
+    for (x, y) in [(30, 14), (37, 14), (30, 19), (37, 19), (34, 17)] {
+        assert_eq!(found.pixel(x, y), [255, 0, 0], "{x} {y}");
+    }
+    let dark = |x: std::ops::Range<u32>| {
+        let pixels = x.flat_map(|x| (62..80).map(move |y| (x, y)));
+        pixels.filter(|(x, y)| found.pixel(*x, *y).iter().all(|c| *c < 0x80)).count()
+    };
+    assert!(dark(135..185) > 20, "Landia is named");
+}
+
+#[test]
 fn wrong_use_and_bad_data_are_told() {
     let folder = folder();
     folder.write("no.svg", "<svg xmlns='http://www.w3.org/2000/svg'><rect></svg>");
