@@ -232,10 +232,10 @@ fn hard_stops_are_sharp_and_in_place() {
     let found = row(&long, (-2000.0, 2000.0), Spread::Pad);
     let expected: Vec<_> = (0..40).map(|x| if x < 4 { red } else { blue }).collect();
     assert_eq!(found, expected);
-    // Where a gradient turns round, what would come after its end is not seen.
+    // Where a gradient turns round or begins again, near a pixel's centre, what would come after its end is not seen.
     let turned = [(0.0, red), (1.0, red), (1.0, blue)];
     for spread in [Spread::Reflect, Spread::Repeat] {
-        assert_eq!(row(&turned, (-3.1, 4.0), spread), vec![red; 40], "{spread:?}");
+        assert_eq!(row(&turned, (-2.6, 4.503), spread), vec![red; 40], "{spread:?}");
     }
     // Beyond the ends are the first and the last stop.
     let twice = [(0.0, red), (0.0, green), (1.0, green), (1.0, blue)];
