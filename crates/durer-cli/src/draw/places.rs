@@ -35,7 +35,7 @@ pub enum Fit {
     Held,
     /// In part, with most of the area still to be seen.
     Over,
-    /// In part, hiding most of the area.
+    /// In part, hiding most of an area without neighbours.
     Hiding,
     /// Hardly.
     Tiny,
@@ -149,7 +149,8 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
     let fit = match best {
         b if b >= HELD => Fit::Held,
         b if b < MOSTLY => Fit::Tiny,
-        _ if hidden <= MOSTLY => Fit::Over,
+        // Between neighbours there is nothing open to stand in.
+        _ if hidden <= MOSTLY || !alone => Fit::Over,
         _ => Fit::Hiding,
     };
     let middles = match fit {
@@ -216,7 +217,7 @@ mod tests {
         assert_eq!((hidden.fit, hidden.middles[0]), (Fit::Hiding, DVec2::new(132.0, 100.0)));
         // With land all around there is nothing to gain.
         let enclosed = places(90.0, 110.0, &land(0.0, 200.0));
-        assert_eq!((enclosed.fit, enclosed.middles[0]), (Fit::Hiding, DVec2::splat(100.0)));
+        assert_eq!((enclosed.fit, enclosed.middles[0]), (Fit::Over, DVec2::splat(100.0)));
         assert!(island.alone && !enclosed.alone);
     }
 
