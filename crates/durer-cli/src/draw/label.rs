@@ -1,7 +1,7 @@
 //! Labels of a map: where they go, and their outlines.
 
 use super::layers::Style;
-use super::places::{self, Fit, Land, Places};
+use super::places::{self, Fit, Land, NEARLY, Places};
 use crate::failure::Failure;
 use durer::clip::polygon::{Polygon, Shapes, rectangle};
 use durer::curve::text::{Font, TextLine};
@@ -281,10 +281,10 @@ impl Planned {
 
     /// Upper layers first; then what its area holds, what it nearly holds, and what is larger.
     fn order(&self, other: &Self) -> Ordering {
-        let held = |label: &Self| if label.fit == Fit::Over { label.held } else { 0.0 };
+        let nearly = |label: &Self| label.fit == Fit::Over && label.held >= NEARLY;
         let layers = other.label.layer.cmp(&self.label.layer).then(self.fit.cmp(&other.fit));
         let size = other.label.anchor.size.total_cmp(&self.label.anchor.size);
-        layers.then(held(other).total_cmp(&held(self))).then(size)
+        layers.then(nearly(other).cmp(&nearly(self))).then(size)
     }
 }
 

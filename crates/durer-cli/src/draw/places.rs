@@ -13,8 +13,15 @@ use durer::trace::NoTrace;
 /// A label is in an area that holds this share of it: corners of its box are empty.
 const HELD: f64 = 0.98;
 
+/// An area that holds this share of its label nearly holds it: such labels come before those of larger areas that hold
+/// less of theirs.
+pub const NEARLY: f64 = 0.75;
+
 /// A label stands on an area that holds at least this share of it.
 const MOSTLY: f64 = 0.5;
+
+/// Where there is no better place, a label reaches out of an area that holds this share of it.
+const PARTLY: f64 = 0.35;
 
 /// A label beside its area is in the open where no more than this share of it lies on land.
 const OPEN: f64 = 0.02;
@@ -23,7 +30,7 @@ const OPEN: f64 = 0.02;
 const ALONE: f64 = 1.5;
 
 /// So many columns and rows of places are looked at within an area.
-const GRID: (u32, u32) = (9, 7);
+const GRID: (u32, u32) = (17, 13);
 
 /// The land is looked at in no more pixels than this a side.
 const LAND_SIDE: f64 = 1024.0;
@@ -145,7 +152,8 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
     let sides = if alone { 8 } else { 4 };
     let open = beside(&bounds, size, gap).into_iter().take(sides).filter(is_open);
     let on = inside.iter().filter(|(share, _)| *share >= MOSTLY).map(|(_, middle)| *middle);
-    let over = poles.iter().copied();
+    let partly = inside.iter().filter(|(share, _)| (PARTLY..MOSTLY).contains(share));
+    let over = partly.map(|(_, middle)| *middle).chain(poles.iter().copied());
     let fit = match best {
         b if b >= HELD => Fit::Held,
         b if b < MOSTLY => Fit::Tiny,
