@@ -27,7 +27,7 @@ impl Arc {
     /// Calls `curve` with the points of curves after the first of each; `None` where the arc is a line.
     fn curves(&self, mut curve: impl FnMut([DVec2; 3])) -> Option<()> {
         let radii = self.radii.abs();
-        if self.from == self.to || !(radii.min_element() > 0.0) {
+        if self.from == self.to || radii.min_element() <= 0.0 {
             return None;
         }
         // In the frame in which the ellipse is the unit circle.
