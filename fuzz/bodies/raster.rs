@@ -44,14 +44,19 @@ fn path(u: &mut Unstructured<'_>, kind: u8) -> Result<Path> {
 }
 
 fn stroke(u: &mut Unstructured<'_>, kind: u8) -> Result<Stroke> {
-    let dashes: Result<Vec<f64>> = (0..u.int_in_range(0..=3)?).map(|_| number(u, kind)).collect();
+    // Any numbers hardly ever are a style; half of the time they are one.
+    let usual = u.arbitrary()?;
+    let length = |u: &mut Unstructured<'_>, most: u32| {
+        if usual { Ok(f64::from(u.int_in_range(0..=most)?) / 8.0) } else { number(u, kind) }
+    };
+    let dashes: Result<Vec<f64>> = (0..u.int_in_range(0..=3)?).map(|_| length(u, 80)).collect();
     Ok(Stroke {
-        width: number(u, kind)?,
+        width: length(u, 400)?,
         cap: *u.choose(&[Cap::Butt, Cap::Round, Cap::Square])?,
         join: *u.choose(&[Join::Miter, Join::Round, Join::Bevel])?,
         miter_limit: f64::from(u.int_in_range(0u8..=9)?),
         dashes: dashes?,
-        dash_offset: number(u, kind)?,
+        dash_offset: length(u, 160)?,
     })
 }
 
@@ -68,6 +73,9 @@ fn any_raster(u: &mut Unstructured<'_>) -> Result<()> {
     any_lines(u)?;
     let (path, stroke) = (path(u, kind)?, stroke(u, kind)?);
     let outline = any_stroke(&path, &stroke).filter(|outline| outline.points().len() <= LONG);
+    if let Some(outline) = &outline {
+        any_reach(u, &path, &stroke, outline)?;
+    }
     for contours in [Some(flatten(&path, 0.1)), outline.clone()].into_iter().flatten() {
         any_fill(&contours, rule, size);
     }
@@ -120,6 +128,90 @@ fn any_stroke(path: &Path, stroke: &Stroke) -> Option<Contours> {
     let finite = found.points().iter().all(|p| p.is_finite());
     assert!(finite, "{path:?} {stroke:?}");
     Some(found)
+}
+
+/// Coordinates and widths beyond this have no digits left for what [`any_reach`] asks.
+const NEAR: f64 = 1e4;
+
+/// The outline's tolerance, that of the chain it is compared with, and rounding.
+const WITHIN: f64 = 0.1 + 0.01 + 1e-3;
+
+/// How often an outline goes round a point.
+fn winding(outline: &Contours, p: DVec2) -> i32 {
+    let mut winding = 0;
+    for (points, _) in outline.iter() {
+        for (i, a) in points.iter().enumerate() {
+            let b = points[(i + 1) % points.len()];
+            let side = (b - *a).perp_dot(p - *a);
+            winding += i32::from(a.y <= p.y && b.y > p.y && side > 0.0);
+            winding -= i32::from(a.y > p.y && b.y <= p.y && side < 0.0);
+        }
+    }
+    winding
+}
+
+fn distance(chain: &Contours, p: DVec2) -> f64 {
+    let to = |(a, b): (DVec2, DVec2)| {
+        let (way, length) = (b - a, a.distance_squared(b));
+        let t = if length > 0.0 { ((p - a).dot(way) / length).clamp(0.0, 1.0) } else { 0.0 };
+        p.distance(a + way * t)
+    };
+    let edges = chain.iter().flat_map(|(points, closed)| {
+        let last = if closed { points.len() } else { points.len().saturating_sub(1) };
+        (0..last.max(1)).map(move |i| (points[i], points[(i + 1) % points.len()]))
+    });
+    edges.map(to).fold(f64::INFINITY, f64::min)
+}
+
+/// The path without what only moves, which has no stroke.
+fn drawn(path: &Path) -> Path {
+    let (mut out, mut moved, mut open) = (Path::new(), None, false);
+    for element in path.elements() {
+        match element {
+            PathElement::MoveTo(_) => moved = Some(*element),
+            PathElement::Close if moved.is_none() && !open => continue,
+            _ => {
+                if let Some(to) = moved.take() {
+                    out.push(to);
+                }
+                out.push(*element);
+            }
+        }
+        open = *element != PathElement::Close;
+    }
+    out
+}
+
+/// What a stroke covers lies within its reach; round ones cover all that is within half their width; and no
+/// point is passed backwards, which would cancel what lies on it.
+fn any_reach(
+    u: &mut Unstructured<'_>,
+    path: &Path,
+    stroke: &Stroke,
+    outline: &Contours,
+) -> Result<()> {
+    let chain = flatten(&drawn(path), 0.01);
+    let near = |p: &DVec2| p.abs().max_element() <= NEAR;
+    let few = chain.points().len() <= LONG && outline.points().len() <= LONG;
+    if !few || !chain.points().iter().all(near) || !(0.01..=NEAR).contains(&stroke.width) {
+        return Ok(());
+    }
+    let half = stroke.width / 2.0;
+    let sharp = if stroke.join == Join::Miter { stroke.miter_limit } else { 1.0 };
+    let reach = half * if stroke.cap == Cap::Square { sharp.max(1.5) } else { sharp };
+    let is_round = stroke.cap == Cap::Round && stroke.join == Join::Round;
+    for _ in 0..8 {
+        let p = DVec2::new(number(u, 1)?, number(u, 1)?);
+        let (away, winding) = (distance(&chain, p), winding(outline, p));
+        assert!(winding <= 0, "{p} is passed backwards: {path:?} {stroke:?}");
+        if away > reach + WITHIN {
+            assert_eq!(winding, 0, "{p}, {away} away: {path:?} {stroke:?}");
+        }
+        if is_round && stroke.dashes.is_empty() && away < half - WITHIN {
+            assert!(winding < 0, "{p}, {away} away: {path:?} {stroke:?}");
+        }
+    }
+    Ok(())
 }
 
 fn any_lines(u: &mut Unstructured<'_>) -> Result<()> {

@@ -253,6 +253,28 @@ fn curves_without_length_do_not_end_dashes() {
     }
 }
 
+/// A contour that only closes has no dashes; a stroke ran to it from the origin.
+#[test]
+fn dashes_begin_where_an_empty_contour_was() {
+    let [at, to] = [DVec2::new(20.0, 10.0), DVec2::new(60.0, 10.0)];
+    for cap in [Cap::Butt, Cap::Square, Cap::Round] {
+        for next in [PathElement::LineTo(to), PathElement::QuadTo(at, to)] {
+            let mut path = Path::new();
+            path.push(PathElement::MoveTo(at));
+            path.push(PathElement::Close);
+            path.push(next);
+            path.push(PathElement::MoveTo(to));
+            path.push(PathElement::Close);
+            let stroke = Stroke { width: 2.0, cap, dashes: vec![5.0, 5.0], ..Stroke::default() };
+            let outline = outline(&path, &stroke, TOLERANCE, &mut NoTrace).expect("style");
+            let near = |p: &DVec2| (19.0 - 1e-9..=61.0 + 1e-9).contains(&p.x);
+            assert!(outline.points().iter().all(near), "{cap:?} {next:?}: {outline:?}");
+            assert!(winding(&outline, DVec2::new(22.5, 10.0)) != 0, "{cap:?} {next:?}");
+            assert_eq!(winding(&outline, DVec2::new(27.5, 10.0)), 0, "{cap:?} {next:?}");
+        }
+    }
+}
+
 #[test]
 fn strokes_wider_than_any_picture_cover_it() {
     let square = Path::rectangle(95.0, 95.0, 10.0, 10.0);

@@ -66,7 +66,7 @@ pub(super) fn dashed(
             element
         })
         .collect();
-    let source = if stroke.cap == Cap::Butt { source } else { with_dots(&source, stroke.width) };
+    let source = with_dots(&source, (stroke.cap != Cap::Butt).then_some(stroke.width));
     let length = control_length(&source);
     let count = count(length, stroke);
     if !(length > 0.0 && count < MAX_DASHES) {
@@ -130,9 +130,9 @@ fn lengthen_dots(dashes: &mut [f64], length: f64) {
     }
 }
 
-/// The path with contours that stay in one point made a line as long as a dot, along x, as SVG wants it;
-/// what only moves makes no dot.
-fn with_dots(path: &BezPath, width: f64) -> BezPath {
+/// The path with contours that stay in one point made a line as long as a dot, along x, as SVG wants it; what only
+/// moves makes no dot. Without a width there are no dots: kurbo would begin the next dash at the origin.
+fn with_dots(path: &BezPath, width: Option<f64>) -> BezPath {
     let mut out = BezPath::new();
     let starts = |e: &PathEl| matches!(e, PathEl::MoveTo(_));
     for contour in path.elements().chunk_by(|_, next| !starts(next)) {
@@ -142,8 +142,10 @@ fn with_dots(path: &BezPath, width: f64) -> BezPath {
                 if contour.len() > 1
                     && control_length(&contour.iter().copied().collect()) == 0.0 =>
             {
-                out.move_to((p.x - 0.5 * DOT * width, p.y));
-                out.line_to((p.x + 0.5 * DOT * width, p.y));
+                if let Some(width) = width {
+                    out.move_to((p.x - 0.5 * DOT * width, p.y));
+                    out.line_to((p.x + 0.5 * DOT * width, p.y));
+                }
             }
             _ => out.extend(contour.iter().copied()),
         }
