@@ -28,6 +28,7 @@ mod draw;
 mod fonts;
 mod image;
 mod paint;
+mod references;
 mod values;
 
 pub use fonts::{Fonts, no_glyphs};
@@ -103,6 +104,7 @@ impl Drawing {
             return Err(Error::line(1, 0, message));
         }
         check_arcs(&document)?;
+        references::check(&document)?;
         let mut warnings = passed_over(&document);
         let mut found = values::Found::new(&document);
         warnings.append(&mut found.warnings);

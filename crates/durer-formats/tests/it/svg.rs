@@ -242,9 +242,91 @@ fn rebeccapurple_is_a_color() {
     }
 }
 
+/// Of references that go in a circle, those that are not cut would be followed until the stack is full.
+#[test]
+fn references_in_a_circle_are_refused() {
+    let pattern = |id: &str, more: &str, inside: &str| {
+        format!(
+            "<pattern id='{id}' {more} width='9' height='9' patternUnits='userSpaceOnUse'>{inside}</pattern>"
+        )
+    };
+    let shape = |more: &str| format!("<path d='M0 0h9v9z' {more}/>");
+    let filled = |id: &str| shape(&format!("fill='url(#{id})'"));
+    let ring = |names: &[&str], element: &str, property: &str| {
+        let next = names.iter().cycle().skip(1);
+        let parts = names.iter().zip(next).map(|(id, next)| {
+            let inside = shape(&format!("{property}='url(#{next})'"));
+            match element {
+                "pattern" => pattern(id, "", &inside),
+                _ => format!("<{element} id='{id}'>{inside}</{element}>"),
+            }
+        });
+        parts.collect::<String>() + &shape(&format!("{property}='url(#{})'", names[0]))
+    };
+    let read = |body: &str| {
+        let text = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='20'>\n{body}</svg>"
+        );
+        Drawing::read(text.as_bytes(), &ReadOptions::default()).map_err(|e| e.to_string())
+    };
+    for body in [
+        ring(&["a", "b", "c"], "pattern", "fill"),
+        ring(&["a", "b", "c", "d"], "pattern", "stroke"),
+        ring(&["a", "b", "c"], "mask", "mask"),
+        ring(&["a", "b", "c"], "clipPath", "clip-path"),
+        pattern("a", "href='#b'", "") + &pattern("b", "", &filled("a")) + &filled("a"),
+        format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("")), shape("")),
+        pattern("a", "", &shape("mask='url(#m)'"))
+            + &format!("<mask id='m'>{}</mask>", filled("a"))
+            + &filled("a"),
+        pattern("a", "", &shape("style='fill: url( \"#b\" )'"))
+            + &pattern("b", "", &shape("stroke='url(#a)'"))
+            + &filled("b"),
+    ] {
+        let told = read(&body).expect_err(&body);
+        assert!(told.starts_with("line 2, column") && told.contains("go in a circle"), "{told}");
+    }
+    // These are cut.
+    for body in [
+        ring(&["a"], "pattern", "fill"),
+        ring(&["a", "b"], "pattern", "fill"),
+        ring(&["a", "b"], "mask", "mask"),
+        ring(&["a", "b", "c"], "marker", "marker-start"),
+        format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("fill='red'")), shape("")),
+    ] {
+        assert!(read(&body).is_ok(), "{body}");
+    }
+}
+
 #[test]
 fn an_arc_to_where_it_begins_draws_nothing() {
     let once = "M2 3A14 1.7 40 1 1 12.3 14.1";
     let path = |d: &str| painted(&format!("<path fill='none' stroke='red' d='{d}'/>"));
     assert_eq!(path(once), path(&format!("{once}A5 3 159 1 1 12.3 14.1")));
+}
+
+#[test]
+fn references_that_are_deep_are_refused() {
+    let chain = |count: usize| {
+        let patterns: String = (0..count)
+            .map(|i| {
+                let fill = format!("fill='url(#a{})'", i + 1);
+                format!(
+                    "<pattern id='a{i}' width='9' height='9'><path d='M0 0h9v9z' {fill}/></pattern>"
+                )
+            })
+            .collect();
+        format!("{patterns}<path d='M0 0h9v9z' fill='url(#a0)'/>")
+    };
+    let words = |count: usize| {
+        format!("<text>{}a{}</text>", "<tspan>".repeat(count), "</tspan>".repeat(count))
+    };
+    for body in [chain(20_000), words(20_000)] {
+        let text =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{body}</svg>");
+        let told = Drawing::read(text.as_bytes(), &ReadOptions::default()).expect_err("too deep");
+        assert!(told.to_string().contains("more than 1024 levels deep"), "{told}");
+    }
+    drawing(&chain(50));
+    drawing(&words(50));
 }

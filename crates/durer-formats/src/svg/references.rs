@@ -1,0 +1,201 @@
+//! What a drawing's elements refer to: usvg follows patterns, masks and clip paths by recursion, and without end where
+//! three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
+
+use crate::{Error, Result};
+use std::collections::HashMap;
+use usvg::roxmltree::{Document, Node, NodeId};
+
+/// Elements within one another and within what refers to them may be so deep, as usvg has it for elements alone.
+const MAX_DEPTH: usize = 1024;
+
+/// What following a reference takes of the stack, in elements.
+const REFERENCE: usize = 8;
+
+/// Elements that are filled and stroked.
+const SHAPES: [&str; 9] =
+    ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "text", "tspan"];
+
+/// How something is referred to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Fill,
+    Stroke,
+    ClipPath,
+    Mask,
+    Marker,
+    /// By `href`.
+    Href,
+}
+
+impl Kind {
+    /// Whether elements of this name are what is looked for.
+    fn fits(self, name: &str) -> bool {
+        match self {
+            Self::Fill | Self::Stroke => name == "pattern",
+            Self::ClipPath => name == "clipPath",
+            Self::Mask => name == "mask",
+            Self::Marker => name == "marker",
+            Self::Href => true,
+        }
+    }
+}
+
+/// Properties that refer to elements.
+const PROPERTIES: [(&str, Kind); 7] = [
+    ("fill", Kind::Fill),
+    ("stroke", Kind::Stroke),
+    ("clip-path", Kind::ClipPath),
+    ("mask", Kind::Mask),
+    ("marker-start", Kind::Marker),
+    ("marker-mid", Kind::Marker),
+    ("marker-end", Kind::Marker),
+];
+
+/// Refuses references that go in circles, and elements that are too deep.
+///
+/// # Errors
+/// [`Error::Decode`] with the place of the element where a circle closes, or that is too deep.
+pub fn check(document: &Document<'_>) -> Result<()> {
+    let with_id = |node: Node<'_, '_>| node.attribute("id").is_some();
+    let mut ids = HashMap::new();
+    for node in document.descendants().filter(|node| with_id(*node)) {
+        ids.entry(node.attribute("id").unwrap_or_default()).or_insert(node);
+    }
+    Walk { document, ids, depths: HashMap::new(), open: Vec::new() }
+        .depth(document.root_element(), Kind::Href, 0)
+        .map(drop)
+}
+
+struct Walk<'a, 'i> {
+    document: &'a Document<'i>,
+    ids: HashMap<&'a str, Node<'a, 'i>>,
+    /// How deep the elements are that have been followed.
+    depths: HashMap<NodeId, usize>,
+    /// Those that are being followed, and how they were referred to.
+    open: Vec<(NodeId, Kind)>,
+}
+
+/// What fill and stroke an element has from around it, and whether that was said outside of what is being followed.
+type Paints<'a> = [(Option<&'a str>, bool); 2];
+
+impl<'a, 'i> Walk<'a, 'i> {
+    /// How many levels there are in an element and in what it refers to; `above` are around it.
+    fn depth(&mut self, start: Node<'a, 'i>, kind: Kind, above: usize) -> Result<usize> {
+        if let Some(depth) = self.depths.get(&start.id()) {
+            return if above + depth > MAX_DEPTH { Err(self.too_deep(start)) } else { Ok(*depth) };
+        }
+        self.open.push((start.id(), kind));
+        let is_clip = start.has_tag_name((super::ROOT.0, "clipPath"));
+        let mut deepest = 0;
+        let mut left = vec![(start, 0, inherited(start))];
+        while let Some((node, level, mut paints)) = left.pop() {
+            if above + level > MAX_DEPTH {
+                return Err(self.too_deep(node));
+            }
+            deepest = deepest.max(level);
+            for (paint, name) in paints.iter_mut().zip(["fill", "stroke"]) {
+                if let Some(value) = property(node, name).filter(|value| *value != "inherit") {
+                    *paint = (Some(value), false);
+                }
+            }
+            for (kind, target, is_outside) in self.references(node, &paints, is_clip) {
+                if let Some(at) = self.open.iter().position(|(id, _)| *id == target.id()) {
+                    if self.is_endless(at, kind, is_outside) {
+                        return Err(self.circle(node, target));
+                    }
+                    continue;
+                }
+                let around = level + REFERENCE;
+                deepest = deepest.max(around + self.depth(target, kind, above + around)?);
+            }
+            let children = node.children().filter(Node::is_element);
+            left.extend(children.map(|child| (child, level + 1, paints)));
+        }
+        self.open.pop();
+        self.depths.insert(start.id(), deepest);
+        Ok(deepest)
+    }
+
+    /// What an element refers to where it is drawn; clip paths have neither paint nor mask.
+    fn references(
+        &self,
+        node: Node<'a, 'i>,
+        paints: &Paints<'a>,
+        is_clip: bool,
+    ) -> Vec<(Kind, Node<'a, 'i>, bool)> {
+        let mut found = Vec::new();
+        let is_shape = SHAPES.contains(&node.tag_name().name());
+        for (name, kind) in PROPERTIES {
+            let (value, is_outside) = match kind {
+                Kind::Fill if is_shape && !is_clip => paints[0],
+                Kind::Stroke if is_shape && !is_clip => paints[1],
+                Kind::Fill | Kind::Stroke => (None, false),
+                Kind::ClipPath => (property(node, name), false),
+                _ if is_clip => (None, false),
+                _ => (property(node, name), false),
+            };
+            let target = value.and_then(target_of).and_then(|id| self.ids.get(id));
+            let target = target.filter(|target| kind.fits(target.tag_name().name()));
+            found.extend(target.map(|target| (kind, *target, is_outside)));
+        }
+        let href = node.attributes().find(|a| a.name() == "href").map(|a| a.value());
+        let target = href.and_then(|href| self.ids.get(href.trim().strip_prefix('#')?));
+        found.extend(target.map(|target| (Kind::Href, *target, false)));
+        found
+    }
+
+    /// Whether usvg would follow a circle without end, that closes by a reference to what was opened `at`: it cuts
+    /// those of one or two elements of the same kind, and all with a marker or of `href` alone.
+    fn is_endless(&self, at: usize, kind: Kind, is_outside: bool) -> bool {
+        let within = self.open.get(at + 1..).unwrap_or_default().iter().map(|(_, kind)| *kind);
+        let kinds: Vec<Kind> = within.chain([kind]).collect();
+        let is_alike = kinds.iter().all(|other| *other == kind);
+        let is_cut = is_alike && (kinds.len() <= 2 || kind == Kind::Href) && !is_outside;
+        !is_cut && !kinds.contains(&Kind::Marker)
+    }
+
+    fn place(&self, node: Node<'_, '_>) -> (u64, u64) {
+        let at = self.document.text_pos_at(node.range().start);
+        (at.row.into(), at.col.into())
+    }
+
+    fn circle(&self, node: Node<'_, '_>, target: Node<'_, '_>) -> Error {
+        let ((line, column), id) = (self.place(node), target.attribute("id").unwrap_or_default());
+        let id = crate::text::quote(id.as_bytes());
+        Error::line(
+            line,
+            column,
+            format!("references go in a circle: this one to `#{id}` closes it"),
+        )
+    }
+
+    fn too_deep(&self, node: Node<'_, '_>) -> Error {
+        let (line, column) = self.place(node);
+        let message =
+            format!("elements and what they refer to are more than {MAX_DEPTH} levels deep");
+        Error::line(line, column, message)
+    }
+}
+
+/// Fill and stroke that are said around an element.
+fn inherited<'a>(node: Node<'a, '_>) -> Paints<'a> {
+    ["fill", "stroke"].map(|name| {
+        let said = node.ancestors().skip(1).filter_map(|around| property(around, name));
+        (said.filter(|value| *value != "inherit").next(), true)
+    })
+}
+
+/// What an element itself says of a property: its style before its attribute.
+fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    let declared = node.attribute("style").and_then(|style| {
+        let mut declarations = style.split(';').filter_map(|d| d.split_once(':'));
+        declarations.rfind(|(declared, _)| declared.trim() == name).map(|(_, value)| value.trim())
+    });
+    declared.or_else(|| node.attribute(name).map(str::trim))
+}
+
+/// The `id` in `url(#id)`.
+fn target_of(value: &str) -> Option<&str> {
+    let (inside, _) = value.split_once("url(")?.1.split_once(')')?;
+    inside.trim().trim_matches(['"', '\'']).strip_prefix('#')
+}
