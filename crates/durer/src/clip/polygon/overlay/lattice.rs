@@ -335,14 +335,20 @@ impl Lattice {
         let cell = match cell {
             None => power_of_two((half / (DEFAULT_REACH - 2.0)).max(farthest * f64::EPSILON)),
             Some(size) if size.is_normal() && size > 0.0 => size,
-            Some(size) => return Err(Error::parameter("grid", size, "a finite size above zero")),
+            Some(size) => {
+                let expected = "a finite size above zero, from 2.3e-308 on";
+                return Err(Error::parameter("grid", format!("{size:e}"), expected));
+            }
         };
         let origin = (middle / cell).round() * cell;
         let origin = if origin.is_finite() { origin } else { middle };
         let reach = (half / cell).ceil() + 1.0;
         if reach > i64::LIMIT as f64 || farthest / cell > 2f64.powi(52) {
+            // Twice the finest: it is told with one digit.
+            let enough = 2.0 * (half / (i64::LIMIT - 2) as f64).max(farthest / 2f64.powi(52));
+            let value = format!("{cell:e}, where {enough:.0e} would do");
             let expected = "coarse enough for 2^41 cells across and 2^52 from the origin";
-            return Err(Error::parameter("grid", cell, expected));
+            return Err(Error::parameter("grid", value, expected));
         }
         Ok(Self { origin, cell, reach })
     }
