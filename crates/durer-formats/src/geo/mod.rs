@@ -47,8 +47,13 @@ struct Warnings {
 }
 
 impl Warnings {
+    /// Whether no more are kept.
+    fn are_many(&self) -> bool {
+        self.kept.len() >= MAX_WARNINGS
+    }
+
     fn push(&mut self, place: crate::Place, message: impl Into<String>) {
-        if self.kept.len() < MAX_WARNINGS {
+        if !self.are_many() {
             self.kept.push(crate::Warning { place, message: message.into() });
         } else {
             self.more += 1;

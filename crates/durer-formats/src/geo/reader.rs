@@ -17,12 +17,12 @@ pub struct Reader<R> {
 
 enum Source<R> {
     GeoJson(geojson::Reader<R>),
+    Wkt(Vec<u8>, wkt::Mark),
     /// Bytes, and how many have been read.
-    Wkt(Vec<u8>, usize),
     Wkb(Vec<u8>, usize),
     /// Text, bytes read, lines read.
     WkbHex(Vec<u8>, usize, u64),
-    Ready(std::vec::IntoIter<Feature>),
+    Svg(svg_shapes::Reader),
 }
 
 impl<R: Read> Reader<R> {
@@ -30,21 +30,18 @@ impl<R: Read> Reader<R> {
     ///
     /// # Errors
     /// [`Error::Io`] where the source cannot be read, [`Error::Limit`] where a format that is held
-    /// whole is longer than 4 GiB, and what is wrong with an SVG.
+    /// whole is longer than 4 GiB.
     pub fn new(format: GeoFormat, source: R) -> Result<Self> {
-        let mut warnings = Warnings::default();
         let source = match format {
             GeoFormat::GeoJson | GeoFormat::GeoJsonSeq | GeoFormat::GeoJsonRs => {
                 Source::GeoJson(geojson::Reader::new(source))
             }
-            GeoFormat::Wkt => Source::Wkt(text(source)?, 0),
+            GeoFormat::Wkt => Source::Wkt(text(source)?, wkt::Mark::default()),
             GeoFormat::Wkb => Source::Wkb(whole(source)?, 0),
             GeoFormat::WkbHex => Source::WkbHex(text(source)?, 0, 0),
-            GeoFormat::Svg => {
-                Source::Ready(svg_shapes::read(&text(source)?, &mut warnings)?.into_iter())
-            }
+            GeoFormat::Svg => Source::Svg(svg_shapes::Reader::new(text(source)?)),
         };
-        Ok(Self { source, warnings })
+        Ok(Self { source, warnings: Warnings::default() })
     }
 
     /// The next feature; `None` at the end. After an error there is nothing more to be had.
@@ -59,11 +56,10 @@ impl<R: Read> Reader<R> {
                 move_warnings(reader.warnings(), &mut self.warnings);
                 feature
             }
-            Source::Wkt(text, at) => {
-                let mut reader = wkt::Reader::new(text);
-                reader.resume(*at);
+            Source::Wkt(text, mark) => {
+                let mut reader = wkt::Reader::new(text, *mark);
                 let feature = reader.next_feature();
-                *at = reader.offset();
+                *mark = reader.mark();
                 move_warnings(&mut reader.warnings, &mut self.warnings);
                 feature
             }
@@ -76,7 +72,7 @@ impl<R: Read> Reader<R> {
                 feature
             }
             Source::WkbHex(text, at, line) => next_hex(text, at, line, &mut self.warnings),
-            Source::Ready(features) => Ok(features.next()),
+            Source::Svg(reader) => reader.next_feature(&mut self.warnings),
         }
     }
 

@@ -58,29 +58,38 @@ fn tag(word: &str) -> Option<(usize, Option<Dimensions>)> {
     })
 }
 
+/// How far a text has been read.
+#[derive(Debug, Clone, Copy)]
+pub struct Mark {
+    /// The next byte.
+    at: usize,
+    /// The last place that was told: byte, line, and where the line begins.
+    told: (usize, u64, usize),
+}
+
+impl Default for Mark {
+    fn default() -> Self {
+        Self { at: 0, told: (0, 1, 0) }
+    }
+}
+
 /// Reads geometries one after the other.
 pub struct Reader<'a> {
     text: &'a [u8],
     at: usize,
-    /// The last place that was told: byte, line, and where the line begins.
     told: (usize, u64, usize),
     pub warnings: Warnings,
 }
 
 impl<'a> Reader<'a> {
-    /// Reads from a byte on; `told` is where the last error or warning was.
-    pub fn new(text: &'a [u8]) -> Self {
-        Self { text, at: 0, told: (0, 1, 0), warnings: Warnings::default() }
+    /// Reads from a mark on.
+    pub fn new(text: &'a [u8], Mark { at, told }: Mark) -> Self {
+        Self { text, at, told, warnings: Warnings::default() }
     }
 
-    /// The byte after what has been read.
-    pub fn offset(&self) -> usize {
-        self.at
-    }
-
-    /// Goes on from a byte.
-    pub fn resume(&mut self, at: usize) {
-        self.at = at;
+    /// How far it has come.
+    pub fn mark(&self) -> Mark {
+        Mark { at: self.at, told: self.told }
     }
 
     fn peek(&mut self) -> Option<u8> {
@@ -162,10 +171,18 @@ impl<'a> Reader<'a> {
         if !self.take(b'=') {
             return Err(self.expected("`=` after SRID"));
         }
-        let number = crate::number::integer(self.text.get(self.at..).unwrap_or_default());
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let number = crate::number::integer(rest);
         let Some((srid, length)) = number.and_then(|(n, l)| Some((i32::try_from(n).ok()?, l)))
         else {
-            return Err(self.expected("the number of a coordinate system"));
+            let digits = rest.iter().take_while(|b| matches!(b, b'-' | b'+' | b'0'..=b'9')).count();
+            return Err(match rest.get(..digits).filter(|digits| digits.len() > 1) {
+                Some(digits) => {
+                    let digits = crate::text::quote(digits);
+                    self.error(format!("the SRID {digits} must lie in -2147483648 to 2147483647"))
+                }
+                None => self.expected("the number of a coordinate system"),
+            });
         };
         self.at += length;
         if self.take(b';') { Ok(Some(srid)) } else { Err(self.expected("`;` after the SRID")) }

@@ -1,7 +1,7 @@
 //! Geodata: all formats give back what they were given, and errors say where.
 
 use durer::clip::polygon::FillRule;
-use durer::math::DVec2;
+use durer::math::{DVec2, Rect};
 use durer_formats::geo::{
     Dimensions, Feature, GeoFormat, Geometry, Points, Reader, Writer, read_all,
 };
@@ -159,7 +159,6 @@ fn errors_of_geojson_say_where() {
         ("{\"type\":\"FeatureCollection\",\"features\":[{\"type\":", "ends within a value"),
         ("{\"features\":[]}", "line 1, column 1: an object with features"),
         ("[1,2]", "line 1, column 1: a GeoJSON object"),
-        ("", "no GeoJSON"),
     ] {
         let message = error(GeoFormat::GeoJson, text.as_bytes());
         assert!(message.contains(expected), "{text}: {message}");
@@ -309,6 +308,227 @@ fn fill_rules_of_svg_are_read_where_they_stand() {
         read_all(text.as_bytes(), "").expect("read").0.iter().map(|f| f.fill_rule).collect();
     let (odd, not) = (FillRule::EvenOdd, FillRule::NonZero);
     assert_eq!(found, [not, odd, not, odd, odd, odd, odd]);
+}
+
+/// Names and bounds of all shapes, and the warnings.
+fn svg_shapes(content: &str) -> (Vec<(String, Rect)>, Vec<String>) {
+    let (all, warnings) = read_all(format!("<svg>{content}</svg>").as_bytes(), "").expect("read");
+    let shapes = all.iter().map(|f| {
+        let bounds = f.geometry.as_ref().and_then(Geometry::bounds).expect("a shape");
+        (f.id.clone().unwrap_or_default(), bounds)
+    });
+    (shapes.collect(), warnings.iter().map(ToString::to_string).collect())
+}
+
+#[test]
+fn what_an_svg_does_not_draw_is_left_out() {
+    let rect = "<rect width='2' height='1'/>";
+    for around in ["defs", "clipPath", "mask", "symbol", "pattern", "marker", "metadata"] {
+        let (shapes, warnings) = svg_shapes(&format!("<{around}><g>{rect}</g></{around}>"));
+        assert!(shapes.is_empty() && warnings.is_empty(), "{around}: {shapes:?} {warnings:?}");
+    }
+    for (content, count) in [
+        (format!("<g display='none'>{rect}<g display='inline'>{rect}</g></g>{rect}"), 1),
+        (format!("<g style='DISPLAY: none'>{rect}</g>"), 0),
+        (format!("<g visibility='hidden'>{rect}<g visibility='visible'>{rect}</g></g>"), 1),
+        (format!("<g style='display:none!important;display:inline'>{rect}</g>"), 0),
+        (format!("<g style='/*display:none*/'>{rect}</g>"), 1),
+        (format!("<defs><text>a</text></defs>{rect}"), 1),
+    ] {
+        let (shapes, warnings) = svg_shapes(&content);
+        assert_eq!((shapes.len(), warnings.len()), (count, 0), "{content}: {warnings:?}");
+    }
+}
+
+#[test]
+fn uses_of_svg_show_shapes_elsewhere() {
+    let rect =
+        |x: f64, y: f64| Rect::new(DVec2::new(x, -y - 1.0), DVec2::new(x + 2.0, -y)).unwrap();
+    let shape = "<rect id='r' width='2' height='1'/>";
+    for (content, expected) in [
+        (
+            format!("<defs>{shape}</defs><use href='#r' x='3' y='4'/>"),
+            vec![("\"r\"", rect(3.0, 4.0))],
+        ),
+        // Before the shape, by XLink, in another place, with a name of its own.
+        (
+            format!("<use id='u' xlink:href='#r' transform='translate(5)' x='1'/>{shape}"),
+            vec![("\"u\"", rect(6.0, 0.0)), ("\"r\"", rect(0.0, 0.0))],
+        ),
+        (
+            format!("<symbol id='s'><g>{shape}</g></symbol><g id='g'><use href='#s' x='1'/></g>"),
+            vec![("\"g\"", rect(1.0, 0.0))],
+        ),
+        (
+            format!(
+                "<defs>{shape}<use id='v' href='#r' x='1'/></defs><use href='#v' x='2'><title/></use>{shape}"
+            ),
+            vec![("\"v\"", rect(3.0, 0.0)), ("\"r\"", rect(0.0, 0.0))],
+        ),
+        (
+            format!(
+                "<defs><g id='g'>{shape}<path d='M0 0h2v1z'/></g></defs><use href='#g' y='7'/>"
+            ),
+            vec![("\"r\"", rect(0.0, 7.0)), ("\"g\"", rect(0.0, 7.0))],
+        ),
+    ] {
+        let expected: Vec<_> = expected.into_iter().map(|(id, r)| (id.to_owned(), r)).collect();
+        assert_eq!(svg_shapes(&content), (expected, vec![]), "{content}");
+    }
+    let text = format!(
+        "<svg fill-rule='nonzero'><defs>{shape}</defs><use href='#r' fill-rule='evenodd'/></svg>"
+    );
+    assert_eq!(read_all(text.as_bytes(), "").expect("read").0[0].fill_rule, FillRule::EvenOdd);
+}
+
+#[test]
+fn uses_of_svg_that_cannot_be_followed_are_told() {
+    for (content, told) in [
+        ("<use/>", "needs an `href`"),
+        ("<use href='#a'/>", "`use` of `#a`, which is not there"),
+        ("<use href='b.svg#a'/>", "is in another file"),
+        ("<g id='a'><use href='#a'/></g>", "which it is part of"),
+        ("<use id='a' href='#a'/>", "which it is part of"),
+        (
+            "<symbol id='a' viewBox='0 0 1 1'><rect/></symbol><use href='#a'/>",
+            "`viewBox` of a `symbol`",
+        ),
+        ("<svg viewBox='0 0 9 9'><rect width='1' height='1'/></svg>", "`viewBox` of a `svg`"),
+    ] {
+        let (shapes, warnings) = svg_shapes(content);
+        assert!(shapes.is_empty(), "{content}: {shapes:?}");
+        assert!(warnings.len() == 1 && warnings[0].contains(told), "{content}: {warnings:?}");
+    }
+    let ring = "<use id='a' href='#b'/><use id='b' href='#c'/><use id='c' href='#a'/>";
+    let (shapes, warnings) = svg_shapes(ring);
+    assert_eq!((shapes.len(), warnings.len()), (0, 3), "{warnings:?}");
+    // Forty levels of two would be 2⁴⁰ shapes.
+    let doubled: String = (0..40)
+        .map(|i| format!("<g id='g{}'><use href='#g{i}'/><use href='#g{i}'/></g>", i + 1))
+        .collect();
+    let text = format!("<svg><defs><path id='g0' d=''/>{doubled}</defs><use href='#g40'/></svg>");
+    let told = error(GeoFormat::Svg, text.as_bytes());
+    assert!(told.contains("the text that `use` shows of 671"), "{told}");
+}
+
+#[test]
+fn lengths_of_svg_have_units() {
+    let wide = |length: &str| {
+        let (shapes, warnings) = svg_shapes(&format!("<rect width='{length}' height='1'/>"));
+        (shapes.first().map(|(_, bounds)| bounds.size().x), warnings)
+    };
+    for (length, pixels) in [
+        ("3px", 3.0),
+        ("1in", 96.0),
+        ("2.54cm", 96.0),
+        ("25.4MM", 96.0),
+        ("9pt ", 12.0),
+        ("1pc", 16.0),
+    ] {
+        let (found, warnings) = wide(length);
+        let found = found.expect("a rectangle");
+        assert!((found - pixels).abs() < 1e-9 && warnings.is_empty(), "{length}: {found}");
+    }
+    for length in ["50%", "2em", "3 4", "1furlong"] {
+        let (found, warnings) = wide(length);
+        let told = format!("`width` is `{length}`; a number, or one in px,");
+        assert!(found.is_none() && warnings[0].contains(&told), "{length}: {warnings:?}");
+    }
+}
+
+#[test]
+fn declarations_of_svg_follow_css() {
+    let rule = |style: &str| {
+        let text = format!("<svg><path d='M0 0h9v9h-9z' {style}/></svg>");
+        let (all, warnings) = read_all(text.as_bytes(), "").expect("read");
+        (all[0].fill_rule, warnings.len())
+    };
+    let (odd, not) = (FillRule::EvenOdd, FillRule::NonZero);
+    for (style, expected) in [
+        ("style='fill:red/*;*/;fill-rule:/**/evenodd'", (odd, 0)),
+        ("style='fill-rule:evenodd ! important;fill-rule:nonzero'", (odd, 0)),
+        ("style='fill-rule:nonzero;fill-rule:evenodd'", (odd, 0)),
+        ("style='Fill-Rule:EvenOdd'", (odd, 0)),
+        ("style='fill-rule:evenodd /* without end'", (odd, 0)),
+        ("style='/*fill-rule:evenodd'", (not, 0)),
+        ("fill-rule='odd'", (not, 1)),
+    ] {
+        assert_eq!(rule(style), expected, "{style}");
+    }
+}
+
+#[test]
+fn bad_svg_is_told() {
+    for (text, told) in [
+        ("<svg><g>", "line 1, column 9: the file ends within `g`"),
+        ("<svg></g></svg>", "`</svg>` is expected, not `</g>`"),
+        ("<svg/></svg>", "`svg` ends, but has not begun"),
+        ("<svg/><svg/>", "a second element"),
+        ("<kml><svg/></kml>", "the document is a `kml`"),
+        ("<svg/>\nwords", "text stands outside"),
+        ("<!-- nothing -->", "there is no svg element"),
+        ("", "there is no svg element"),
+    ] {
+        let found = error(GeoFormat::Svg, text.as_bytes());
+        assert!(found.contains(told), "{text}: {found}");
+    }
+    for (shape, count, told) in [
+        ("<polygon points='0,0 1,0 1,1 2'/>", 1, "an x without a y"),
+        ("<rect width='-1' height='1'/>", 0, "`width` is -1"),
+        ("<circle r='-1'/>", 0, "`r` is -1"),
+        ("<switch><rect width='1' height='1'/></switch>", 1, "`switch` draws one"),
+        ("<style>path{fill-rule:evenodd}</style>", 0, "style sheets are not read"),
+    ] {
+        let (shapes, warnings) = svg_shapes(shape);
+        assert_eq!((shapes.len(), warnings.len()), (count, 1), "{shape}: {warnings:?}");
+        assert!(warnings[0].contains(told), "{shape}: {warnings:?}");
+    }
+    // A million curves are 16 positions each, and no more are held.
+    let long = format!("<path d='M0 0{}'/>", "q1 0 1 1".repeat((1 << 20) + 1));
+    let (shapes, warnings) = svg_shapes(&long);
+    assert!(shapes.is_empty() && warnings[0].contains("more than 16777216 positions"));
+    // Shapes before the fault are had.
+    let mut reader =
+        Reader::new(GeoFormat::Svg, &b"<svg><path d='M0 0h1'/><g>"[..]).expect("a reader");
+    assert!(reader.next_feature().expect("a shape").is_some());
+    assert!(reader.next_feature().is_err());
+}
+
+/// The place of each thing is counted on from the one before: it was counted from the start, once for each.
+#[test]
+fn many_small_things_take_no_longer_than_few_large_ones() {
+    let points: String = (0..200_000).map(|i| format!("POINT ({i} 1)\n")).collect();
+    assert_eq!(features(GeoFormat::Wkt, points.as_bytes()).len(), 200_000);
+    let words = format!("<svg>{}</svg>", "<text>a</text>\n".repeat(200_000));
+    assert_eq!(read_all(words.as_bytes(), "").expect("read").1.len(), 1000);
+    let late = format!("{points}POINT (1)");
+    assert!(error(GeoFormat::Wkt, late.as_bytes()).starts_with("line 200001, column 9:"));
+}
+
+#[test]
+fn files_with_nothing_in_them_have_no_features() {
+    for format in GeoFormat::ALL.into_iter().filter(|f| *f != GeoFormat::Svg) {
+        assert_eq!(features(format, b""), [], "{format}");
+    }
+    let nothing = [GeoFormat::GeoJson, GeoFormat::GeoJsonSeq, GeoFormat::GeoJsonRs, GeoFormat::Wkt];
+    for format in nothing {
+        assert_eq!(features(format, b" \n"), [], "{format}");
+    }
+}
+
+#[test]
+fn numbers_of_coordinate_systems_fit_32_bits() {
+    for (text, told) in [
+        (
+            "SRID=99999999999;POINT(1 2)",
+            "the SRID 99999999999 must lie in -2147483648 to 2147483647",
+        ),
+        ("SRID=99999999999999999999999;POINT(1 2)", "the SRID 99999999999999999999999 must"),
+        ("SRID=x;POINT(1 2)", "the number of a coordinate system is expected, not `x`"),
+    ] {
+        let found = error(GeoFormat::Wkt, text.as_bytes());
+        assert!(found.contains(told), "{found}");
+    }
 }
 
 #[test]

@@ -231,11 +231,7 @@ impl<R: Read> Reader<R> {
         }
         while self.stream.take(0x1e)? {}
         if self.stream.next()?.is_none() {
-            return if self.documents > 0 {
-                Ok(false)
-            } else {
-                Err(self.stream.error("there is no GeoJSON in the file"))
-            };
+            return Ok(false);
         }
         self.documents += 1;
         self.collection = self.stream.here;
