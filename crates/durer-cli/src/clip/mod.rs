@@ -175,7 +175,7 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
     let found = args
         .to
         .or(named)
-        .or(stream.then_some(from))
+        .or(stream.then_some(from).filter(fits))
         .or(args.region.tiles.map(|_| GeoFormat::GeoJson));
     let Some(format) = found else {
         let suffixes = GeoFormat::ALL.map(|f| f.suffixes()[0]).join(", .");
@@ -216,6 +216,9 @@ fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, re
              extent, may be lost at {} features",
             report.lost
         ));
+    }
+    if report.given.features == 0 {
+        found.push("there is no feature in it".to_owned());
     }
     found.extend(report.srids.told(&report.mask_srids, joins(args), to));
     let (lines, points) = (report.given.lines, report.given.points);

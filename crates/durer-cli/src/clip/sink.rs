@@ -2,6 +2,7 @@
 
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
+use crate::input::is_stream;
 use crate::output::is_special;
 use durer_formats::Error;
 use std::fs::{File, OpenOptions};
@@ -63,6 +64,7 @@ impl Sink {
 
 /// What went wrong with writing, in the command's words.
 pub fn failure(name: &Path, error: &Error) -> Failure {
+    let name = if is_stream(name) { Path::new("standard output") } else { name };
     match error {
         Error::Io(e) if e.kind() == io::ErrorKind::BrokenPipe => Failure::ClosedPipe,
         Error::Io(e) => Failure::of_file(name, in_words(e)),

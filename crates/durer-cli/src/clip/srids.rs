@@ -3,35 +3,63 @@
 use durer_formats::geo::GeoFormat;
 
 /// Those of the features of a file.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Srids {
-    /// The first that was told.
-    first: Option<i32>,
-    /// Whether there was another one.
-    several: bool,
+    /// The first few of them, in the order in which they came.
+    first: Vec<i32>,
+    /// Whether there were more.
+    more: bool,
 }
+
+/// So many are told by number.
+const TOLD: usize = 4;
 
 impl Srids {
     pub fn add(&mut self, srid: Option<i32>) {
-        self.several |= self.first.is_some() && srid.is_some() && srid != self.first;
-        self.first = self.first.or(srid);
+        let Some(srid) = srid.filter(|srid| !self.first.contains(srid)) else { return };
+        if self.first.len() < TOLD {
+            self.first.push(srid);
+        } else {
+            self.more = true;
+        }
     }
 
     /// The one of all features that tell one.
-    pub fn common(self) -> Option<i32> {
-        self.first.filter(|_| !self.several)
+    pub fn common(&self) -> Option<i32> {
+        match self.first[..] {
+            [srid] => Some(srid),
+            _ => None,
+        }
+    }
+
+    /// All of them, as a message lists them.
+    fn names(&self) -> String {
+        let numbers: Vec<String> = self.first.iter().map(i32::to_string).collect();
+        let (name, more) = (if numbers.len() > 1 { "SRIDs" } else { "SRID" }, self.more);
+        format!("{name} {}{}", numbers.join(", "), if more { " and others" } else { "" })
     }
 
     /// What gets lost or does not fit.
-    pub fn told(self, mask: &Self, joined: bool, to: GeoFormat) -> Vec<String> {
+    pub fn told(&self, mask: &Self, joined: bool, to: GeoFormat) -> Vec<String> {
         let mut told = Vec::new();
-        let Some(srid) = self.first else { return told };
-        if mask.first.is_some_and(|of_mask| self.several || mask.several || of_mask != srid) {
-            told.push("the mask has another SRID; coordinates are taken as they are".to_owned());
+        if self.first.is_empty() {
+            return told;
+        }
+        let several = self.first.len() > 1;
+        let is_other = several || mask.first.len() > 1 || mask.first != self.first;
+        if is_other && !mask.first.is_empty() {
+            let [own, its] = [self.names(), mask.names()];
+            let message = format!("the mask has another SRID, {its} and not {own}");
+            told.push(format!("{message}; coordinates are taken as they are"));
         }
         if !matches!(to, GeoFormat::Wkt | GeoFormat::Wkb | GeoFormat::WkbHex) {
-            told.push(format!("SRID {srid} is left out: {} has no place for it", to.name()));
-        } else if joined && self.several {
+            let are = if several { "are" } else { "is" };
+            told.push(format!(
+                "{} {are} left out: {} has no place for it",
+                self.names(),
+                to.name()
+            ));
+        } else if joined && several {
             told.push("features of several SRIDs are joined; the result has none".to_owned());
         }
         told

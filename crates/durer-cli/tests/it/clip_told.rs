@@ -101,6 +101,74 @@ fn coordinate_systems_are_kept_or_named() {
 }
 
 #[test]
+fn all_coordinate_systems_are_named() {
+    let folder = Folder::new();
+    let points = |srids: std::ops::Range<u32>| {
+        srids.map(|s| format!("SRID={};POINT(1 1)\n", 3000 + s % 7)).collect::<String>()
+    };
+    folder.write("two.wkt", points(0..2));
+    folder.write("many.wkt", points(0..70));
+    for (name, told) in [
+        ("two", "SRIDs 3000, 3001 are left out: geojson"),
+        ("many", "SRIDs 3000, 3001, 3002, 3003 and others are left out"),
+    ] {
+        let ended = folder.must(&format!("clip {name}.wkt --window 0,0,9,9 -o o.geojson"));
+        assert!(ended.err.contains(told), "{}", ended.err);
+    }
+    folder.write("mask.wkt", "SRID=4326;POLYGON((0 0,9 0,9 9,0 0))");
+    let ended = folder.must("clip two.wkt --by mask.wkt -o o.wkt");
+    assert!(ended.err.contains("SRID 4326 and not SRIDs 3000, 3001"), "{}", ended.err);
+}
+
+#[test]
+fn a_full_standard_output_is_told_by_its_name() {
+    let Ok(full) = std::fs::OpenOptions::new().write(true).open("/dev/full") else { return };
+    let folder = Folder::new();
+    folder.write("a.wkt", "POINT(1 2)\n".repeat(20_000));
+    let mut command = folder.command("clip a.wkt --window 0,0,9,9 -o -");
+    let ended = Ended::of(command.stdout(full).output().unwrap());
+    ended.fails(1, "durer: standard output: ");
+}
+
+#[test]
+fn grids_too_fine_are_told_what_would_do() {
+    let folder = Folder::new();
+    folder.write("a.wkt", "POLYGON((0 0,9 0,9 9,0 0))");
+    for (grid, told) in [
+        ("1e-300", "grid is 1e-300, where 8e-12 would do; it must be coarse enough"),
+        ("1e-310", "grid is 1e-310; it must be a finite size above zero, from 2.3e-308 on"),
+    ] {
+        let line = format!("clip a.wkt --window 0,0,5,5 -o o.wkt --grid {grid}");
+        folder.run(&line).fails(1, told);
+    }
+    folder.must("clip a.wkt --window 0,0,5,5 -o o.wkt --grid 8e-12");
+}
+
+#[test]
+fn an_empty_file_of_any_format_has_no_features() {
+    let folder = Folder::new();
+    for suffix in ["geojson", "geojsonl", "geojsons", "wkt", "wkb", "hex"] {
+        let name = format!("empty.{suffix}");
+        folder.write(&name, "");
+        let ended = folder.must(&format!("clip {name} --window 0,0,5,5 -o o.geojson"));
+        let told = format!("{name}: there is no feature in it");
+        assert_eq!(ended.err.matches(&told).count(), 1, "{}", ended.err);
+        assert!(folder.read("o.geojson").starts_with(b"{\"type\":\"FeatureCollection\""));
+    }
+    folder.write("empty.svg", "");
+    folder.run("clip empty.svg --window 0,0,5,5 -o o.wkt").fails(1, "there is no svg element");
+}
+
+#[test]
+fn tiles_to_a_stream_are_geojson_whatever_comes_in() {
+    let folder = Folder::new();
+    let line = "clip - --tiles 0 -o -";
+    let tile = text(piped(&folder, line, b"POINT(1 2)"));
+    assert!(tile.contains("\"tile\":\"0/0/0\"") && tile.lines().count() == 1, "{tile}");
+    folder.run("clip - --tiles 0 -o a.wkt").fails(2, "tiles are written as GeoJSON");
+}
+
+#[test]
 fn masks_too_small_for_the_grid_are_told() {
     let folder = Folder::new();
     folder.write("a.wkt", "POLYGON((0 0,1 0,1 1,0 1,0 0))\nPOLYGON((0 0,1e6 0,1e6 1e6,0 1e6,0 0))");
