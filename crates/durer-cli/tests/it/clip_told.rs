@@ -1,7 +1,7 @@
 //! What `durer clip` says, and of which file; what it takes from a file beside geometry.
 
 use crate::clip::{folder, piped, text};
-use crate::harness::Folder;
+use crate::harness::{Ended, Folder};
 use serde_json::Value;
 
 #[test]
