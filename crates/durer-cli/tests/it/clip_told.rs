@@ -165,7 +165,8 @@ fn tiles_to_a_stream_are_geojson_whatever_comes_in() {
     let line = "clip - --tiles 0 -o -";
     let tile = text(piped(&folder, line, b"POINT(1 2)"));
     assert!(tile.contains("\"tile\":\"0/0/0\"") && tile.lines().count() == 1, "{tile}");
-    folder.run("clip - --tiles 0 -o a.wkt").fails(2, "tiles are written as GeoJSON");
+    folder.write("a.wkt", "POINT(1 2)");
+    folder.run("clip a.wkt --tiles 0 -o b.wkt").fails(2, "tiles are written as GeoJSON");
 }
 
 #[test]
