@@ -180,8 +180,8 @@ impl<'a, 'i> Walk<'a, 'i> {
 /// Fill and stroke that are said around an element.
 fn inherited<'a>(node: Node<'a, '_>) -> Paints<'a> {
     ["fill", "stroke"].map(|name| {
-        let said = node.ancestors().skip(1).filter_map(|around| property(around, name));
-        (said.filter(|value| *value != "inherit").next(), true)
+        let mut said = node.ancestors().skip(1).filter_map(|around| property(around, name));
+        (said.find(|value| *value != "inherit"), true)
     })
 }
 

@@ -100,7 +100,7 @@ fn declared(style: &str, property: &str) -> Option<String> {
             Some((value, word)) if word.trim().eq_ignore_ascii_case("important") => (value, true),
             _ => (value, false),
         };
-        if is_important || !found.is_some_and(|(is_important, _)| is_important) {
+        if is_important || found.is_none_or(|(is_important, _)| !is_important) {
             found = Some((is_important, value));
         }
     }

@@ -142,9 +142,8 @@ impl Walk {
             let (base, depth) = (frame.at, self.frames.len());
             let mut reader = events(text, base);
             loop {
-                match self.frames.last() {
-                    Some(frame) if frame.is_done => drop(self.frames.pop()),
-                    _ => {}
+                if self.frames.last().is_some_and(|frame| frame.is_done) {
+                    self.frames.pop();
                 }
                 if self.frames.len() != depth {
                     break;
