@@ -163,6 +163,15 @@ fn distance(chain: &Contours, p: DVec2) -> f64 {
     edges.map(to).fold(f64::INFINITY, f64::min)
 }
 
+fn is_finite(element: &PathElement) -> bool {
+    match *element {
+        PathElement::MoveTo(p) | PathElement::LineTo(p) => p.is_finite(),
+        PathElement::QuadTo(a, p) => a.is_finite() && p.is_finite(),
+        PathElement::CubicTo(a, b, p) => a.is_finite() && b.is_finite() && p.is_finite(),
+        PathElement::Close => true,
+    }
+}
+
 /// The path without what only moves, which has no stroke.
 fn drawn(path: &Path) -> Path {
     let (mut out, mut moved, mut open) = (Path::new(), None, false);
@@ -190,6 +199,10 @@ fn any_reach(
     stroke: &Stroke,
     outline: &Contours,
 ) -> Result<()> {
+    // Strokes leave out elements that are not finite; flattening keeps their ends.
+    if !path.elements().iter().all(is_finite) {
+        return Ok(());
+    }
     let chain = flatten(&drawn(path), 0.01);
     let near = |p: &DVec2| p.abs().max_element() <= NEAR;
     let few = chain.points().len() <= LONG && outline.points().len() <= LONG;
