@@ -206,7 +206,13 @@ fn any_reach(
     let chain = flatten(&drawn(path), 0.01);
     let near = |p: &DVec2| p.abs().max_element() <= NEAR;
     let few = chain.points().len() <= LONG && outline.points().len() <= LONG;
-    if !few || !chain.points().iter().all(near) || !(0.01..=NEAR).contains(&stroke.width) {
+    // What only moves counts for the size of a path, and so for its tolerance.
+    let is_near = path.bounds().is_some_and(|b| near(&b.min()) && near(&b.max()));
+    if !few
+        || !is_near
+        || !chain.points().iter().all(near)
+        || !(0.01..=NEAR).contains(&stroke.width)
+    {
         return Ok(());
     }
     let half = stroke.width / 2.0;
