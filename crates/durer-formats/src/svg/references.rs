@@ -2,6 +2,7 @@
 //! three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
 
 use crate::{Error, Result};
+use simplecss::{AttributeOperator, DeclarationTokenizer, Element as _, PseudoClass, StyleSheet};
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
@@ -61,13 +62,28 @@ pub fn check(document: &Document<'_>) -> Result<()> {
     for node in document.descendants().filter(|node| with_id(*node)) {
         ids.entry(node.attribute("id").unwrap_or_default()).or_insert(node);
     }
-    Walk { document, ids, depths: HashMap::new(), open: Vec::new() }
+    let sheet = sheet(document);
+    Walk { document, sheet: &sheet, ids, depths: HashMap::new(), open: Vec::new() }
         .depth(document.root_element(), Kind::Href, 0)
         .map(drop)
 }
 
+/// The rules of all style sheets that say what elements refer to, those that count least first.
+fn sheet<'a>(document: &'a Document<'_>) -> StyleSheet<'a> {
+    let mut sheet = StyleSheet::new();
+    for style in document.descendants().filter(|node| node.has_tag_name("style")) {
+        if style.attribute("type").is_none_or(|kind| kind == "text/css") {
+            sheet.parse_more(style.text().unwrap_or_default());
+        }
+    }
+    let refers = |name: &str| PROPERTIES.iter().any(|(known, _)| *known == name);
+    sheet.rules.retain(|rule| rule.declarations.iter().any(|said| refers(said.name)));
+    sheet
+}
+
 struct Walk<'a, 'i> {
     document: &'a Document<'i>,
+    sheet: &'a StyleSheet<'a>,
     ids: HashMap<&'a str, Node<'a, 'i>>,
     /// How deep the elements are that have been followed.
     depths: HashMap<NodeId, usize>,
@@ -78,6 +94,9 @@ struct Walk<'a, 'i> {
 /// What fill and stroke an element has from around it, and whether that was said outside of what is being followed.
 type Paints<'a> = [(Option<&'a str>, bool); 2];
 
+/// What is said of each of [`PROPERTIES`], fill and stroke first.
+type Said<'a> = [Option<&'a str>; PROPERTIES.len()];
+
 impl<'a, 'i> Walk<'a, 'i> {
     /// How many levels there are in an element and in what it refers to; `above` are around it.
     fn depth(&mut self, start: Node<'a, 'i>, kind: Kind, above: usize) -> Result<usize> {
@@ -87,18 +106,19 @@ impl<'a, 'i> Walk<'a, 'i> {
         self.open.push((start.id(), kind));
         let is_clip = start.has_tag_name((super::ROOT.0, "clipPath"));
         let mut deepest = 0;
-        let mut left = vec![(start, 0, inherited(start))];
+        let mut left = vec![(start, 0, self.inherited(start))];
         while let Some((node, level, mut paints)) = left.pop() {
             if above + level > MAX_DEPTH {
                 return Err(self.too_deep(node));
             }
             deepest = deepest.max(level);
-            for (paint, name) in paints.iter_mut().zip(["fill", "stroke"]) {
-                if let Some(value) = property(node, name).filter(|value| *value != "inherit") {
+            let said = self.said(node);
+            for (paint, said) in paints.iter_mut().zip(said) {
+                if let Some(value) = said.filter(|value| *value != "inherit") {
                     *paint = (Some(value), false);
                 }
             }
-            for (kind, target, is_outside) in self.references(node, &paints, is_clip) {
+            for (kind, target, is_outside) in self.references(node, &said, &paints, is_clip) {
                 if let Some(at) = self.open.iter().position(|(id, _)| *id == target.id()) {
                     if self.is_endless(at, kind, is_outside) {
                         return Err(self.circle(node, target));
@@ -120,19 +140,20 @@ impl<'a, 'i> Walk<'a, 'i> {
     fn references(
         &self,
         node: Node<'a, 'i>,
+        said: &Said<'a>,
         paints: &Paints<'a>,
         is_clip: bool,
     ) -> Vec<(Kind, Node<'a, 'i>, bool)> {
         let mut found = Vec::new();
         let is_shape = SHAPES.contains(&node.tag_name().name());
-        for (name, kind) in PROPERTIES {
+        for ((_, kind), said) in PROPERTIES.into_iter().zip(said) {
             let (value, is_outside) = match kind {
                 Kind::Fill if is_shape && !is_clip => paints[0],
                 Kind::Stroke if is_shape && !is_clip => paints[1],
                 Kind::Fill | Kind::Stroke => (None, false),
-                Kind::ClipPath => (property(node, name), false),
+                Kind::ClipPath => (*said, false),
                 _ if is_clip => (None, false),
-                _ => (property(node, name), false),
+                _ => (*said, false),
             };
             let target = value.and_then(target_of).and_then(|id| self.ids.get(id));
             let target = target.filter(|target| kind.fits(target.tag_name().name()));
@@ -152,6 +173,36 @@ impl<'a, 'i> Walk<'a, 'i> {
         let is_alike = kinds.iter().all(|other| *other == kind);
         let is_cut = is_alike && (kinds.len() <= 2 || kind == Kind::Href) && !is_outside;
         !is_cut && !kinds.contains(&Kind::Marker)
+    }
+
+    /// Fill and stroke that are said around an element.
+    fn inherited(&self, node: Node<'a, 'i>) -> Paints<'a> {
+        let mut paints = [(None, true); 2];
+        for around in node.ancestors().skip(1).filter(Node::is_element) {
+            for ((paint, _), said) in paints.iter_mut().zip(self.said(around)) {
+                *paint = paint.or(said.filter(|value| *value != "inherit"));
+            }
+            if paints.iter().all(|(paint, _)| paint.is_some()) {
+                break;
+            }
+        }
+        paints
+    }
+
+    /// What is said of each property for an element itself: by its style before the sheets and its attributes, but
+    /// for what is important.
+    fn said(&self, node: Node<'a, 'i>) -> Said<'a> {
+        let mut said = PROPERTIES.map(|(name, _)| (node.attribute(name), false));
+        let rules = self.sheet.rules.iter().filter(|rule| rule.selector.matches(&Styled(node)));
+        let own = DeclarationTokenizer::from(node.attribute("style").unwrap_or_default());
+        for declared in rules.flat_map(|rule| rule.declarations.iter().copied()).chain(own) {
+            for ((name, _), (value, important)) in PROPERTIES.iter().zip(&mut said) {
+                if *name == declared.name && (declared.important || !*important) {
+                    (*value, *important) = (Some(declared.value), declared.important);
+                }
+            }
+        }
+        said.map(|(value, _)| value.map(str::trim))
     }
 
     fn place(&self, node: Node<'_, '_>) -> (u64, u64) {
@@ -177,21 +228,29 @@ impl<'a, 'i> Walk<'a, 'i> {
     }
 }
 
-/// Fill and stroke that are said around an element.
-fn inherited<'a>(node: Node<'a, '_>) -> Paints<'a> {
-    ["fill", "stroke"].map(|name| {
-        let mut said = node.ancestors().skip(1).filter_map(|around| property(around, name));
-        (said.find(|value| *value != "inherit"), true)
-    })
-}
+/// An element as style sheets see it.
+struct Styled<'a, 'i>(Node<'a, 'i>);
 
-/// What an element itself says of a property: its style before its attribute.
-fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
-    let declared = node.attribute("style").and_then(|style| {
-        let mut declarations = style.split(';').filter_map(|d| d.split_once(':'));
-        declarations.rfind(|(declared, _)| declared.trim() == name).map(|(_, value)| value.trim())
-    });
-    declared.or_else(|| node.attribute(name).map(str::trim))
+impl simplecss::Element for Styled<'_, '_> {
+    fn parent_element(&self) -> Option<Self> {
+        self.0.parent_element().map(Styled)
+    }
+
+    fn prev_sibling_element(&self) -> Option<Self> {
+        self.0.prev_sibling_element().map(Styled)
+    }
+
+    fn has_local_name(&self, name: &str) -> bool {
+        self.0.tag_name().name() == name
+    }
+
+    fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
+        self.0.attribute(name).is_some_and(|value| operator.matches(value))
+    }
+
+    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
+        matches!(class, PseudoClass::FirstChild) && self.prev_sibling_element().is_none()
+    }
 }
 
 /// The `id` in `url(#id)`.

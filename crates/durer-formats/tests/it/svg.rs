@@ -279,6 +279,13 @@ fn references_in_a_circle_are_refused() {
         pattern("a", "", &shape("mask='url(#m)'"))
             + &format!("<mask id='m'>{}</mask>", filled("a"))
             + &filled("a"),
+        format!(
+            "<style>.a{{fill:url(#a)}} path.b{{fill:url(#b)}} .c{{fill:url(#c) !important}}</style>{}{}{}{}",
+            pattern("a", "", &shape("class='b'")),
+            pattern("b", "", &shape("class='c' style='fill:red'")),
+            pattern("c", "", &shape("class='a'")),
+            shape("class='a'")
+        ),
         pattern("a", "", &shape("style='fill: url( \"#b\" )'"))
             + &pattern("b", "", &shape("stroke='url(#a)'"))
             + &filled("b"),
@@ -293,6 +300,7 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b"], "mask", "mask"),
         ring(&["a", "b", "c"], "marker", "marker-start"),
         format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("fill='red'")), shape("")),
+        ring(&["a", "b", "c"], "pattern", "fill") + "<style>path{fill:red}</style>",
     ] {
         assert!(read(&body).is_ok(), "{body}");
     }
