@@ -2,7 +2,7 @@
 //! three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
 
 use crate::{Error, Result};
-use simplecss::{AttributeOperator, DeclarationTokenizer, Element as _, PseudoClass, StyleSheet};
+use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
