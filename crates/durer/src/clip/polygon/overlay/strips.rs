@@ -18,6 +18,9 @@ use super::parallel;
 /// Strips with no more segments than this are not halved.
 const FEW: usize = 12;
 
+/// Of more segments in one column, those that lie on each other are compared as one.
+const MANY: usize = 4 * FEW;
+
 /// About how many segments are in a group, if stairs keep them apart.
 const GROUP: usize = if cfg!(test) { 4 } else { 24 };
 
@@ -84,7 +87,8 @@ impl<C: Coord> Strips<C> {
         self.strip(segments, (left - 1, right + 1), 0);
     }
 
-    /// All pairs that cross, with their pixels; some pairs more than once.
+    /// All pairs that cross, with their pixels; some pairs more than once, and of segments that lie on each other
+    /// perhaps only the first.
     pub fn crossings(&self, mut f: impl FnMut(usize, usize, Point<C>)) {
         for &(i, j, p) in &self.found {
             f(i as usize, j as usize, p);
@@ -203,7 +207,15 @@ impl<C: Coord> Strips<C> {
     }
 
     fn compare_all(&mut self, segments: &[Segment<C>], start: usize) {
-        let list = &self.open[start..];
+        let mut distinct = Vec::new();
+        let mut list = &self.open[start..];
+        if list.len() > MANY {
+            let at = |i: u32| segments[i as usize];
+            distinct.extend_from_slice(list);
+            distinct.sort_unstable_by_key(|&i| (at(i).a, at(i).b, i));
+            distinct.dedup_by(|i, first| at(*i) == at(*first));
+            list = &distinct;
+        }
         for (k, &j) in list.iter().enumerate() {
             for &i in &list[..k] {
                 if let Some(p) = segments[i as usize].crossing(&segments[j as usize]) {
@@ -481,5 +493,33 @@ mod tests {
                 assert!(hits.eq(all));
             }
         }
+    }
+
+    #[test]
+    fn copies_of_segments_are_compared_once() {
+        let mut seed = 5;
+        let mut end = || Point::<i32>::new(spread(&mut seed, 2), spread(&mut seed, 30));
+        let few: Vec<Segment<i32>> = (0..40)
+            .map(|_| (end(), end()))
+            .filter(|(a, b)| a < b)
+            .map(|(a, b)| Segment { a, b })
+            .collect();
+        let segments: Vec<_> = few.iter().cycle().take(50 * few.len()).copied().collect();
+        let mut strips = Strips::default();
+        strips.build(&segments, 0, 2);
+        let (mut found, mut count) = (Vec::new(), 0);
+        strips.crossings(|i, j, p| {
+            assert_eq!(segments[i].crossing(&segments[j]), Some(p));
+            found.push(p);
+            count += 1;
+        });
+        let pairs = few.iter().flat_map(|s| few.iter().map(move |t| (s, t)));
+        let mut expected: Vec<_> = pairs.filter_map(|(s, t)| s.crossing(t)).collect();
+        for list in [&mut found, &mut expected] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        assert!(found == expected && !found.is_empty());
+        assert!(count < few.len() * few.len(), "{count}");
     }
 }
