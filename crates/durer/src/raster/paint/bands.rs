@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, u32x8};
+use fearless_simd_macros::simd;
 
 use super::color::Space;
 use super::command::{Item, Line, Prepared, sort_into_bands};
@@ -103,7 +104,7 @@ impl<'a, P: Space> Painter<'a, P> {
         let mut copy = self.spare.pop().unwrap_or_default();
         let background = self.canvas.background;
         if let Some(color) = background {
-            rows.fill(color);
+            dispatch!(level, simd => clear(simd, rows, color));
         }
         if let Some(base) = P::in_place(rows) {
             // Nothing painted over opaque pixels makes them less so.
@@ -307,6 +308,12 @@ impl<S: Simd, P: Space> Sink<S> for Plain<'_, P> {
             self.eight(simd, row, first, part_covered(simd, coverage, x.end - first));
         }
     }
+}
+
+/// [`fill`] of all rows, by the widest stores of the SIMD level.
+#[simd]
+fn clear<S: Simd>(_simd: S, pixels: &mut [Color], color: Color) {
+    fill(pixels, color);
 }
 
 /// Sets pixels; those in the middle perhaps twice, for then there are few lengths to be told apart.
