@@ -110,6 +110,8 @@ impl Drawing {
         warnings.append(&mut found.warnings);
         let amended = found.amended(text);
         let amended = amended.as_deref().and_then(|text| parse(text).ok());
+        // What cannot be used may have hidden what is inherited.
+        amended.as_ref().map_or(Ok(()), references::check)?;
         let (tree, told) = {
             let told = Told::default();
             let usvg_options = usvg::Options {

@@ -276,6 +276,10 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b", "c"], "clipPath", "clip-path"),
         pattern("a", "href='#b'", "") + &pattern("b", "", &filled("a")) + &filled("a"),
         format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("")), shape("")),
+        pattern("a", "fill='url(#b)'", &shape("fill='blakc'"))
+            + &pattern("b", "fill='url(#c)'", &shape("fill='blakc'"))
+            + &pattern("c", "fill='url(#a)'", &shape("fill='blakc'"))
+            + &filled("a"),
         pattern("a", "", &shape("mask='url(#m)'"))
             + &format!("<mask id='m'>{}</mask>", filled("a"))
             + &filled("a"),
