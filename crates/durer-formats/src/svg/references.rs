@@ -64,7 +64,7 @@ pub fn check(document: &Document<'_>) -> Result<()> {
     }
     let sheet = sheet(document);
     Walk { document, sheet: &sheet, ids, depths: HashMap::new(), open: Vec::new() }
-        .depth(document.root_element(), Kind::Href, 0)
+        .depth(document.root_element(), Kind::Href, 0, [(None, true); 2])
         .map(drop)
 }
 
@@ -85,8 +85,8 @@ struct Walk<'a, 'i> {
     document: &'a Document<'i>,
     sheet: &'a StyleSheet<'a>,
     ids: HashMap<&'a str, Node<'a, 'i>>,
-    /// How deep the elements are that have been followed.
-    depths: HashMap<NodeId, usize>,
+    /// How deep the elements are that have been followed, with the paints that they have from around them.
+    depths: HashMap<(NodeId, [Option<&'a str>; 2]), usize>,
     /// Those that are being followed, and how they were referred to.
     open: Vec<(NodeId, Kind)>,
 }
@@ -98,15 +98,22 @@ type Paints<'a> = [(Option<&'a str>, bool); 2];
 type Said<'a> = [Option<&'a str>; PROPERTIES.len()];
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// How many levels there are in an element and in what it refers to; `above` are around it.
-    fn depth(&mut self, start: Node<'a, 'i>, kind: Kind, above: usize) -> Result<usize> {
-        if let Some(depth) = self.depths.get(&start.id()) {
+    /// How many levels there are in an element and in what it refers to; `above` are around it, with these paints.
+    fn depth(
+        &mut self,
+        start: Node<'a, 'i>,
+        kind: Kind,
+        above: usize,
+        around: Paints<'a>,
+    ) -> Result<usize> {
+        let key = (start.id(), around.map(|(paint, _)| paint));
+        if let Some(depth) = self.depths.get(&key) {
             return if above + depth > MAX_DEPTH { Err(self.too_deep(start)) } else { Ok(*depth) };
         }
         self.open.push((start.id(), kind));
         let is_clip = start.has_tag_name((super::ROOT.0, "clipPath"));
         let mut deepest = 0;
-        let mut left = vec![(start, 0, self.inherited(start))];
+        let mut left = vec![(start, 0, around)];
         while let Some((node, level, mut paints)) = left.pop() {
             if above + level > MAX_DEPTH {
                 return Err(self.too_deep(node));
@@ -125,14 +132,17 @@ impl<'a, 'i> Walk<'a, 'i> {
                     }
                     continue;
                 }
-                let around = level + REFERENCE;
-                deepest = deepest.max(around + self.depth(target, kind, above + around)?);
+                let below = level + REFERENCE;
+                // What `use` shows has its paints from there.
+                let is_use = kind == Kind::Href && node.tag_name().name() == "use";
+                let around = if is_use { paints } else { self.inherited(target) };
+                deepest = deepest.max(below + self.depth(target, kind, above + below, around)?);
             }
             let children = node.children().filter(Node::is_element);
             left.extend(children.map(|child| (child, level + 1, paints)));
         }
         self.open.pop();
-        self.depths.insert(start.id(), deepest);
+        self.depths.insert(key, deepest);
         Ok(deepest)
     }
 

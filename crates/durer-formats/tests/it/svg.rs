@@ -276,6 +276,11 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b", "c"], "clipPath", "clip-path"),
         pattern("a", "href='#b'", "") + &pattern("b", "", &filled("a")) + &filled("a"),
         format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("")), shape("")),
+        pattern("a", "", "<use href='#r' fill='url(#b)'/>")
+            + &pattern("b", "", "<use href='#r' fill='url(#c)'/>")
+            + &pattern("c", "", "<use href='#r' fill='url(#a)'/>")
+            + &shape("id='r'")
+            + &filled("a"),
         pattern("a", "fill='url(#b)'", &shape("fill='blakc'"))
             + &pattern("b", "fill='url(#c)'", &shape("fill='blakc'"))
             + &pattern("c", "fill='url(#a)'", &shape("fill='blakc'"))
@@ -305,6 +310,8 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b", "c"], "marker", "marker-start"),
         format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("fill='red'")), shape("")),
         ring(&["a", "b", "c"], "pattern", "fill") + "<style>path{fill:red}</style>",
+        pattern("a", "", "<use href='#r' fill='red'/>")
+            + &format!("<g fill='url(#a)'>{}</g>", shape("id='r'")),
     ] {
         assert!(read(&body).is_ok(), "{body}");
     }
