@@ -58,9 +58,9 @@ const PROPERTIES: [(&str, Kind); 7] = [
 /// [`Error::Decode`] with the place of the element where a circle closes, or that is too deep.
 pub fn check(document: &Document<'_>) -> Result<()> {
     let with_id = |node: Node<'_, '_>| node.attribute("id").is_some();
-    let mut ids = HashMap::new();
+    let mut ids: HashMap<_, Vec<_>> = HashMap::new();
     for node in document.descendants().filter(|node| with_id(*node)) {
-        ids.entry(node.attribute("id").unwrap_or_default()).or_insert(node);
+        ids.entry(node.attribute("id").unwrap_or_default()).or_default().push(node);
     }
     let sheet = sheet(document);
     Walk { document, sheet: &sheet, ids, depths: HashMap::new(), open: Vec::new() }
@@ -84,7 +84,8 @@ fn sheet<'a>(document: &'a Document<'_>) -> StyleSheet<'a> {
 struct Walk<'a, 'i> {
     document: &'a Document<'i>,
     sheet: &'a StyleSheet<'a>,
-    ids: HashMap<&'a str, Node<'a, 'i>>,
+    /// Of several elements with the same id any may be meant.
+    ids: HashMap<&'a str, Vec<Node<'a, 'i>>>,
     /// How deep the elements are that have been followed, with the paints that they have from around them.
     depths: HashMap<(NodeId, [Option<&'a str>; 2]), usize>,
     /// Those that are being followed, and how they were referred to.
@@ -165,13 +166,14 @@ impl<'a, 'i> Walk<'a, 'i> {
                 _ if is_clip => (None, false),
                 _ => (*said, false),
             };
-            let target = value.and_then(target_of).and_then(|id| self.ids.get(id));
-            let target = target.filter(|target| kind.fits(target.tag_name().name()));
-            found.extend(target.map(|target| (kind, *target, is_outside)));
+            let targets = value.and_then(target_of).and_then(|id| self.ids.get(id));
+            let fitting = targets.into_iter().flatten();
+            let fitting = fitting.filter(|target| kind.fits(target.tag_name().name()));
+            found.extend(fitting.map(|target| (kind, *target, is_outside)));
         }
         let href = node.attributes().find(|a| a.name() == "href").map(|a| a.value());
-        let target = href.and_then(|href| self.ids.get(href.trim().strip_prefix('#')?));
-        found.extend(target.map(|target| (Kind::Href, *target, false)));
+        let targets = href.and_then(|href| self.ids.get(href.trim().strip_prefix('#')?));
+        found.extend(targets.into_iter().flatten().map(|target| (Kind::Href, *target, false)));
         found
     }
 

@@ -276,6 +276,8 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b", "c"], "clipPath", "clip-path"),
         pattern("a", "href='#b'", "") + &pattern("b", "", &filled("a")) + &filled("a"),
         format!("<g fill='url(#a)'>{}{}</g>", pattern("a", "", &shape("")), shape("")),
+        // Of several with one id usvg takes the last.
+        format!("<g id='a'/><g fill='url(#a)'>{}</g>", pattern("a", "", &shape("")) + &shape("")),
         pattern("a", "", "<use href='#r' fill='url(#b)'/>")
             + &pattern("b", "", "<use href='#r' fill='url(#c)'/>")
             + &pattern("c", "", "<use href='#r' fill='url(#a)'/>")
