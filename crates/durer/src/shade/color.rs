@@ -148,10 +148,10 @@ fn codes_x16<S: Simd>(simd: S, linear: &[f32; 16]) -> u32x16<S> {
     let linear = linear.simd_gt(least).select(linear, least);
     let linear = linear.simd_lt(most).select(linear, most);
     let bits: u32x16<S> = linear.bitcast();
-    let buckets: [u32; 16] = ((bits >> BUCKET_SHIFT) - FIRST_BUCKET).into();
+    let buckets: [u32; 16] = (((bits >> BUCKET_SHIFT) - FIRST_BUCKET) & 2047).into();
     let mut steps = [0; 16];
     for i in 0..16 {
-        steps[i] = BUCKET_STEP[(buckets[i] & 2047) as usize];
+        steps[i] = BUCKET_STEP[buckets[i] as usize % 2048];
     }
     let below = bits & ((1 << BUCKET_SHIFT) - 1);
     (u32x16::simd_from(simd, steps) + below) >> BUCKET_SHIFT
@@ -181,10 +181,23 @@ pub fn encode_unorm8(value: f32) -> u8 {
     (value * 255.0 + 0.5) as u8
 }
 
+/// The value of each of 256 equal steps over 0…1.
+static UNORM: [f32; 256] = unorm_table();
+
+const fn unorm_table() -> [f32; 256] {
+    let mut table = [0.0; 256];
+    let mut code = 0;
+    while code < 256 {
+        table[code] = code as f32 * (1.0 / 255.0);
+        code += 1;
+    }
+    table
+}
+
 /// The value of one of 256 equal steps over 0…1.
 #[inline(always)]
 pub fn decode_unorm8(code: u8) -> f32 {
-    f32::from(code) * (1.0 / 255.0)
+    UNORM[usize::from(code)]
 }
 
 /// Relative luminance of a linear colour with sRGB's primaries (ITU-R BT.709).

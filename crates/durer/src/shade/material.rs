@@ -9,13 +9,13 @@ use super::normal::{face_viewer, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::plain::Points;
 use super::sample::Sample;
-use super::slot::{Chains, Slot, Texel, Texels, sampled_x8};
+use super::slot::{Chains, Slot, Texel, Texels, sampled_x16};
 use super::surface::Surface;
 use super::texture::Usage;
 use super::{Shading, tone};
 use crate::math::{Vec3, Vec4};
 use crate::scene::{AlphaMode, Material, Scene, ShadingModel};
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, f32x16};
 use fearless_simd_macros::simd;
 
 /// Whether a formula takes Phong's inputs.
@@ -117,7 +117,7 @@ impl<'a> PreparedMaterial<'a> {
     }
 
     /// The one set of texture coordinates that all textures use, where samples of the material may
-    /// also be looked up eight at a time, by [`Self::shade_x8`]; nothing has vertex colours.
+    /// also be looked up sixteen at a time, by [`Self::shade_x16`]; nothing has vertex colours.
     pub fn looked_up_together(&self, shading: Shading) -> Option<usize> {
         let set = self.slots().next()?.set;
         let suits = |slot: &Slot<'_>| slot.set == set && slot.texture.suits_lanes();
@@ -125,22 +125,27 @@ impl<'a> PreparedMaterial<'a> {
         (together && self.slots().all(suits)).then_some(set)
     }
 
-    /// Linear red, green and blue of eight points and their alpha, each bit for bit what [`shade`] gives, but
-    /// that colours without alpha are not black; the material must be [looked up together](Self::looked_up_together). Cost: O(lights) and eight samples per
+    /// Whether [`Self::shade_x16`] asks how texture coordinates change over the screen.
+    pub fn has_levels(&self) -> bool {
+        self.slots().any(|slot| slot.texture.has_levels())
+    }
+
+    /// Linear red, green and blue of sixteen points and their alpha, each bit for bit what [`shade`] gives, but
+    /// that colours without alpha are not black; the material must be [looked up together](Self::looked_up_together). Cost: O(lights) and sixteen samples per
     /// texture.
     #[simd]
-    pub fn shade_x8<S: Simd>(
+    pub fn shade_x16<S: Simd>(
         simd: S,
         this: &Self,
-        points: &Points<f32x8<S>>,
-        at: &TexCoords<f32x8<S>>,
+        points: &Points<f32x16<S>>,
+        at: &TexCoords<f32x16<S>>,
         lights: &PreparedLights,
         shading: Shading,
-    ) -> (Vec3Lane<f32x8<S>>, f32x8<S>) {
+    ) -> (Vec3Lane<f32x16<S>>, f32x16<S>) {
         let like = points.position.x;
         let mut base = Vec3Lane::splat(like, this.base_color.truncate());
         let mut alpha = like.splat(this.base_color.w);
-        if let Some(texel) = sampled_x8(simd, &this.base_color_slot, at) {
+        if let Some(texel) = sampled_x16(simd, &this.base_color_slot, at) {
             base = base.times(texel.color());
             alpha *= texel.0[3];
         }
@@ -156,10 +161,10 @@ impl<'a> PreparedMaterial<'a> {
         }
         let frame = points.frame();
         let texels = Texels {
-            emissive: sampled_x8(simd, &this.emissive_slot, at),
-            occlusion: sampled_x8(simd, &this.occlusion_slot, at),
-            metallic_roughness: sampled_x8(simd, &this.metallic_roughness_slot, at),
-            specular: sampled_x8(simd, &this.specular_slot, at),
+            emissive: sampled_x16(simd, &this.emissive_slot, at),
+            occlusion: sampled_x16(simd, &this.occlusion_slot, at),
+            metallic_roughness: sampled_x16(simd, &this.metallic_roughness_slot, at),
+            specular: sampled_x16(simd, &this.specular_slot, at),
         };
         let inputs = this.inputs(like, base, &texels, shading);
         (formula::display(&frame, points.position, &inputs, None, lights, shading), alpha)

@@ -7,7 +7,7 @@ use super::surface::{Surface, TexCoord};
 use super::texture::{PreparedTexture, Usage};
 use crate::math::{Vec2, Vec4};
 use crate::scene::{MipFilter, Scene, TextureRef};
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, f32x16};
 use std::sync::Arc;
 
 /// A texture in its place.
@@ -34,9 +34,9 @@ impl Slot<'_> {
         self.texture.sample(at.uv, at.ddx, at.ddy)
     }
 
-    /// [`Self::sample`] of eight points; `at` is of the slot's own set.
+    /// [`Self::sample`] of sixteen points; `at` is of the slot's own set.
     #[inline(always)]
-    fn sample_x8<S: Simd>(&self, simd: S, at: &TexCoords<f32x8<S>>) -> [f32x8<S>; 4] {
+    fn sample_x16<S: Simd>(&self, simd: S, at: &TexCoords<f32x16<S>>) -> [f32x16<S>; 4] {
         let [x, y, offset] = self.columns;
         let (u, v) = ([x.x, y.x], [x.y, y.y]);
         let at = TexCoords {
@@ -44,7 +44,7 @@ impl Slot<'_> {
             ddx: [sum(at.ddx, u), sum(at.ddx, v)],
             ddy: [sum(at.ddy, u), sum(at.ddy, v)],
         };
-        PreparedTexture::sample_x8(simd, &self.texture, &at)
+        PreparedTexture::sample_x16(simd, &self.texture, &at)
     }
 }
 
@@ -62,7 +62,7 @@ impl<L: Lane> Texel<L> {
 
 /// A weighted sum of two coordinates.
 #[inline(always)]
-fn sum<S: Simd>([a, b]: [f32x8<S>; 2], [of_a, of_b]: [f32; 2]) -> f32x8<S> {
+fn sum<S: Simd>([a, b]: [f32x16<S>; 2], [of_a, of_b]: [f32; 2]) -> f32x16<S> {
     a * of_a + b * of_b
 }
 
@@ -74,15 +74,15 @@ pub(super) struct Texels<L> {
     pub specular: Option<Texel<L>>,
 }
 
-/// [`Slot::sample_x8`], where there is a slot.
+/// [`Slot::sample_x16`], where there is a slot.
 #[inline(always)]
-pub(super) fn sampled_x8<S: Simd>(
+pub(super) fn sampled_x16<S: Simd>(
     simd: S,
     slot: &Option<Slot<'_>>,
-    at: &TexCoords<f32x8<S>>,
-) -> Option<Texel<f32x8<S>>> {
+    at: &TexCoords<f32x16<S>>,
+) -> Option<Texel<f32x16<S>>> {
     match slot {
-        Some(slot) => Some(Texel(slot.sample_x8(simd, at))),
+        Some(slot) => Some(Texel(slot.sample_x16(simd, at))),
         None => None,
     }
 }

@@ -55,9 +55,9 @@ pub fn run_of(runs: &[Run], item: u32) -> usize {
 }
 
 /// Of sixteen pixels, eight in each of two rows, how far to the right and how far down they are.
-const COLUMNS: [f32; 16] =
+pub(super) const COLUMNS: [f32; 16] =
     [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-const ROWS: [f32; 16] =
+pub(super) const ROWS: [f32; 16] =
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
 
 /// Barycentric coordinates of one pixel.

@@ -1,32 +1,32 @@
-//! Texture coordinates of pixels of several triangles side by side.
+//! Texture coordinates of sixteen pixels side by side: eight in a row and the eight below them.
 
 use crate::math::Vec2;
 use crate::shade::TexCoords;
 use crate::shade::lane::Lane;
-use crate::visibility::surface::attributes::VisibleTriangle;
+use crate::visibility::surface::attributes::{COLUMNS, ROWS, VisibleTriangle};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, f32x16};
 
-/// Up to eight pixels with what their texture coordinates follow from; those not set hold what was
+/// Up to sixteen pixels with what their texture coordinates follow from; those not set hold what was
 /// there before.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct GatheredCoords {
     /// Edge functions: constants, changes along x, changes along y, each of the three edges.
-    edges: [[[f32; 8]; 3]; 3],
+    edges: [[[f32; 16]; 3]; 3],
     /// Where the edge functions are asked.
-    at: [[f32; 8]; 2],
+    at: [[f32; 16]; 2],
     /// u and v of each of the three corners.
-    corners: [[[f32; 8]; 3]; 2],
+    corners: [[[f32; 16]; 3]; 2],
 }
 
 /// Three numbers per lane, one for each corner.
-type Corners<S> = [f32x8<S>; 3];
+type Corners<S> = [f32x16<S>; 3];
 
 impl GatheredCoords {
     /// Sets the pixel `lane` to one of a triangle with these coordinates at its corners.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, t: &VisibleTriangle, [x, y]: [i32; 2], corners: [Vec2; 3]) {
-        let lane = lane % 8;
+        let lane = lane % 16;
         let (edges, [x, y]) = t.edge_functions(x, y);
         for (to, from) in self.edges.iter_mut().zip(edges) {
             for (to, from) in to.iter_mut().zip(from) {
@@ -39,22 +39,18 @@ impl GatheredCoords {
         }
     }
 
-    /// The coordinates and their change to the pixels beside and below, bit for bit as one by one.
+    /// The coordinates and, where it is `changing`, their change to the pixels beside and below, bit for bit as one by one.
     #[inline(always)]
-    pub fn coordinates<S: Simd>(&self, simd: S) -> TexCoords<f32x8<S>> {
+    pub fn coordinates<S: Simd>(&self, simd: S, changing: bool) -> TexCoords<f32x16<S>> {
         let [constant, dx, dy] = &self.edges;
         let edges = [three(simd, constant), three(simd, dx), three(simd, dy)];
-        let at = [f32x8::from_slice(simd, &self.at[0]), f32x8::from_slice(simd, &self.at[1])];
-        coordinates(
-            simd,
-            &edges,
-            at,
-            [three(simd, &self.corners[0]), three(simd, &self.corners[1])],
-        )
+        let at = [f32x16::from_slice(simd, &self.at[0]), f32x16::from_slice(simd, &self.at[1])];
+        let corners = [three(simd, &self.corners[0]), three(simd, &self.corners[1])];
+        coordinates(simd, &edges, at, corners, changing)
     }
 }
 
-/// The coordinates at eight pixels of one triangle in a row, and their change to the pixels beside
+/// The coordinates at sixteen pixels of one triangle, and, where it is `changing`, their change to the pixels beside
 /// and below; `corners` has those of its corners.
 #[inline(always)]
 pub fn coordinates_of_one<S: Simd>(
@@ -62,27 +58,29 @@ pub fn coordinates_of_one<S: Simd>(
     t: &VisibleTriangle,
     [x, y]: [i32; 2],
     corners: [Vec2; 3],
-) -> TexCoords<f32x8<S>> {
+    changing: bool,
+) -> TexCoords<f32x16<S>> {
     let (edges, [x, y]) = t.edge_functions(x, y);
-    let zero = simd.splat_f32x8(0.0);
+    let zero = simd.splat_f32x16(0.0);
     let mut all = [[zero; 3]; 3];
     for (all, edges) in all.iter_mut().zip(edges) {
         for (all, edge) in all.iter_mut().zip(edges) {
-            *all = simd.splat_f32x8(*edge);
+            *all = simd.splat_f32x16(*edge);
         }
     }
-    let columns = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + x;
+    let columns = f32x16::from_slice(simd, &COLUMNS) + x;
+    let rows = f32x16::from_slice(simd, &ROWS) + y;
     let (mut u, mut v) = ([zero; 3], [zero; 3]);
     for (i, corner) in corners.iter().enumerate() {
-        (u[i], v[i]) = (simd.splat_f32x8(corner.x), simd.splat_f32x8(corner.y));
+        (u[i], v[i]) = (simd.splat_f32x16(corner.x), simd.splat_f32x16(corner.y));
     }
-    coordinates(simd, &all, [columns, simd.splat_f32x8(y)], [u, v])
+    coordinates(simd, &all, [columns, rows], [u, v], changing)
 }
 
 #[inline(always)]
-fn three<S: Simd>(simd: S, [a, b, c]: &[[f32; 8]; 3]) -> Corners<S> {
-    let (a, b) = (f32x8::from_slice(simd, a), f32x8::from_slice(simd, b));
-    [a, b, f32x8::from_slice(simd, c)]
+fn three<S: Simd>(simd: S, [a, b, c]: &[[f32; 16]; 3]) -> Corners<S> {
+    let (a, b) = (f32x16::from_slice(simd, a), f32x16::from_slice(simd, b));
+    [a, b, f32x16::from_slice(simd, c)]
 }
 
 /// From edge functions, by constant and changes, and the coordinates of the corners.
@@ -90,20 +88,25 @@ fn three<S: Simd>(simd: S, [a, b, c]: &[[f32; 8]; 3]) -> Corners<S> {
 fn coordinates<S: Simd>(
     simd: S,
     edges: &[Corners<S>; 3],
-    [x, y]: [f32x8<S>; 2],
+    [x, y]: [f32x16<S>; 2],
     [u, v]: [Corners<S>; 2],
-) -> TexCoords<f32x8<S>> {
+    changing: bool,
+) -> TexCoords<f32x16<S>> {
     let here = weights(simd, edges_at(edges, x, y));
+    let uv = [blend(u, here), blend(v, here)];
+    if !changing {
+        let none = [simd.splat_f32x16(0.0); 2];
+        return TexCoords { uv, ddx: none, ddy: none };
+    }
     let right = weights_beside(simd, edges_at(edges, x + 1.0, y), here);
     let down = weights_beside(simd, edges_at(edges, x, y + 1.0), here);
-    let uv = [blend(u, here), blend(v, here)];
     let ddx = [blend(u, right) - uv[0], blend(v, right) - uv[1]];
     let ddy = [blend(u, down) - uv[0], blend(v, down) - uv[1]];
     TexCoords { uv, ddx, ddy }
 }
 
 #[inline(always)]
-fn edges_at<S: Simd>(edges: &[Corners<S>; 3], x: f32x8<S>, y: f32x8<S>) -> Corners<S> {
+fn edges_at<S: Simd>(edges: &[Corners<S>; 3], x: f32x16<S>, y: f32x16<S>) -> Corners<S> {
     let [constant, dx, dy] = edges;
     let mut at = [x; 3];
     for (i, at) in at.iter_mut().enumerate() {
@@ -115,10 +118,10 @@ fn edges_at<S: Simd>(edges: &[Corners<S>; 3], x: f32x8<S>, y: f32x8<S>) -> Corne
 /// As [`VisibleTriangle::weights`].
 #[inline(always)]
 fn weights<S: Simd>(simd: S, [a, b, c]: Corners<S>) -> Corners<S> {
-    let zero = simd.splat_f32x8(0.0);
+    let zero = simd.splat_f32x16(0.0);
     let (a, b, c) = (a.max(zero), b.max(zero), c.max(zero));
-    let sum = (a + b + c).max(simd.splat_f32x8(f32::MIN_POSITIVE));
-    let inverse = simd.splat_f32x8(1.0) / sum;
+    let sum = (a + b + c).max(simd.splat_f32x16(f32::MIN_POSITIVE));
+    let inverse = simd.splat_f32x16(1.0) / sum;
     [a * inverse, b * inverse, c * inverse]
 }
 
@@ -127,10 +130,10 @@ fn weights<S: Simd>(simd: S, [a, b, c]: Corners<S>) -> Corners<S> {
 fn weights_beside<S: Simd>(simd: S, edges: Corners<S>, here: Corners<S>) -> Corners<S> {
     let [a, b, c] = edges;
     let sum = a + b + c;
-    let seen = simd.simd_gt_f32x8(sum, simd.splat_f32x8(0.0));
+    let seen = simd.simd_gt_f32x16(sum, simd.splat_f32x16(0.0));
     let mut beside = here;
     for (to, edge) in beside.iter_mut().zip(edges) {
-        *to = simd.select_f32x8(seen, edge / sum, *to);
+        *to = simd.select_f32x16(seen, edge / sum, *to);
     }
     beside
 }

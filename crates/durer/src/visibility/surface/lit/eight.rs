@@ -1,15 +1,14 @@
 //! Lighting visible items eight pixels at a time, where their materials allow it.
 
-use super::{Lit, RunInfo};
-use crate::math::{Vec2, Vec3, Vec4};
+use super::{Lit, LookedUp, RunInfo};
+use crate::math::{Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{Faces, Points, PreparedMaterial, Sample, Samples, shade_points};
+use crate::shade::{Faces, Points, Sample, Samples, shade_points};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::attributes::VisibleTriangle;
 use crate::visibility::surface::gather::{Gathered, points};
-use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, u32x8};
+use fearless_simd::{Simd, f32x8, u32x8, u32x16};
 use fearless_simd_macros::simd;
 
 /// Eight pixels in a row that change the triangle at most as often are interpolated triangle by triangle,
@@ -106,8 +105,8 @@ impl<'a> Lit<'a> {
         let shaded = if info.plain {
             let [r, g, b] = self.plain_x8(simd, info, eight);
             [r, g, b, [info.material.plain_alpha(); 8]]
-        } else if let Some(coords) = info.looked_up {
-            self.looked_up_x8(simd, (info, coords), eight)
+        } else if let Some(looked_up) = info.looked_up {
+            self.looked_up_x8(simd, (info, looked_up), eight)
         } else {
             let [r, g, b] = self.textured_x8(simd, info, eight);
             [r, g, b, [1.0; 8]]
@@ -178,28 +177,21 @@ impl<'a> Lit<'a> {
     fn looked_up_x8<S: Simd>(
         &mut self,
         simd: S,
-        (info, coords): (&RunInfo<'a>, &[Vec2]),
+        (info, looked_up): (&RunInfo<'a>, LookedUp<'a>),
         eight: Eight<'_>,
     ) -> [[f32; 8]; 4] {
-        let one = eight.items[0];
-        let (points, at) = if *eight.items == [one; 8] {
-            let (t, at) = (self.triangles.get(one, info.run), [eight.x, eight.y]);
-            let corners = t.corners.map(|c| coords[c as usize]);
-            let points = points_x8(simd, t, at, self.parallel_view);
-            (points, coordinates_of_one(simd, t, at, corners))
-        } else {
-            let (mut points, mut at) = (Gathered::default(), GatheredCoords::default());
-            for (lane, item, pixel) in eight.pixels() {
-                let t = self.triangles.get(item, info.run);
-                points.set(simd, lane, t, pixel);
-                at.set(lane, t, pixel, t.corners.map(|c| coords[c as usize]));
-            }
-            (points.points(simd, self.parallel_view), at.coordinates(simd))
-        };
-        let (material, lights) = (info.material, self.shared.lights);
-        let (color, alpha) =
-            PreparedMaterial::shade_x8(simd, material, &points, &at, lights, info.shading);
-        [color.x.into(), color.y.into(), color.z.into(), alpha.into()]
+        let (mut items, mut there) = ([NO_ITEM; 16], 0);
+        for (lane, item, _) in eight.pixels() {
+            items[lane] = item;
+            there |= 1 << lane;
+        }
+        let (shown, at) = (u32x16::from_slice(simd, &items), [eight.x, eight.y]);
+        let sixteen = self.looked_up_x16(simd, (info, looked_up), (shown, &items), there, at);
+        let mut colors = [[0.0; 8]; 4];
+        for (to, from) in colors.iter_mut().zip(&sixteen) {
+            to.copy_from_slice(&from[..8]);
+        }
+        colors
     }
 
     /// Shades the chosen of eight pixels, of a run that is lit together.

@@ -56,8 +56,17 @@ struct RunInfo<'a> {
     plain: bool,
     /// Whether eight pixels can be lit at a time, after their textures were looked up one by one.
     together: bool,
-    /// The texture coordinates by which eight pixels can also be looked up at a time.
-    looked_up: Option<&'a [Vec2]>,
+    /// By what sixteen pixels can also be looked up at a time.
+    looked_up: Option<LookedUp<'a>>,
+}
+
+/// The one set of texture coordinates that a run's material uses.
+#[derive(Clone, Copy)]
+struct LookedUp<'a> {
+    /// Of the mesh's vertices.
+    coords: &'a [Vec2],
+    /// Whether it matters how they change over the screen.
+    changing: bool,
 }
 
 /// From where a point of an item is seen.
@@ -122,7 +131,7 @@ impl<'a> Lit<'a> {
             .looked_up_together(shading)
             .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
             .and_then(|set| mesh.tex_coords.get(set))
-            .map(Vec::as_slice);
+            .map(|coords| LookedUp { coords, changing: material.has_levels() });
         let info = RunInfo {
             run: index,
             first_item: run.first_item,

@@ -1,11 +1,12 @@
 //! Lighting visible items sixteen pixels at a time: eight in a row and the eight below them, which show
 //! mostly the same triangles.
 
-use super::Lit;
+use super::{Lit, LookedUp, RunInfo};
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{Faces, Points, shade_points_x16};
+use crate::shade::{Faces, Points, PreparedMaterial, Shading, TexCoords, shade_points_x16};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::gather::{Gathered, points};
+use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 use fearless_simd_macros::simd;
@@ -49,6 +50,13 @@ impl<'a> Lit<'a> {
             *colors = [r, g, b, [material.plain_alpha(); 16]];
             return;
         }
+        if let Some(looked_up) = info.looked_up
+            && mine.to_bitmask() == there
+        {
+            let run = (&info, looked_up);
+            *colors = this.looked_up_x16(simd, run, (shown, &items), there, [x, y]);
+            return;
+        }
         let (rows, _) = items.as_chunks::<8>();
         for (i, row) in rows.iter().enumerate().filter(|(_, row)| **row != [NO_ITEM; 8]) {
             let mut eight = [[0.0; 8]; 4];
@@ -84,6 +92,89 @@ impl<'a> Lit<'a> {
         let points = points(rows, faces, self.parallel_view);
         let lights = self.shared.lights;
         Some(shade_points_x16(simd, &points, info.material, lights, info.shading))
+    }
+
+    /// Colours as in [`Self::colors_x16`] of the pixels of a set, all of a run whose textures are looked up together.
+    #[inline(always)]
+    pub(super) fn looked_up_x16<S: Simd>(
+        &mut self,
+        simd: S,
+        (info, looked_up): (&RunInfo<'a>, LookedUp<'a>),
+        (shown, items): (u32x16<S>, &[u32; 16]),
+        there: u64,
+        at: [i32; 2],
+    ) -> [[f32; 16]; 4] {
+        let few = are_few(simd, shown);
+        let points = if info.shading == Shading::Unlit {
+            // Nothing is asked of them.
+            points([f32x16::splat(simd, 0.0); 6], Faces::Settled, self.parallel_view)
+        } else if few {
+            self.points_by_triangle(simd, info.run, (shown, items), there, at)
+        } else {
+            self.points_by_pixel(simd, info.run, items, there, at)
+        };
+        let coords = if few {
+            self.coords_by_triangle(simd, (info.run, looked_up), (shown, items), there, at)
+        } else {
+            self.coords_by_pixel(simd, (info.run, looked_up), items, there, at)
+        };
+        let (material, lights) = (info.material, self.shared.lights);
+        let (color, alpha) =
+            PreparedMaterial::shade_x16(simd, material, &points, &coords, lights, info.shading);
+        [color.x.into(), color.y.into(), color.z.into(), alpha.into()]
+    }
+
+    /// The texture coordinates at the pixels of a set, all of one run.
+    #[inline(always)]
+    fn coords_by_pixel<S: Simd>(
+        &mut self,
+        simd: S,
+        (run, LookedUp { coords, changing }): (usize, LookedUp<'a>),
+        items: &[u32; 16],
+        mut left: u64,
+        [x, y]: [i32; 2],
+    ) -> TexCoords<f32x16<S>> {
+        let mut gathered = GatheredCoords::default();
+        while left != 0 {
+            let i = left.trailing_zeros() as usize % 16;
+            left &= left - 1;
+            let pixel = [x + i as i32 % 8, y + i as i32 / 8];
+            let t = self.triangles.get(items[i], run);
+            gathered.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
+        }
+        gathered.coordinates(simd, changing)
+    }
+
+    /// The same: at all sixteen pixels of each triangle, of which those that show it are taken. Pixels not in
+    /// the set have coordinates near to the others'.
+    #[inline(always)]
+    fn coords_by_triangle<S: Simd>(
+        &mut self,
+        simd: S,
+        (run, LookedUp { coords, changing }): (usize, LookedUp<'a>),
+        (shown, items): (u32x16<S>, &[u32; 16]),
+        there: u64,
+        at: [i32; 2],
+    ) -> TexCoords<f32x16<S>> {
+        let first = items[there.trailing_zeros() as usize % 16];
+        let t = self.triangles.get(first, run);
+        let corners = t.corners.map(|c| coords[c as usize]);
+        let mut all = coordinates_of_one(simd, t, at, corners, changing);
+        let mut left = there & !shown.simd_eq(u32x16::splat(simd, first)).to_bitmask();
+        while left != 0 {
+            let item = items[left.trailing_zeros() as usize % 16];
+            let same = shown.simd_eq(u32x16::splat(simd, item));
+            left &= !same.to_bitmask();
+            let t = self.triangles.get(item, run);
+            let corners = t.corners.map(|c| coords[c as usize]);
+            let of_t = coordinates_of_one(simd, t, at, corners, changing);
+            for k in 0..2 {
+                all.uv[k] = same.select(of_t.uv[k], all.uv[k]);
+                all.ddx[k] = same.select(of_t.ddx[k], all.ddx[k]);
+                all.ddy[k] = same.select(of_t.ddy[k], all.ddy[k]);
+            }
+        }
+        all
     }
 
     /// The points that the pixels of a set show, all of one run.

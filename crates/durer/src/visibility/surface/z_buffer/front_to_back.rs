@@ -15,9 +15,9 @@ const FEWEST: usize = 64;
 /// Ranges of depth that triangles are told apart by.
 const BUCKETS: usize = 64;
 
-/// After these parts of the triangles, in sixteenths, the farthest depths are found anew: the first is
+/// After these parts of the triangles, in 64ths, the farthest depths are found anew: the first are
 /// small, for the nearest layer hides most.
-const PARTS: [usize; 5] = [1, 4, 8, 12, 16];
+const PARTS: [usize; 6] = [1, 4, 16, 32, 48, 64];
 
 /// The triangles of one tile that are ordered.
 #[derive(Default)]
@@ -44,11 +44,11 @@ impl<'a> FrontToBack<'a> {
             self.sort();
         }
         let (triangles, parts) =
-            if few { (&self.given, &PARTS[4..]) } else { (&self.sorted, &PARTS[..]) };
-        let part = |sixteenths: usize| triangles.len() * sixteenths / 16;
+            if few { (&self.given, &PARTS[5..]) } else { (&self.sorted, &PARTS[..]) };
+        let part = |of_64: usize| triangles.len() * of_64 / 64;
         let mut from = 0;
-        parts.iter().map(move |&sixteenths| {
-            let part = &triangles[from..part(sixteenths)];
+        parts.iter().map(move |&of_64| {
+            let part = &triangles[from..part(of_64)];
             from += part.len();
             part
         })

@@ -27,10 +27,10 @@ use crate::view::View;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{Lighting, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
-use crate::visibility::surface::setup::{Counts, Coverage, Filter, runs};
+use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
 use bins::{Bins, TileGrid, jobs};
-use blended::{Fragments, light_nearer};
+use blended::{Blended, light_blended};
 use fearless_simd::dispatch;
 use front_to_back::FrontToBack;
 use rasterize::{AllPass, FragmentTest, rasterize};
@@ -166,9 +166,6 @@ fn bands(framebuffer: &mut Framebuffer) -> Vec<Band<'_>> {
         .collect()
 }
 
-/// After so many blended triangles it is asked whether anything comes through.
-const BLENDED_AT_ONCE: usize = 8;
-
 /// What all tiles share.
 struct Frame<'a> {
     view: &'a View,
@@ -186,7 +183,7 @@ struct Scratch<'a> {
     planes: Vec<SamplePlane>,
     /// One sample at the pixel's centre, for depth, item and normal: made where they are first asked for.
     center: Vec<SamplePlane>,
-    fragments: Fragments,
+    blended: Blended,
     mixed: Mixed,
     lit: Lit<'a>,
     order: FrontToBack<'a>,
@@ -198,7 +195,7 @@ impl<'a> Scratch<'a> {
         Self {
             planes: SamplePlane::of(offsets),
             center: Vec::new(),
-            fragments: Fragments::new(offsets),
+            blended: Blended::new(offsets),
             mixed: Mixed::new(tile::TILE_PIXELS),
             lit: Lit::new(frame.lighting),
             order: FrontToBack::default(),
@@ -262,35 +259,10 @@ impl<'a> Frame<'a> {
                 if i > 0 {
                     planes.iter_mut().for_each(|plane| plane.find_farthest(simd));
                 }
-                let triangles = part.iter().copied();
+                let farthest = planes.iter().map(SamplePlane::farthest_of_all).fold(0, i32::max);
+                let is_seen = |t: &&ScreenTriangle| t.depth_min.to_bits() as i32 <= farthest;
+                let triangles = part.iter().copied().filter(is_seen);
                 rasterize(simd, planes, area, triangles, None::<&mut AllPass>)
-            });
-        }
-    }
-
-    /// Rasterizes the tile's blended triangles, the nearest first, until nothing comes through.
-    fn rasterize_blended(
-        &self,
-        order: &mut FrontToBack<'a>,
-        fragments: &mut Fragments,
-        lit: &mut Lit<'a>,
-        planes: &mut [SamplePlane],
-        area: [[i32; 2]; 2],
-        index: u32,
-    ) {
-        let mut rest = order.nearest_first(self.bins, index);
-        if !rest.is_empty() {
-            fragments.open();
-        }
-        while !rest.is_empty() && !fragments.hide_all(area[1]) {
-            let (part, others) = rest.split_at(rest.len().min(BLENDED_AT_ONCE));
-            rest = others;
-            dispatch!(self.options.level, simd => {
-                let triangles = part.iter().copied();
-                rasterize(simd, planes, area, triangles, Some(&mut *fragments));
-                if let Some(next) = rest.first().filter(|_| fragments.are_many()) {
-                    light_nearer(simd, fragments, next.depth_min, lit, area[1]);
-                }
             });
         }
     }
@@ -313,18 +285,22 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, fragments, mixed, lit, order, .. } = scratch;
+        let Scratch { planes, blended, mixed, lit, order, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
         self.rasterize_opaque(order, planes, area, index);
         let mut mask = MaskTest { lit, tile };
         self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
-        fragments.clear(tile);
-        self.rasterize_blended(order, fragments, lit, planes, area, index);
+        blended.clear();
+        let nearest_first = order.nearest_first(self.bins, index);
+        if !nearest_first.is_empty() {
+            dispatch!(self.options.level, simd =>
+                light_blended(simd, blended, nearest_first, planes, area, lit));
+        }
         let background = background_rows(self.options.background, self.view.height());
         let area = Area { tile, size, background: &background };
         let mut output = Output { color: &mut band.color[tile[0] as usize..], stride: band.width };
         dispatch!(self.options.level, simd =>
-            resolve(simd, planes, fragments, mixed, lit, &area, &mut output));
+            resolve(simd, planes, blended, mixed, lit, &area, &mut output));
     }
 
     /// Depth, item and normal: one sample at the centre, where blended surfaces count as opaque.

@@ -8,18 +8,34 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x8};
 use fearless_simd_macros::simd;
 
-/// Is asked for each fragment that passes the depth test, with its tile-local pixel; a fragment is
-/// written only if it passes.
+/// Is asked for the fragments that pass the depth test; a fragment is written only if it passes.
 pub trait FragmentTest {
-    fn passes(&mut self, t: &ScreenTriangle, x: i32, y: i32, sample: usize) -> bool;
+    /// Which of consecutive samples pass, of those whose bits are all set in `write`: from the first sample of the
+    /// tile-local pixel `at` on, of a plane whose pixels have 2^`shift` samples from the number `first` on.
+    fn pass<S: Simd>(
+        &mut self,
+        simd: S,
+        write: S::i32s,
+        t: &ScreenTriangle,
+        at: [i32; 2],
+        place: (usize, u32),
+    ) -> S::i32s;
 }
 
 /// Lets every fragment pass.
 pub struct AllPass;
 
 impl FragmentTest for AllPass {
-    fn passes(&mut self, _: &ScreenTriangle, _: i32, _: i32, _: usize) -> bool {
-        true
+    #[inline(always)]
+    fn pass<S: Simd>(
+        &mut self,
+        _: S,
+        write: S::i32s,
+        _: &ScreenTriangle,
+        _: [i32; 2],
+        _: (usize, u32),
+    ) -> S::i32s {
+        write
     }
 }
 
@@ -66,7 +82,7 @@ fn top_left(dx: i32, dy: i32) -> bool {
 
 /// Samples that are tested at a time.
 #[inline(always)]
-const fn lanes<S: Simd>() -> usize {
+pub const fn lanes<S: Simd>() -> usize {
     size_of::<S::i32s>() / size_of::<i32>()
 }
 
@@ -391,7 +407,7 @@ fn fill_row<S: Simd, T: FragmentTest>(
     let tie_lost = !(depth - old) & ((old_item - item) >> 31u32);
     write &= !(tie_lost >> 31u32);
     if let Some(test) = test.as_mut() {
-        write = tested(simd, write, t, [x, y], (plane.first, plane.shift), *test);
+        write = test.pass(simd, write, t, [x, y], (plane.first, plane.shift));
     }
     // Not a select: that would become a masked store, which is far slower.
     (old ^ ((old ^ depth) & write)).store_slice(stored);
@@ -399,21 +415,21 @@ fn fill_row<S: Simd, T: FragmentTest>(
     new_item.store_slice(items);
 }
 
+/// Asks for each of the samples in `write` whether it passes: by its pixel and its number in there.
 #[inline(never)]
-fn tested<S: Simd, T: FragmentTest>(
+pub fn one_by_one<S: Simd>(
     simd: S,
     write: S::i32s,
-    t: &ScreenTriangle,
     [x, y]: [i32; 2],
-    (first, shift): (usize, u32),
-    test: &mut T,
+    shift: u32,
+    mut passes: impl FnMut(i32, i32, usize) -> bool,
 ) -> S::i32s {
     let mut written = [0i32; MOST_LANES];
     let written = &mut written[..lanes::<S>()];
     write.store_slice(written);
     for (i, lane) in written.iter_mut().enumerate() {
         let (pixel, sample) = (i >> shift, i & ((1 << shift) - 1));
-        if *lane != 0 && !test.passes(t, x + pixel as i32, y, first + sample) {
+        if *lane != 0 && !passes(x + pixel as i32, y, sample) {
             *lane = 0;
         }
     }

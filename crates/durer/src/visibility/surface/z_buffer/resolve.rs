@@ -1,9 +1,9 @@
 //! From the visible items of a tile to colours: each triangle is lit once per pixel, the samples of
 //! a pixel are averaged in linear light, blended surfaces are laid over from far to near.
 
-use super::blended::{Fragments, resolve_blended};
-use super::rasterize::FragmentTest;
-use super::tile::{SamplePlane, TILE};
+use super::blended::{Blended, resolve_blended};
+use super::rasterize::{FragmentTest, one_by_one};
+use super::tile::{SamplePlane, TILE, block_of};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
@@ -27,8 +27,18 @@ pub struct MaskTest<'t, 'a> {
 }
 
 impl FragmentTest for MaskTest<'_, '_> {
-    fn passes(&mut self, t: &ScreenTriangle, x: i32, y: i32, _sample: usize) -> bool {
-        self.lit.passes_mask(t.item, self.tile[0] + x, self.tile[1] + y)
+    fn pass<S: Simd>(
+        &mut self,
+        simd: S,
+        write: S::i32s,
+        t: &ScreenTriangle,
+        at: [i32; 2],
+        (_, shift): (usize, u32),
+    ) -> S::i32s {
+        let Self { lit, tile } = self;
+        one_by_one(simd, write, at, shift, |x, y, _| {
+            lit.passes_mask(t.item, tile[0] + x, tile[1] + y)
+        })
     }
 }
 
@@ -54,15 +64,15 @@ pub struct Output<'o> {
 pub fn resolve<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
-    fragments: &mut Fragments,
+    blended: &Blended,
     mixed: &mut Mixed,
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     output: &mut Output<'_>,
 ) {
     resolve_opaque(simd, planes, mixed, lit, area, output);
-    if fragments.any() {
-        resolve_blended(simd, planes, fragments, lit, area, output);
+    if blended.any() {
+        resolve_blended(simd, planes, blended, lit, area, output);
     }
 }
 
@@ -175,14 +185,9 @@ fn samples_of_block<S: Simd>(
     samples: &mut [u32x16<S>; MOST_SAMPLES],
 ) -> usize {
     let fours = planes.iter().filter(|plane| plane.shift > 0);
-    let (chunks, _) = samples.as_chunks_mut::<4>();
     let mut count = 0;
-    for (plane, to) in fours.zip(chunks) {
-        let above = plane.four_of_eight(simd, index);
-        let below = plane.four_of_eight(simd, index + TILE as usize);
-        for i in 0..4 {
-            to[i] = simd.combine_u32x8(above[i], below[i]);
-        }
+    for plane in fours {
+        block_of(simd, &plane.item, index, &mut samples[count..count + 4]);
         count += 4;
     }
     count
@@ -327,7 +332,7 @@ fn add_shares<S: Simd, const N: usize>(
 
 /// The items at all samples of a pixel, and how many samples there are.
 #[inline(always)]
-pub(super) fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
+fn sample_items(planes: &[SamplePlane], pixel: usize) -> ([u32; MOST_SAMPLES], usize) {
     let (mut items, mut count) = ([NO_ITEM; MOST_SAMPLES], 0);
     for plane in planes {
         for &item in plane.items(pixel) {

@@ -6,7 +6,7 @@
 use crate::raster::fixed::SUBPIXELS;
 use crate::target::NO_ITEM;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, i32x8, u32x8};
+use fearless_simd::{Simd, i32x8, u32x8, u32x16};
 use fearless_simd_macros::simd;
 
 /// Pixels along the side of a tile: depth and item of one sample of each of its pixels, 32 kB, fit
@@ -95,6 +95,11 @@ impl SamplePlane {
         find_farthest(simd, &self.depth, self.shift, &mut self.farthest);
     }
 
+    /// Bits of a depth beyond which nothing is seen in the whole tile.
+    pub fn farthest_of_all(&self) -> i32 {
+        self.farthest.iter().copied().fold(0, i32::max)
+    }
+
     /// Whether nothing that is at least as far as `depth` (bits) can be seen in a box of pixels.
     #[inline(always)]
     pub fn hides(&self, [x0, y0, x1, y1]: [i32; 4], depth: i32) -> bool {
@@ -122,24 +127,6 @@ impl SamplePlane {
         f32::from_bits(self.depth[pixel << self.shift] as u32)
     }
 
-    /// The items at the samples of eight pixels in a row, four each, by sample.
-    #[inline(always)]
-    pub fn four_of_eight<S: Simd>(&self, simd: S, pixel: usize) -> [u32x8<S>; 4] {
-        let items = &self.item[4 * pixel..4 * pixel + 32];
-        let a = u32x8::from_slice(simd, &items[..8]);
-        let b = u32x8::from_slice(simd, &items[8..16]);
-        let c = u32x8::from_slice(simd, &items[16..24]);
-        let d = u32x8::from_slice(simd, &items[24..]);
-        // Of all pixels: samples 0 and 2, then 1 and 3.
-        let (even_ab, even_cd) = (simd.unzip_low_u32x8(a, b), simd.unzip_low_u32x8(c, d));
-        let (odd_ab, odd_cd) = (simd.unzip_high_u32x8(a, b), simd.unzip_high_u32x8(c, d));
-        let first = simd.unzip_low_u32x8(even_ab, even_cd);
-        let third = simd.unzip_high_u32x8(even_ab, even_cd);
-        let second = simd.unzip_low_u32x8(odd_ab, odd_cd);
-        let fourth = simd.unzip_high_u32x8(odd_ab, odd_cd);
-        [first, second, third, fourth]
-    }
-
     /// The item at the first sample of each of eight pixels in a row, and a number for each that is
     /// 0 only where all samples of the pixel show it.
     #[inline(always)]
@@ -148,9 +135,43 @@ impl SamplePlane {
             let items = u32x8::from_slice(simd, &self.item[pixel..pixel + 8]);
             return [items, u32x8::splat(simd, 0)];
         }
-        let [first, second, third, fourth] = self.four_of_eight(simd, pixel);
+        let [first, second, third, fourth] = four_of_eight(simd, &self.item, pixel);
         [first, (first ^ second) | (first ^ third) | (first ^ fourth)]
     }
+}
+
+/// By sample the items of a block of a plane: of eight pixels in a row from the given one on, and of the eight below them.
+#[inline(always)]
+pub fn block_of<S: Simd>(simd: S, items: &[u32], pixel: usize, samples: &mut [u32x16<S>]) {
+    let below = pixel + TILE as usize;
+    if let [one] = samples {
+        let above = u32x8::from_slice(simd, &items[pixel..pixel + 8]);
+        *one = simd.combine_u32x8(above, u32x8::from_slice(simd, &items[below..below + 8]));
+    } else if let Ok(samples) = <&mut [u32x16<S>; 4]>::try_from(samples) {
+        let above = four_of_eight(simd, items, pixel);
+        let below = four_of_eight(simd, items, below);
+        for i in 0..4 {
+            samples[i] = simd.combine_u32x8(above[i], below[i]);
+        }
+    }
+}
+
+/// The items at the samples of eight pixels in a row, four each, by sample.
+#[inline(always)]
+fn four_of_eight<S: Simd>(simd: S, items: &[u32], pixel: usize) -> [u32x8<S>; 4] {
+    let items = &items[4 * pixel..4 * pixel + 32];
+    let a = u32x8::from_slice(simd, &items[..8]);
+    let b = u32x8::from_slice(simd, &items[8..16]);
+    let c = u32x8::from_slice(simd, &items[16..24]);
+    let d = u32x8::from_slice(simd, &items[24..]);
+    // Of all pixels: samples 0 and 2, then 1 and 3.
+    let (even_ab, even_cd) = (simd.unzip_low_u32x8(a, b), simd.unzip_low_u32x8(c, d));
+    let (odd_ab, odd_cd) = (simd.unzip_high_u32x8(a, b), simd.unzip_high_u32x8(c, d));
+    let first = simd.unzip_low_u32x8(even_ab, even_cd);
+    let third = simd.unzip_high_u32x8(even_ab, even_cd);
+    let second = simd.unzip_low_u32x8(odd_ab, odd_cd);
+    let fourth = simd.unzip_high_u32x8(odd_ab, odd_cd);
+    [first, second, third, fourth]
 }
 
 /// The largest depth of each block.
