@@ -624,33 +624,38 @@ mod tests {
             let z = 0.8 - 0.12 * sheet as f32;
             for (x, y) in (0..3).flat_map(|y| (0..3).map(move |x| (x, y))) {
                 let at = |i: i32, j: i32| {
-                    // Tilted, but apart from the next.
-                    let (x, y) = (i as f32 * 0.7 - 1.0, j as f32 * 0.7 - 1.1);
-                    Vec3::new(x + 0.01 * sheet as f32, y, z + 0.02 * x)
+                    // Tilted, but apart from the next, which begins farther to the left, where it is nearest.
+                    let (x, y) = (i as f32 * 0.6 - 0.8, j as f32 * 0.7 - 1.1);
+                    Vec3::new(x - 0.02 * sheet as f32, y, z - 0.02 * x)
                 };
                 let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
-                positions.extend([a, b, c, a, c, d]);
+                positions.extend([a, c, d, a, b, c]);
             }
         }
-        for (x, z) in [(-0.5, 0.9), (0.2, 0.3), (0.4, -0.1)] {
+        for (x, z) in [(0.2, 0.3), (0.4, -0.1)] {
             let [a, b, c] = [(x, -0.8, z), (x + 0.6, 0.1, z - 0.3), (x - 0.2, 0.7, z + 0.05)];
             positions.extend([a, b, c].map(|(x, y, z)| Vec3::new(x, y, z)));
             positions.extend([b, a, c].map(|(x, y, z)| Vec3::new(x, -y, z)));
         }
         let blended = positions.len() as u32 / 3;
         positions.extend([(0.1, 0.1), (0.9, 0.3), (0.3, 0.9)].map(|(x, y)| Vec3::new(x, y, 0.02)));
-        let glass = Material {
-            base_color: Vec4::new(0.9, 0.5, 0.2, 0.6),
+        // Each sheet has its own colour, and the crossing ones have another.
+        let glass = |i: usize| Material {
+            base_color: Vec4::new(0.08 * i as f32, 0.5, 1.0 - 0.08 * i as f32, 0.4),
             alpha_mode: AlphaMode::Blend,
             ..Material::default()
         };
-        let part = |range, material| Part { range, material: Some(material), name: String::new() };
-        let parts = vec![part(0..blended, 0), part(blended..blended + 1, 1)];
+        let part = |i: usize, range| Part { range, material: Some(i), name: String::new() };
+        let mut parts: Vec<Part> =
+            (0..12).map(|i| part(i, 18 * i as u32..18 * (i as u32 + 1))).collect();
+        parts.push(part(12, 216..blended));
+        parts.push(part(13, blended..blended + 1));
+        let materials = (0..13).map(glass).chain([Material::default()]).collect();
         let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
         Scene {
             meshes: vec![Mesh { positions, parts, ..Mesh::default() }],
             instances: vec![instance],
-            materials: vec![glass, Material::default()],
+            materials,
             ..Scene::default()
         }
     }
@@ -708,7 +713,7 @@ mod tests {
                 }
                 taken
             });
-            assert!(taken.iter().all(|&n| n > 2), "{taken:?}");
+            assert!(taken[0] > 0 && taken[1] > 4, "{taken:?}");
             let background = |_: i32| Vec4::new(0.1, 0.2, 0.3, 0.5);
             let area = Area { tile: [0; 2], size: [64; 2], background: &background };
             let mut pictures = [[[0; 4]; TILE_PIXELS]; 2];
