@@ -87,13 +87,13 @@ impl PreparedTexture<'_> {
                 }
             }
         }
-        let near = self.from_levels(simd, &at.uv, &levels);
+        let near = self.in_levels(simd, &at.uv, &levels);
         let Some(mixed) = mixed else { return near };
         for i in 0..16 {
             // What is not between two levels is not looked at.
             levels[i] = if weights[i] > 0.0 { levels[i] } else { mixed } + 1;
         }
-        let far = self.from_levels(simd, &at.uv, &levels);
+        let far = self.in_levels(simd, &at.uv, &levels);
         let weights = spread(simd, f32x16::from_slice(simd, &weights));
         let mut sums = near;
         for i in 0..4 {
@@ -106,7 +106,7 @@ impl PreparedTexture<'_> {
 
     /// Each point in its level.
     #[inline(always)]
-    fn from_levels<S: Simd>(&self, simd: S, uv: &[f32x16<S>; 2], levels: &[usize; 16]) -> Rows<S> {
+    fn in_levels<S: Simd>(&self, simd: S, uv: &[f32x16<S>; 2], levels: &[usize; 16]) -> Rows<S> {
         let mut rows = Self::filtered_x16(simd, self, uv, self.chain.level(levels[0]));
         let mut done = levels.map(|level| level == levels[0]);
         while let Some(next) = done.iter().position(|done| !done) {

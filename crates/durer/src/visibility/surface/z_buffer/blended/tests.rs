@@ -1,0 +1,126 @@
+use super::super::bins::{Bins, jobs};
+use super::super::front_to_back::FrontToBack;
+use super::super::rasterize::AllPass;
+use super::*;
+use crate::math::{DMat4, DVec3, Vec3};
+use crate::scene::{AlphaMode, Camera, Instance, Material, Mesh, Part, Projection, Scene};
+use crate::shade::{PreparedLights, PreparedMaterials};
+use crate::simd::levels;
+use crate::view::View;
+use crate::visibility::surface::lit::Lighting;
+use crate::visibility::surface::setup::{Coverage, Filter, runs};
+use crate::visibility::surface::{Cull, Samples};
+use fearless_simd::dispatch;
+
+/// Sheets one behind another, each of many triangles that share their edges; before and between them some that
+/// cross, and something opaque.
+fn scene() -> Scene {
+    let mut positions = Vec::new();
+    for sheet in 0..12 {
+        let z = 0.8 - 0.12 * sheet as f32;
+        for (x, y) in (0..3).flat_map(|y| (0..3).map(move |x| (x, y))) {
+            let at = |i: i32, j: i32| {
+                // Tilted, but apart from the next, which begins farther to the left, where it is nearest.
+                let (x, y) = (i as f32 * 0.6 - 0.8, j as f32 * 0.7 - 1.1);
+                Vec3::new(x - 0.02 * sheet as f32, y, z - 0.02 * x)
+            };
+            let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+            positions.extend([a, c, d, a, b, c]);
+        }
+    }
+    for (x, z) in [(0.2, 0.3), (0.4, -0.1)] {
+        let [a, b, c] = [(x, -0.8, z), (x + 0.6, 0.1, z - 0.3), (x - 0.2, 0.7, z + 0.05)];
+        positions.extend([a, b, c].map(|(x, y, z)| Vec3::new(x, y, z)));
+        positions.extend([b, a, c].map(|(x, y, z)| Vec3::new(x, -y, z)));
+    }
+    let blended = positions.len() as u32 / 3;
+    positions.extend([(0.1, 0.1), (0.9, 0.3), (0.3, 0.9)].map(|(x, y)| Vec3::new(x, y, 0.02)));
+    // Each sheet has its own colour, and the crossing ones have another.
+    let glass = |i: usize| Material {
+        base_color: Vec4::new(0.08 * i as f32, 0.5, 1.0 - 0.08 * i as f32, 0.4),
+        alpha_mode: AlphaMode::Blend,
+        ..Material::default()
+    };
+    let part = |i: usize, range| Part { range, material: Some(i), name: String::new() };
+    let mut parts: Vec<Part> =
+        (0..12).map(|i| part(i, 18 * i as u32..18 * (i as u32 + 1))).collect();
+    parts.push(part(12, 216..blended));
+    parts.push(part(13, blended..blended + 1));
+    let materials = (0..13).map(glass).chain([Material::default()]).collect();
+    let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
+    Scene {
+        meshes: vec![Mesh { positions, parts, ..Mesh::default() }],
+        instances: vec![instance],
+        materials,
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn sheets_look_as_if_all_fragments_were_sorted() {
+    let scene = scene();
+    let projection = Projection::Orthographic { height: 2.0 };
+    let (eye, target, up) = (DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y);
+    let camera = Camera { eye, target, up, projection, near: 1.0, far: 4.0 };
+    let view = View::new(camera, 64, 64).expect("view");
+    let (runs, lights) = (runs(&scene).expect("runs"), PreparedLights::auto(&camera));
+    let materials = PreparedMaterials::new(&scene);
+    for (samples, level) in [Samples::One, Samples::Four, Samples::Sixteen]
+        .into_iter()
+        .flat_map(|s| levels().into_iter().map(move |l| (s, l)))
+    {
+        let filter = Filter { cull: Cull::None, sample_reach: 128 };
+        let jobs = jobs(&runs);
+        let bins = jobs.iter().map(|job| Bins::new(job, &runs, &scene, &view, filter, level));
+        let bins: Vec<Bins> = bins.collect();
+        let lighting = Lighting {
+            scene: &scene,
+            view: &view,
+            runs: &runs,
+            materials: &materials,
+            lights: &lights,
+            shading: None,
+            level,
+        };
+        let (mut lit, area) = (Lit::new(lighting), [[0, 0], [64, 64]]);
+        let mut planes = SamplePlane::of(samples.offsets());
+        for bins in bins.iter().filter(|b| b.coverage == Coverage::Opaque) {
+            dispatch!(level, simd =>
+                rasterize(simd, &mut planes, area, bins.of_tile(0), None::<&mut AllPass>));
+        }
+        let mut order = FrontToBack::default();
+        let triangles = order.nearest_first(&bins, 0);
+        let planes = &mut planes;
+        let (mut sheets, mut sorted) =
+            (Blended::new(samples.offsets()), Blended::new(samples.offsets()));
+        let taken = dispatch!(level, simd => {
+            light_blended(simd, &mut sheets, triangles, planes, area, &mut lit);
+            // Only sorted; and how many sheets there would be.
+            let (mut rest, mut taken) = (triangles, [0; 2]);
+            sorted.layers.open(area);
+            while !rest.is_empty() {
+                let Blended { sheet, fragments, layers } = &mut sorted;
+                let n = light_sorted(simd, fragments, rest, layers, planes, area, &mut lit);
+                let mut other = Layers::new(layers.count);
+                other.open(area);
+                let m = light_sheet(simd, sheet, rest, &mut other, planes, area, &mut lit);
+                taken[usize::from(m > 0)] += 1;
+                rest = &rest[n..];
+            }
+            taken
+        });
+        assert!(taken[0] > 0 && taken[1] > 4, "{taken:?}");
+        let background = |_: i32| Vec4::new(0.1, 0.2, 0.3, 0.5);
+        let area = Area { tile: [0; 2], size: [64; 2], background: &background };
+        let mut pictures = [[[0; 4]; TILE_PIXELS]; 2];
+        for (blended, color) in [&sheets, &sorted].into_iter().zip(&mut pictures) {
+            let mut output = Output { color, stride: 64 };
+            dispatch!(level, simd =>
+                resolve_blended(simd, planes, blended, &mut lit, &area, &mut output));
+        }
+        let [a, b] = &pictures;
+        let differing = a.iter().zip(b).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "{samples:?} {level:?}");
+        assert!(a.iter().filter(|pixel| **pixel != [0; 4]).count() > 3000);
+    }
+}
