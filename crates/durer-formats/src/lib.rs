@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+mod arc;
 mod color;
 pub mod drawing;
 mod error;

@@ -3,75 +3,33 @@
 //! usvg takes four curves for a circle, which are off by 1/3700 of its radius: half a pixel where that is 2000. Eight are off
 //! by 1/240,000. And where an arc ends at the point where the one before did, which draws nothing, usvg may find
 //! the two some last bits apart and draw the ellipse whole.
-//!
-//! From end points to centre and angles as in *Scalable Vector Graphics (SVG) 2*, appendix B.2.
 
+use crate::arc::{Arc, Ends};
 use durer::math::DVec2;
-use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use std::f64::consts::{FRAC_PI_4, PI};
 use std::fmt::Write as _;
 use svgtypes::{PathParser, PathSegment};
 
-/// An arc between two points.
-#[derive(Debug, Clone, Copy)]
-struct Arc {
-    from: DVec2,
-    to: DVec2,
-    radii: DVec2,
-    /// From the x axis to the ellipse's first axis, in radians.
-    turned: f64,
-    large: bool,
-    sweep: bool,
-}
-
-impl Arc {
-    /// Calls `curve` with the points of curves after the first of each; `None` where the arc is a line.
-    fn curves(&self, mut curve: impl FnMut([DVec2; 3])) -> Option<()> {
-        let radii = self.radii.abs();
-        if self.from == self.to || radii.min_element() <= 0.0 {
-            return None;
-        }
-        // In the frame in which the ellipse is the unit circle.
-        let (sine, cosine) = libm::sincos(self.turned);
-        let round =
-            |v: DVec2| DVec2::new(cosine * v.x + sine * v.y, cosine * v.y - sine * v.x) / radii;
-        let half = round(self.from - self.to) / 2.0;
-        let length = half.length();
-        // Radii that are too small for the way are scaled up to what just reaches.
-        let scale = length.max(1.0);
-        let half = half / scale;
-        let away = (1.0 / half.length_squared() - 1.0).max(0.0).sqrt();
-        let center = half.perp() * if self.large == self.sweep { away } else { -away };
-        let (start, end) = (half - center, -half - center);
-        let start_angle = libm::atan2(start.y, start.x);
-        let mut turn = libm::atan2(start.perp_dot(end), start.dot(end));
-        if length >= 1.0 {
-            turn = if self.sweep { PI } else { -PI };
-        } else if self.sweep && turn < 0.0 {
-            turn += TAU;
-        } else if !self.sweep && turn > 0.0 {
-            turn -= TAU;
-        }
-        let seen = |v: DVec2| {
-            let v = v * radii * scale;
-            DVec2::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y)
-        };
-        let middle = (self.from + self.to) / 2.0 + seen(center);
-        let pieces = (turn.abs() / FRAC_PI_4 - 1e-9).ceil().max(1.0);
-        let step = turn / pieces;
-        let reach = 4.0 / 3.0 * libm::tan(step / 4.0);
-        let at = |i: f64| {
-            let (y, x) = libm::sincos(start_angle + step * i);
-            DVec2::new(x, y)
-        };
-        for i in 0..pieces as u32 {
-            let (a, b) = (at(f64::from(i)), at(f64::from(i) + 1.0));
-            let last = i + 1 == pieces as u32;
-            let end = if last { self.to } else { middle + seen(b) };
-            let first = if i == 0 { self.from } else { middle + seen(a) };
-            curve([first + seen(a.perp() * reach), end - seen(b.perp() * reach), end]);
-        }
-        Some(())
+/// Calls `curve` with the points of curves after the first of each; `None` where the arc is a line.
+fn curves(ends: &Ends, mut curve: impl FnMut([DVec2; 3])) -> Option<()> {
+    let arc = Arc::new(ends)?;
+    let turn = if arc.is_half { PI.copysign(arc.turn) } else { arc.turn };
+    // A hair less, so that rounding adds no curve to an eighth of a turn.
+    let pieces = (turn.abs() / FRAC_PI_4 - 1e-9).ceil().max(1.0);
+    let step = turn / pieces;
+    let reach = 4.0 / 3.0 * libm::tan(step / 4.0);
+    let at = |i: f64| {
+        let (y, x) = libm::sincos(arc.start + step * i);
+        DVec2::new(x, y)
+    };
+    for i in 0..pieces as u32 {
+        let (a, b) = (at(f64::from(i)), at(f64::from(i) + 1.0));
+        let last = i + 1 == pieces as u32;
+        let end = if last { ends.to } else { arc.center + arc.seen(b) };
+        let first = if i == 0 { ends.from } else { arc.center + arc.seen(a) };
+        curve([first + arc.seen(a.perp() * reach), end - arc.seen(b.perp() * reach), end]);
     }
+    Some(())
 }
 
 /// Path data with curves in place of its arcs, as far as it is well-formed; `None` where it has none.
@@ -136,8 +94,8 @@ pub(super) fn as_curves(data: &str) -> Option<String> {
             EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
                 at = point(abs, x, y);
                 let (radii, turned) = (DVec2::new(rx, ry), x_axis_rotation.to_radians());
-                let arc = Arc { from: here, to: at, radii, turned, large: large_arc, sweep };
-                if arc.curves(|points| tell('C', &points)).is_none() {
+                let ends = Ends { from: here, to: at, radii, turned, large: large_arc, sweep };
+                if curves(&ends, |points| tell('C', &points)).is_none() {
                     tell('L', &[at]);
                 }
             }

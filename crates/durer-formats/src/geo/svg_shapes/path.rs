@@ -1,9 +1,10 @@
 //! Sub-paths of SVG's shapes, and the geometry that they are.
 
 use super::attributes::{Matrix, Scanner, apply};
+use crate::arc::{Arc, Ends};
 use crate::geo::{Geometry, Points};
 use durer::math::DVec2;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 /// Edges that a curve, or a quarter of an ellipse, becomes.
 pub const STEPS: u32 = 16;
@@ -117,10 +118,10 @@ impl Path {
             }
             'Z' => self.close(),
             'A' => {
-                let (radii, angle) = (s.pair()?, s.need()?);
+                let (radii, turned) = (s.pair()?, s.need()?.to_radians());
                 let (large, sweep) = (s.flag()?, s.flag()?);
-                let end = base + s.pair()?;
-                self.arc(radii, angle, large != sweep, sweep, end);
+                let to = base + s.pair()?;
+                self.arc(&Ends { from: self.at, to, radii, turned, large, sweep });
             }
             _ => return Err(format!("`{letter}` is no command of a path")),
         }
@@ -142,42 +143,19 @@ impl Path {
         self.control = Some((control, degree));
     }
 
-    /// An elliptical arc from the current point, by the conversion of SVG 1.1, appendix F.6.5; `differ`
-    /// tells whether its two flags, for the larger arc and for growing angles, are different.
-    fn arc(&mut self, radii: DVec2, degrees: f64, differ: bool, sweep: bool, end: DVec2) {
-        let (start, mut radii) = (self.at, radii.abs());
-        if start == end || radii.min_element() == 0.0 {
-            return self.line_to(end);
+    /// An elliptical arc.
+    fn arc(&mut self, ends: &Ends) {
+        if let Some(arc) = Arc::new(ends) {
+            // A hair less, so that rounding adds no edge to a quarter turn.
+            let edges = libm::ceil(arc.turn.abs() / FRAC_PI_2 * f64::from(STEPS) - 1e-6);
+            let edges = edges.clamp(1.0, f64::from(4 * STEPS)) as u32;
+            for i in 1..edges {
+                let angle = arc.start + arc.turn * f64::from(i) / f64::from(edges);
+                let (sin, cos) = libm::sincos(angle);
+                self.line_to(arc.center + arc.seen(DVec2::new(cos, sin)));
+            }
         }
-        // In the space where the ellipse is a unit circle around c, the ends are at ±p.
-        let (sin, cos) = libm::sincos(degrees.to_radians());
-        let turned = |p: DVec2| DVec2::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y);
-        let half = (start - end) * 0.5;
-        let mut p = DVec2::new(cos * half.x + sin * half.y, cos * half.y - sin * half.x) / radii;
-        let reach = p.length();
-        if reach > 1.0 {
-            // Too small to reach: as much larger as needed.
-            (radii, p) = (radii * reach, p / reach);
-        }
-        let distance = (1.0 / p.length_squared() - 1.0).max(0.0).sqrt();
-        let c = DVec2::new(p.y, -p.x) * if differ { distance } else { -distance };
-        let angle = |v: DVec2| libm::atan2(v.y, v.x);
-        let from = angle(p - c);
-        let mut turn = angle(-p - c) - from;
-        match sweep {
-            true if turn < 0.0 => turn += TAU,
-            false if turn > 0.0 => turn -= TAU,
-            _ => {}
-        }
-        // A hair less, so that rounding adds no edge to a quarter turn.
-        let edges = libm::ceil(turn.abs() / FRAC_PI_2 * f64::from(STEPS) - 1e-6);
-        let edges = edges.clamp(1.0, f64::from(4 * STEPS)) as u32;
-        let center = start * 0.5 + end * 0.5 + turned(c * radii);
-        for i in 1..edges {
-            let (sin, cos) = libm::sincos(from + turn * f64::from(i) / f64::from(edges));
-            self.line_to(center + turned(DVec2::new(cos, sin) * radii));
-        }
-        self.line_to(end);
+        self.line_to(ends.to);
     }
 
     /// An ellipse with its axes along the coordinates'; none where a radius is not above zero.
