@@ -3,7 +3,6 @@
 use durer::math::Vec4;
 use durer::pipeline::Background;
 use durer::shade::color::LINEAR_FROM_SRGB;
-use std::str::FromStr;
 
 /// What `--background gradient` means: a bright sky over a light grey.
 const GRADIENT: (&str, &str) = ("#9fb7d4", "#f2f4f7");
@@ -18,17 +17,10 @@ pub fn color(text: &str) -> Result<Vec4, String> {
 /// A colour of CSS as sRGB bytes with straight alpha: a name of CSS 4, `#rgb`, `#rrggbb` (both also with alpha), `rgb()`,
 /// `rgba()`, `hsl()` or `hsla()`.
 pub fn bytes(text: &str) -> Result<[u8; 4], String> {
-    let wanted = || {
+    durer_formats::css::color(text).ok_or_else(|| {
         "a colour is a name of CSS 4, #rgb, #rrggbb, #rrggbbaa, rgb(R,G,B), rgba(R,G,B,A) or hsl(H,S%,L%)"
             .to_owned()
-    };
-    let text = match text.to_ascii_lowercase() {
-        // The one name that CSS 4 adds to those of CSS 3.
-        name if name == "rebeccapurple" => "#663399".to_owned(),
-        other => other,
-    };
-    let color = svgtypes::Color::from_str(&text).map_err(|_| wanted())?;
-    Ok([color.red, color.green, color.blue, color.alpha])
+    })
 }
 
 /// A colour, `gradient`, or `TOP,BOTTOM`.

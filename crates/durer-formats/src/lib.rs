@@ -7,6 +7,7 @@
 
 mod arc;
 mod color;
+pub mod css;
 pub mod drawing;
 mod error;
 pub mod formula;

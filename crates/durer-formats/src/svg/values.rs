@@ -4,7 +4,7 @@
 //! has it. What can be used but is unknown to usvg is put in other words.
 
 use super::{ROOT, arcs};
-use crate::{Place, Warning};
+use crate::{Place, Warning, css};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::str::FromStr;
@@ -186,8 +186,8 @@ fn other_words(kind: Kind, value: &str) -> Option<String> {
     }
     let plain = value.trim();
     if matches!(kind, Kind::Paint | Kind::Color) {
-        if plain.eq_ignore_ascii_case(REBECCA.0) {
-            return Some(REBECCA.1.to_owned());
+        if let Some(words) = css::in_other_words(plain) {
+            return Some(words.to_owned());
         }
         if plain.eq_ignore_ascii_case("currentColor") && value != "currentColor" {
             return Some("currentColor".to_owned());
@@ -198,9 +198,6 @@ fn other_words(kind: Kind, value: &str) -> Option<String> {
     }
     [plain.to_owned(), plain.to_ascii_lowercase()].into_iter().find(|value| kind.allows(value))
 }
-
-/// The name that CSS 4 adds to the colours of CSS 3.
-const REBECCA: (&str, &str) = ("rebeccapurple", "#663399");
 
 /// What was found in a document.
 #[derive(Debug, Default)]
@@ -223,7 +220,7 @@ impl Found {
                 let place = || place(document, attribute.range().start);
                 if name == "style" {
                     found.style(value, element, &place());
-                    found.purple(document, attribute.range_value());
+                    found.colors(document, attribute.range_value());
                 } else if let Some(kind) = Kind::of_attribute(element, name) {
                     let changes = found.changes.len();
                     if let Some(value) = other_words(kind, value) {
@@ -303,24 +300,24 @@ impl Found {
             for said in sheet.rules.iter().flat_map(|rule| &rule.declarations) {
                 self.declaration(said, "style", &place);
             }
-            self.purple(document, text.range());
+            self.colors(document, text.range());
         }
     }
 
     fn declaration(&mut self, said: &simplecss::Declaration<'_>, element: &str, place: &Place) {
         let Some(kind) = Kind::of_property(said.name) else { return };
-        if !said.value.trim().eq_ignore_ascii_case(REBECCA.0) {
+        if css::in_other_words(said.value).is_none() {
             self.value(kind, (said.name, said.value), element, place);
         }
     }
 
-    /// Puts the value `rebeccapurple` of declarations in other words.
-    fn purple(&mut self, document: &Document<'_>, range: Range<usize>) {
+    /// Puts colours of declarations that usvg does not know in other words.
+    fn colors(&mut self, document: &Document<'_>, range: Range<usize>) {
         let Some(text) = document.input_text().get(range.clone()) else { return };
-        for (at, name) in text.match_indices(REBECCA.0) {
+        for (at, name, words) in css::names_to_replace(text) {
             if text.get(..at).is_some_and(|before| before.trim_end().ends_with(':')) {
                 let start = range.start + at;
-                self.changes.push((start..start + name.len(), REBECCA.1.to_owned()));
+                self.changes.push((start..start + name.len(), words.to_owned()));
             }
         }
     }
