@@ -8,10 +8,11 @@ use crate::output::{self, Name, Target};
 use crate::{color, report, values};
 use clap::{Args, ValueEnum, ValueHint};
 use durer::math::DVec2;
-use durer::raster::seed_fill::{self, SeedFill, boundary_fill, flood_fill};
+use durer::raster::seed_fill::{self, PixelValue, SeedFill, boundary_fill, flood_fill};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 use durer_formats::image::Orientation;
+use durer_formats::png::Channels;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -24,7 +25,8 @@ Examples:
   durer fill map.png -o map2.png --at 10,10 --at 300,200 --color lightgray --connectivity 8
   durer fill ink.png -o red.png --at 64,64 --color red --boundary black --tolerance 100
 
-A pixel is as different from another as the channel (red, green, blue, alpha) that differs most.
+A pixel is as different from another as the channel (red, green, blue, alpha) that differs most. A PNG of 16 bits
+per channel stays one: a step of 8 bits is 257 of its steps.
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
 
@@ -100,7 +102,6 @@ struct Report {
     width: u32,
     height: u32,
     fills: Vec<Fill>,
-    warnings: Vec<String>,
     fill_seconds: f64,
     total_seconds: f64,
     peak_memory_bytes: Option<u64>,
@@ -131,20 +132,24 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let name = display_name(&args.image);
     messages.progress.stage(|| format!("reading {name}"));
-    let mut warnings = Vec::new();
-    let mut pixels = read(args, &name, &mut warnings)?;
-    warnings.iter().for_each(|warning| messages.warning(&name, warning));
+    let mut picture = Picture::read(args, &name)?;
+    let (width, height) = picture.size();
     messages.progress.stage(|| format!("filling {name}"));
     let filling = Instant::now();
     let mut fills = Vec::new();
     for at in &args.at {
-        let (x, y) = place(*at, &pixels)?;
-        fills.push(Fill { x, y, pixels: fill(args, &mut pixels, (x, y)) });
+        let (x, y) = place(*at, (width, height))?;
+        fills.push(Fill { x, y, pixels: picture.fill(args, (x, y)) });
     }
     let fill_seconds = filling.elapsed().as_secs_f64();
     messages.progress.stage(|| format!("writing {target}"));
     let compression = args.compression.into();
-    output::deliver(&target, |out| png::write_color(out, &pixels, compression))?;
+    output::deliver(&target, |out| match &picture {
+        Picture::Eight(pixels) => png::write_color(out, pixels, compression),
+        Picture::Sixteen(pixels, channels) => {
+            png::write_deep_color(out, pixels, *channels, compression)
+        }
+    })?;
     for Fill { x, y, pixels } in &fills {
         messages.detail(|| format!("{name}: {pixels} pixels from {x},{y}"));
     }
@@ -156,39 +161,72 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
         version: env!("CARGO_PKG_VERSION"),
         input: name,
         output: target.to_string(),
-        width: pixels.width(),
-        height: pixels.height(),
+        width,
+        height,
         fills,
-        warnings,
         fill_seconds,
         total_seconds: start.elapsed().as_secs_f64(),
         peak_memory_bytes: report::peak_memory(),
     })
 }
 
-/// The picture as viewers show it.
-fn read(
-    args: &FillArgs,
-    name: &str,
-    warnings: &mut Vec<String>,
-) -> Result<Pixels<[u8; 4]>, Failure> {
-    let fail = |what: String| Failure::Data(format!("{name}: {what}"));
-    let bytes = input::bytes(&args.image, args.max_bytes)?;
-    let limits =
-        Limits { decoded_bytes: args.max_bytes, image_side: u16::MAX.into(), ..Limits::default() };
-    let image = image::decode(&bytes, name, &limits).map_err(|e| fail(e.to_string()))?;
-    let bits = image::bits_per_sample(&bytes);
-    if bits > 8 {
-        warnings
-            .push(format!("its {bits} bits per channel are rounded to 8, which the result has"));
+/// The picture as viewers show it, in sRGB with straight alpha.
+enum Picture {
+    Eight(Pixels<[u8; 4]>),
+    /// With the channels that its file has and its fills need.
+    Sixteen(Pixels<[u16; 4]>, Channels),
+}
+
+impl Picture {
+    fn read(args: &FillArgs, name: &str) -> Result<Self, Failure> {
+        let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
+        let bytes = input::bytes(&args.image, args.max_bytes)?;
+        let limits = Limits {
+            decoded_bytes: args.max_bytes,
+            image_side: u16::MAX.into(),
+            ..Limits::default()
+        };
+        let orientation = Orientation::of(&bytes);
+        if image::bits_per_sample(&bytes) > 8 {
+            let image = image::decode_deep(&bytes, name, &limits).map_err(fail)?;
+            let [r, g, b, a] = args.color;
+            let channels = Channels {
+                color: image.channels.color || r != g || g != b,
+                alpha: image.channels.alpha || a != u8::MAX,
+            };
+            return Ok(Self::Sixteen(orientation.turned(image.pixels), channels));
+        }
+        let image = image::decode(&bytes, name, &limits).map_err(fail)?;
+        let pixels = Pixels::from_data(image.width, image.height, image.data);
+        Ok(Self::Eight(orientation.turned(pixels.map_err(|e| fail(e.into()))?)))
     }
-    let image = Orientation::of(&bytes).turned(image);
-    Pixels::from_data(image.width, image.height, image.data).map_err(|e| fail(e.to_string()))
+
+    /// Width and height.
+    fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Eight(pixels) => (pixels.width(), pixels.height()),
+            Self::Sixteen(pixels, _) => (pixels.width(), pixels.height()),
+        }
+    }
+
+    /// Fills from a pixel; returns how many it reaches.
+    fn fill(&mut self, args: &FillArgs, seed: (u32, u32)) -> u64 {
+        // 255 steps of 257 are the whole range of 16 bits.
+        let deep = |v: u8| u16::from(v) * 257;
+        match self {
+            Self::Eight(pixels) => {
+                fill(args, pixels, seed, args.color, args.boundary, args.tolerance)
+            }
+            Self::Sixteen(pixels, _) => {
+                let (color, boundary) = (args.color.map(deep), args.boundary.map(|c| c.map(deep)));
+                fill(args, pixels, seed, color, boundary, deep(args.tolerance))
+            }
+        }
+    }
 }
 
 /// The pixel in which a point lies.
-fn place(at: DVec2, pixels: &Pixels<[u8; 4]>) -> Result<(u32, u32), Failure> {
-    let (width, height) = (pixels.width(), pixels.height());
+fn place(at: DVec2, (width, height): (u32, u32)) -> Result<(u32, u32), Failure> {
     let inside = |v: f64, side: u32| v >= 0.0 && v < f64::from(side);
     if inside(at.x, width) && inside(at.y, height) {
         Ok((at.x as u32, at.y as u32))
@@ -198,18 +236,24 @@ fn place(at: DVec2, pixels: &Pixels<[u8; 4]>) -> Result<(u32, u32), Failure> {
     }
 }
 
-fn fill(args: &FillArgs, pixels: &mut Pixels<[u8; 4]>, seed: (u32, u32)) -> u64 {
+fn fill<P: PixelValue>(
+    args: &FillArgs,
+    pixels: &mut Pixels<P>,
+    seed: (u32, u32),
+    color: P,
+    boundary: Option<P>,
+    tolerance: P::Level,
+) -> u64 {
     let connectivity = match args.connectivity {
         Connectivity::Four => seed_fill::Connectivity::Four,
         Connectivity::Eight => seed_fill::Connectivity::Eight,
     };
     let options = seed_fill::Options { connectivity };
-    let (color, tolerance, method) = (args.color, args.tolerance, args.algorithm);
-    match args.boundary {
+    let (method, t) = (args.algorithm, &mut NoTrace);
+    match boundary {
         Some(boundary) => {
-            let t = &mut NoTrace;
             boundary_fill(pixels, seed, color, boundary, tolerance, method, &options, t)
         }
-        None => flood_fill(pixels, seed, color, tolerance, method, &options, &mut NoTrace),
+        None => flood_fill(pixels, seed, color, tolerance, method, &options, t),
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures that models wear: PNG and JPEG to 8-bit RGBA.
+//! Pictures that models wear: PNG and JPEG to 8-bit RGBA; and deep PNG to 16-bit RGBA.
 //!
 //! What a file is, is told by its first bytes. Sizes are checked before anything is allocated, also
 //! against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
@@ -7,8 +7,10 @@ mod orientation;
 
 pub use orientation::Orientation;
 
+use crate::png::Channels;
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
+use durer::target::Pixels;
 use std::io::Cursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
@@ -78,15 +80,22 @@ fn broken(name: &str, message: impl std::fmt::Display) -> Error {
 }
 
 /// Checks a size against the limits and against what the file's bytes can hold.
-fn check_size(size: (u32, u32), holds: u64, name: &str, limits: &Limits) -> Result<()> {
+fn check_size(
+    size: (u32, u32),
+    bytes_per_pixel: u64,
+    holds: u64,
+    name: &str,
+    limits: &Limits,
+) -> Result<()> {
     let limit = |what, value, limit| Err(Error::Limit { place: Place::Whole, what, value, limit });
     let side = size.0.max(size.1);
     if side > limits.image_side {
         return limit("side of an image", u64::from(side), u64::from(limits.image_side));
     }
     let pixels = u64::from(size.0) * u64::from(size.1);
-    if pixels * 4 > limits.decoded_bytes {
-        return limit("decoded size of an image", pixels * 4, limits.decoded_bytes);
+    let needed = pixels.saturating_mul(bytes_per_pixel);
+    if needed > limits.decoded_bytes {
+        return limit("decoded size of an image", needed, limits.decoded_bytes);
     }
     if pixels == 0 {
         return Err(broken(name, "has no pixels"));
@@ -103,10 +112,64 @@ pub(crate) fn check_png_holds(length: usize, info: &png::Info, limit: u64) -> Re
     let limits = Limits { image_side: u32::MAX, decoded_bytes: limit, ..Limits::default() };
     let bits = info.bits_per_pixel().max(1) as u64;
     let holds = (length as u64).saturating_mul(DEFLATE_RATIO * 8) / bits;
-    check_size((info.width, info.height), holds, "height map", &limits)
+    check_size((info.width, info.height), 4, holds, "height map", &limits)
 }
 
 fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
+    let (frame, samples) = png_samples(bytes, 4, name, limits)?;
+    let color = frame.color_type;
+    let pixels = match frame.bit_depth {
+        png::BitDepth::Sixteen => {
+            rgba(samples.as_chunks().0, color, u8::MAX, |s| to_8_bit(u16::from_be_bytes(s)))
+        }
+        _ => rgba(&samples, color, u8::MAX, |sample| sample),
+    };
+    Ok((frame.width, frame.height, pixels.ok_or_else(|| broken(name, "has no palette"))?))
+}
+
+/// A picture of 16 bits per channel.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct DeepImage {
+    /// RGBA with straight alpha; greys have three channels alike, what is opaque an alpha of 65535.
+    pub pixels: Pixels<[u16; 4]>,
+    /// Which of them the file has.
+    pub channels: Channels,
+}
+
+/// Decodes a PNG file of 16 bits per channel without rounding; samples of fewer bits are spread over the same range.
+///
+/// `name`, limits and what is left out are those of [`decode`]; a pixel takes 8 bytes. Whether a file is so deep
+/// tells [`bits_per_sample`].
+///
+/// # Errors
+/// As [`decode`]; also [`Error::Decode`] for what is no PNG.
+pub fn decode_deep(bytes: &[u8], name: &str, limits: &Limits) -> Result<DeepImage> {
+    if !bytes.starts_with(PNG) {
+        return Err(broken(name, "is no PNG, the one format with 16 bits per channel"));
+    }
+    let (frame, samples) = png_samples(bytes, 8, name, limits)?;
+    let color = frame.color_type;
+    let pixels = match frame.bit_depth {
+        png::BitDepth::Sixteen => rgba(samples.as_chunks().0, color, u16::MAX, u16::from_be_bytes),
+        _ => rgba(&samples, color, u16::MAX, |sample: u8| u16::from(sample) * 257),
+    };
+    let pixels = pixels.ok_or_else(|| broken(name, "has no palette"))?;
+    let channels = Channels {
+        color: matches!(color, png::ColorType::Rgb | png::ColorType::Rgba),
+        alpha: matches!(color, png::ColorType::GrayscaleAlpha | png::ColorType::Rgba),
+    };
+    Ok(DeepImage { pixels: Pixels::from_data(frame.width, frame.height, pixels)?, channels })
+}
+
+/// The samples of the first picture of a PNG, palettes and transparent colours resolved, 1, 2 and 4 bits as 8, 16
+/// bits as two bytes; `bytes_per_pixel` is what a pixel will take once it is decoded.
+fn png_samples(
+    bytes: &[u8],
+    bytes_per_pixel: u64,
+    name: &str,
+    limits: &Limits,
+) -> Result<(png::OutputInfo, Vec<u8>)> {
     let wrong = |e: png::DecodingError| broken(name, e);
     let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
     let mut decoder =
@@ -117,7 +180,8 @@ fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Ve
     let info = decoder.read_header_info().map_err(wrong)?;
     let size = (info.width, info.height);
     let bits = info.bits_per_pixel().max(1) as u64;
-    check_size(size, (bytes.len() as u64).saturating_mul(DEFLATE_RATIO * 8) / bits, name, limits)?;
+    let holds = (bytes.len() as u64).saturating_mul(DEFLATE_RATIO * 8) / bits;
+    check_size(size, bytes_per_pixel, holds, name, limits)?;
     let mut reader = decoder.read_info().map_err(wrong)?;
     let length = reader.output_buffer_size().ok_or_else(|| broken(name, "is too large"))?;
     let mut samples = vec![0; length];
@@ -125,18 +189,23 @@ fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Ve
     if (frame.width, frame.height) != size {
         return Err(broken(name, "has a first frame of another size"));
     }
-    if frame.bit_depth == png::BitDepth::Sixteen {
-        samples =
-            samples.chunks_exact(2).map(|s| to_8_bit(u16::from_be_bytes([s[0], s[1]]))).collect();
-    }
-    let pixels = match frame.color_type {
-        png::ColorType::Grayscale => samples.iter().map(|&g| [g, g, g, 255]).collect(),
-        png::ColorType::GrayscaleAlpha => pixels_of(&samples, |[g, a]| [g, g, g, a]),
-        png::ColorType::Rgb => pixels_of(&samples, |[r, g, b]| [r, g, b, 255]),
-        png::ColorType::Rgba => pixels_of(&samples, |rgba| rgba),
-        png::ColorType::Indexed => return Err(broken(name, "has no palette")),
-    };
-    Ok((size.0, size.1, pixels))
+    Ok((frame, samples))
+}
+
+/// Samples, each read by `v`, as RGBA; `None` for indices of a palette.
+fn rgba<S: Copy, T: Copy>(
+    samples: &[S],
+    color: png::ColorType,
+    opaque: T,
+    v: impl Fn(S) -> T,
+) -> Option<Vec<[T; 4]>> {
+    Some(match color {
+        png::ColorType::Grayscale => pixels_of(samples, v, |[g]| [g, g, g, opaque]),
+        png::ColorType::GrayscaleAlpha => pixels_of(samples, v, |[g, a]| [g, g, g, a]),
+        png::ColorType::Rgb => pixels_of(samples, v, |[r, g, b]| [r, g, b, opaque]),
+        png::ColorType::Rgba => pixels_of(samples, v, |rgba| rgba),
+        png::ColorType::Indexed => return None,
+    })
 }
 
 /// The nearest of 256 levels.
@@ -145,8 +214,12 @@ fn to_8_bit(sample: u16) -> u8 {
 }
 
 /// Pixels of N samples each to RGBA.
-fn pixels_of<const N: usize>(samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) -> Vec<[u8; 4]> {
-    samples.as_chunks::<N>().0.iter().map(|&pixel| rgba(pixel)).collect()
+fn pixels_of<S: Copy, T: Copy, const N: usize>(
+    samples: &[S],
+    value: impl Fn(S) -> T,
+    rgba: impl Fn([T; N]) -> [T; 4],
+) -> Vec<[T; 4]> {
+    samples.as_chunks::<N>().0.iter().map(|pixel| rgba(pixel.map(&value))).collect()
 }
 
 fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
@@ -165,13 +238,13 @@ fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, V
     let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let size = (side(width), side(height));
     let holds = (bytes.len() as u64).saturating_mul(JPEG_PIXELS_PER_BYTE);
-    check_size(size, holds, name, limits)?;
+    check_size(size, 4, holds, name, limits)?;
     let ink = matches!(decoder.input_colorspace(), Some(ColorSpace::CMYK | ColorSpace::YCCK));
     let pixels = if ink {
         // The decoder brings inks to RGB only.
         let mut samples = vec![0; width * height * 3];
         open(ColorSpace::RGB)?.decode_into(&mut samples).map_err(wrong)?;
-        pixels_of(&samples, |[r, g, b]| [r, g, b, 255])
+        pixels_of(&samples, |sample| sample, |[r, g, b]| [r, g, b, 255])
     } else {
         let mut pixels = vec![[0; 4]; width * height];
         decoder.decode_into(pixels.as_flattened_mut()).map_err(wrong)?;
@@ -233,6 +306,29 @@ mod tests {
             bits_per_sample(&png_row(if depth == One { 16 } else { 1 }, Grayscale, depth, &[0; 2]))
         };
         assert_eq!((bits(Sixteen), bits(One)), (16, 8));
+    }
+
+    #[test]
+    fn every_png_layout_becomes_deep_rgba() {
+        use png::{BitDepth::*, ColorType::*};
+        let deep = |bytes: &[u8]| {
+            let image = decode_deep(bytes, "test", &Limits::default()).unwrap();
+            (image.pixels.into_data(), (image.channels.color, image.channels.alpha))
+        };
+        let data: Vec<u8> = (1..=8).collect();
+        let of = |color| deep(&png_row(1, color, Sixteen, &data[..2 * color.samples()]));
+        assert_eq!(of(Grayscale), (vec![[0x102, 0x102, 0x102, 0xffff]], (false, false)));
+        assert_eq!(of(GrayscaleAlpha), (vec![[0x102, 0x102, 0x102, 0x304]], (false, true)));
+        assert_eq!(of(Rgb), (vec![[0x102, 0x304, 0x506, 0xffff]], (true, false)));
+        assert_eq!(of(Rgba), (vec![[0x102, 0x304, 0x506, 0x708]], (true, true)));
+        let palette = deep(&png_row(1, Indexed, Eight, &[1]));
+        assert_eq!(palette, (vec![[0x909, 0x808, 0x707, 0xa0a]], (true, true)));
+        let limits = Limits { decoded_bytes: 15, ..Limits::default() };
+        let two = png_row(2, Grayscale, Sixteen, &[0; 4]);
+        assert!(matches!(decode_deep(&two, "x", &limits), Err(Error::Limit { .. })));
+        assert!(decode(&two, "x", &limits).is_ok());
+        let no = decode_deep(&jpeg_block(&[228]), "x", &Limits::default()).unwrap_err();
+        assert!(no.to_string().contains("is no PNG"), "{no}");
     }
 
     /// A baseline JPEG of one 8 × 8 block per component, all samples of a component alike: its two

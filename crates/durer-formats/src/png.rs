@@ -58,6 +58,50 @@ pub fn write_color<W: Write>(
     }
 }
 
+/// Which channels a PNG has beside a grey one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Channels {
+    /// Red, green and blue instead of grey.
+    pub color: bool,
+    /// Alpha.
+    pub alpha: bool,
+}
+
+/// Writes sRGB colours with straight alpha, 16 bits each. Of what the file has no channel for, the red one
+/// is taken as grey, and alpha is left out.
+///
+/// # Errors
+/// As [`write_color`].
+pub fn write_deep_color<W: Write>(
+    out: W,
+    pixels: &Pixels<[u16; 4]>,
+    channels: Channels,
+    compression: Compression,
+) -> Result<()> {
+    let kind = |color| Kind { color, depth: BitDepth::Sixteen, srgb: true };
+    match (channels.color, channels.alpha) {
+        (false, false) => {
+            let kind = kind(ColorType::Grayscale);
+            write(out, pixels, kind, compression, |[g, ..]| g.to_be_bytes())
+        }
+        (false, true) => {
+            let kind = kind(ColorType::GrayscaleAlpha);
+            write(out, pixels, kind, compression, |[g, .., a]| big_endian::<2, 4>([g, a]))
+        }
+        (true, false) => {
+            let kind = kind(ColorType::Rgb);
+            write(out, pixels, kind, compression, |[r, g, b, _]| big_endian::<3, 6>([r, g, b]))
+        }
+        (true, true) => write(out, pixels, kind(ColorType::Rgba), compression, big_endian::<4, 8>),
+    }
+}
+
+/// Numbers of two bytes, the higher one first.
+fn big_endian<const N: usize, const BYTES: usize>(samples: [u16; N]) -> [u8; BYTES] {
+    let bytes = samples.map(u16::to_be_bytes);
+    std::array::from_fn(|i| bytes[i / 2][i % 2])
+}
+
 /// Writes window depths 0…1 as 16-bit grey: depth × 65535, rounded to nearest; what is not a number
 /// becomes [`DEPTH_BACKGROUND`].
 ///

@@ -51,30 +51,118 @@ fn tolerance_boundary_and_several_seeds() {
     }
 }
 
+/// A PNG of one row.
+fn row(
+    color: png::ColorType,
+    depth: png::BitDepth,
+    exif: Option<Vec<u8>>,
+    data: &[u8],
+    width: u32,
+) -> Vec<u8> {
+    let mut info = png::Info::with_size(width, 1);
+    (info.color_type, info.bit_depth) = (color, depth);
+    info.exif_metadata = exif.map(Into::into);
+    let mut bytes = Vec::new();
+    let mut writer = png::Encoder::with_info(&mut bytes, info).unwrap().write_header().unwrap();
+    writer.write_image_data(data).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
 #[test]
-fn pictures_stand_as_viewers_show_them_and_lost_bits_are_told() {
+fn pictures_stand_as_viewers_show_them() {
     let folder = Folder::new();
-    let png = |depth: png::BitDepth, exif: Option<Vec<u8>>, data: &[u8]| {
-        let mut info = png::Info::with_size(3, 1);
-        (info.color_type, info.bit_depth) = (png::ColorType::Grayscale, depth);
-        info.exif_metadata = exif.map(Into::into);
-        let mut bytes = Vec::new();
-        let mut writer = png::Encoder::with_info(&mut bytes, info).unwrap().write_header().unwrap();
-        writer.write_image_data(data).unwrap();
-        writer.finish().unwrap();
-        bytes
-    };
     // One entry: the orientation, "to be turned by a quarter to the right".
     let exif = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0".to_vec();
-    folder.write("a.png", png(png::BitDepth::Eight, Some(exif), &[10, 20, 30]));
-    let told = folder.must("fill a.png -o b.png --at 0,2 --color red").err;
-    let turned = Picture::decode(&folder.read("b.png"));
-    assert_eq!((turned.width, turned.height), (1, 3));
-    assert_eq!([0, 1, 2].map(|y| turned.pixel(0, y)[0]), [10, 20, 255]);
+    for (depth, data) in [
+        (png::BitDepth::Eight, &[10, 20, 30][..]),
+        (png::BitDepth::Sixteen, &[10, 1, 20, 2, 30, 3][..]),
+    ] {
+        let turned = row(png::ColorType::Grayscale, depth, Some(exif.clone()), data, 3);
+        folder.write("a.png", turned);
+        let told = folder.must("fill a.png -o b.png --at 0,2 --color red").err;
+        let turned = Picture::decode(&folder.read("b.png"));
+        assert_eq!((turned.width, turned.height), (1, 3));
+        assert_eq!([0, 1, 2].map(|y| turned.pixel(0, y)[0]), [10, 20, 255]);
+        assert_eq!(told, "");
+    }
+}
+
+/// Fills from the first pixel of a row of 16 bits per channel, given pixel by pixel.
+fn deep<const N: usize>(
+    folder: &Folder,
+    color: png::ColorType,
+    pixels: &[[u16; N]],
+    how: &str,
+) -> (png::ColorType, Vec<Vec<u16>>) {
+    let data: Vec<u8> = pixels.as_flattened().iter().flat_map(|s| s.to_be_bytes()).collect();
+    let width = pixels.len() as u32;
+    folder.write("deep.png", row(color, png::BitDepth::Sixteen, None, &data, width));
+    let told = folder.must(&format!("fill deep.png -o filled.png --at 0,0 {how}")).err;
     assert_eq!(told, "");
-    folder.write("c.png", png(png::BitDepth::Sixteen, None, &[0, 9, 1, 0, 2, 0]));
-    let told = folder.must("fill c.png -o d.png --at 0,0 --color red").err;
-    assert!(told.contains("its 16 bits per channel are rounded to 8"), "{told}");
+    let bytes = folder.read("filled.png");
+    let reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let (color, depth) = reader.output_color_type();
+    assert_eq!(depth, png::BitDepth::Sixteen, "{color:?}");
+    let samples = |p: &[u8]| p.chunks_exact(2).map(|s| u16::from_be_bytes([s[0], s[1]])).collect();
+    (color, Picture::decode(&bytes).pixels().map(samples).collect())
+}
+
+#[test]
+fn sixteen_bits_stay_sixteen_bits() {
+    use png::ColorType::{Grayscale, GrayscaleAlpha, Rgb, Rgba};
+    let folder = Folder::new();
+    // In 8 bits the first three pixels are all the same.
+    let grey = [[0x1000], [0x1001], [0x1002], [0xfffe]];
+    let opaque = grey.map(|[g]| [g, 0xffff]);
+    let pale = grey.map(|[g]| [g, 0x8001]);
+    let rgb = grey.map(|[g]| [0x1234, g, 0xabcd]);
+    let rgba = grey.map(|[g]| [0x1234, 0xabcd, 0x4321, g]);
+    /// Of all pixels but the first; that is filled.
+    fn with<const N: usize>(first: [u16; N], pixels: &[[u16; N]]) -> Vec<Vec<u16>> {
+        std::iter::once(&first).chain(&pixels[1..]).map(|p| p.to_vec()).collect()
+    }
+    let half = "--color #808080";
+    let found = deep(&folder, Grayscale, &grey, half);
+    assert_eq!(found, (Grayscale, with([0x8080], &grey)));
+    let found = deep(&folder, GrayscaleAlpha, &pale, half);
+    assert_eq!(found, (GrayscaleAlpha, with([0x8080, 0xffff], &pale)));
+    let found = deep(&folder, Rgb, &rgb, half);
+    assert_eq!(found, (Rgb, with([0x8080; 3], &rgb)));
+    let found = deep(&folder, Rgba, &rgba, "--color #01020304");
+    assert_eq!(found, (Rgba, with([0x0101, 0x0202, 0x0303, 0x0404], &rgba)));
+    // What the file has no channel for gets one.
+    let found = deep(&folder, Grayscale, &grey, "--color #80808001");
+    assert_eq!(found, (GrayscaleAlpha, with([0x8080, 0x0101], &opaque)));
+    let found = deep(&folder, Grayscale, &grey, "--color #ff0001");
+    let in_color = grey.map(|[g]| [g; 3]);
+    assert_eq!(found, (Rgb, with([0xffff, 0, 0x0101], &in_color)));
+    let found = deep(&folder, GrayscaleAlpha, &pale, "--color #ff0001");
+    let in_color = pale.map(|[g, a]| [g, g, g, a]);
+    assert_eq!(found, (Rgba, with([0xffff, 0, 0x0101, 0xffff], &in_color)));
+    let found = deep(&folder, Rgb, &rgb, "--color transparent");
+    let transparent = rgb.map(|[r, g, b]| [r, g, b, 0xffff]);
+    assert_eq!(found, (Rgba, with([0; 4], &transparent)));
+}
+
+#[test]
+fn tolerances_of_sixteen_bits_are_steps_of_eight() {
+    let folder = Folder::new();
+    let filled = |pixels: &[[u16; 1]], how: &str| {
+        let (_, found) = deep(&folder, png::ColorType::Grayscale, pixels, how);
+        found.iter().take_while(|p| p[0] == 0xffff).count()
+    };
+    let ramp = [[0x1000], [0x1000 + 1], [0x1000 + 257], [0x1000 + 258], [0x1000 + 514]];
+    for (tolerance, count) in [(0, 1), (1, 3), (2, 5)] {
+        let how = format!("--color white --tolerance {tolerance}");
+        assert_eq!(filled(&ramp, &how), count, "{tolerance}");
+    }
+    let reversed = [[0], [0x8080 - 258], [0x8080 - 257], [0x8080]];
+    for (tolerance, count) in [(0, 3), (1, 2), (2, 1)] {
+        let how = format!("--color white --boundary #808080 --tolerance {tolerance}");
+        assert_eq!(filled(&reversed, &how), count, "{tolerance}");
+    }
+    assert_eq!(filled(&[[0], [0xffff - 1], [5]], "--color white --tolerance 255"), 3);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! an APP1 segment of a JPEG or an eXIf chunk of a PNG.
 
 use super::{JPEG, PNG};
-use durer::scene::Image;
+use durer::target::Pixels;
 
 /// The tag of the orientation in the first directory, and the type of its value: 16 bits.
 const TAG: u16 = 0x0112;
@@ -49,31 +49,31 @@ impl Orientation {
         Self::ALL.get(usize::from(number).wrapping_sub(1)).copied().unwrap_or_default()
     }
 
-    /// The picture as it is to be seen.
-    pub fn turned(self, image: Image) -> Image {
-        let (w, h) = (image.width as usize, image.height as usize);
-        if self == Self::Upright || image.data.len() != w * h || w * h == 0 {
-            return image;
+    /// The pixels as they are to be seen.
+    pub fn turned<P: Copy>(self, pixels: Pixels<P>) -> Pixels<P> {
+        let (w, h) = (pixels.width(), pixels.height());
+        let (width, height) = if self as u8 >= Self::Transposed as u8 { (h, w) } else { (w, h) };
+        if self == Self::Upright || w == 0 || h == 0 {
+            return pixels;
         }
-        let quarter = self as u8 >= Self::Transposed as u8;
-        let (width, height) = if quarter { (h, w) } else { (w, h) };
-        let mut data = Vec::with_capacity(w * h);
+        let source = |x: u32, y: u32| match self {
+            Self::Upright => (x, y),
+            Self::Mirrored => (w - 1 - x, y),
+            Self::UpsideDown => (w - 1 - x, h - 1 - y),
+            Self::Flipped => (x, h - 1 - y),
+            Self::Transposed => (y, x),
+            Self::Right => (y, h - 1 - x),
+            Self::Transversed => (w - 1 - y, h - 1 - x),
+            Self::Left => (w - 1 - y, x),
+        };
+        let mut turned = Pixels::new(width, height, pixels.row(0)[0]);
         for y in 0..height {
-            data.extend((0..width).map(|x| {
-                let (x, y) = match self {
-                    Self::Upright => (x, y),
-                    Self::Mirrored => (w - 1 - x, y),
-                    Self::UpsideDown => (w - 1 - x, h - 1 - y),
-                    Self::Flipped => (x, h - 1 - y),
-                    Self::Transposed => (y, x),
-                    Self::Right => (y, h - 1 - x),
-                    Self::Transversed => (w - 1 - y, h - 1 - x),
-                    Self::Left => (w - 1 - y, x),
-                };
-                image.data[y * w + x]
-            }));
+            for (x, pixel) in (0..width).zip(turned.row_mut(y)) {
+                let (x, y) = source(x, y);
+                *pixel = pixels.row(y)[x as usize];
+            }
         }
-        Image { width: width as u32, height: height as u32, data, ..image }
+        turned
     }
 }
 
@@ -204,11 +204,9 @@ mod tests {
     fn pixels_go_where_viewers_show_them() {
         // a b c
         // d e f
-        let image = |rows: &[&str]| Image {
-            name: String::new(),
-            width: rows[0].len() as u32,
-            height: rows.len() as u32,
-            data: rows.concat().bytes().map(|b| [b; 4]).collect(),
+        let image = |rows: &[&str]| {
+            let data = rows.concat().into_bytes();
+            Pixels::from_data(rows[0].len() as u32, rows.len() as u32, data).unwrap()
         };
         let cases: [(Orientation, &[&str]); 8] = [
             (Orientation::Upright, &["abc", "def"]),

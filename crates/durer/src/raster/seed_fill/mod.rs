@@ -82,17 +82,21 @@ family! {
 
 /// Values of pixels that can be more or less alike.
 pub trait PixelValue: Copy {
+    /// What differences are counted in.
+    type Level: Copy + Ord + Default;
     /// The largest difference of a channel.
-    fn difference(self, other: Self) -> u8;
+    fn difference(self, other: Self) -> Self::Level;
 }
 
 impl PixelValue for bool {
+    type Level = u8;
     fn difference(self, other: Self) -> u8 {
         u8::from(self != other) * 255
     }
 }
 
 impl PixelValue for u8 {
+    type Level = u8;
     #[inline(always)]
     fn difference(self, other: Self) -> u8 {
         // Many at a time, where abs_diff would be computed in 32 bits.
@@ -100,9 +104,19 @@ impl PixelValue for u8 {
     }
 }
 
-impl<const N: usize> PixelValue for [u8; N] {
-    fn difference(self, other: Self) -> u8 {
-        self.iter().zip(other).map(|(a, b)| (*a).difference(b)).max().unwrap_or(0)
+impl PixelValue for u16 {
+    type Level = u16;
+    #[inline(always)]
+    fn difference(self, other: Self) -> u16 {
+        self.max(other) - self.min(other)
+    }
+}
+
+impl<T: PixelValue, const N: usize> PixelValue for [T; N] {
+    type Level = T::Level;
+    #[inline]
+    fn difference(self, other: Self) -> T::Level {
+        self.iter().zip(other).map(|(a, b)| (*a).difference(b)).max().unwrap_or_default()
     }
 }
 
@@ -123,7 +137,7 @@ pub fn flood_fill<P: PixelValue>(
     image: &mut Pixels<P>,
     seed: (u32, u32),
     value: P,
-    tolerance: u8,
+    tolerance: P::Level,
     method: SeedFill,
     options: &Options,
     t: &mut impl Tracer<Step>,
@@ -140,7 +154,7 @@ pub fn boundary_fill<P: PixelValue>(
     seed: (u32, u32),
     value: P,
     boundary: P,
-    tolerance: u8,
+    tolerance: P::Level,
     method: SeedFill,
     options: &Options,
     t: &mut impl Tracer<Step>,
