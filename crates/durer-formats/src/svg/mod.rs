@@ -38,6 +38,8 @@ use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use svgtypes::{PathParser, PathSegment};
 use usvg::{ImageHrefResolver, ImageKind, roxmltree};
 
@@ -104,16 +106,18 @@ impl Drawing {
             return Err(Error::line(1, 0, message));
         }
         check_arcs(&document)?;
-        references::check(&document)?;
+        let mut levels = references::check(&document, 0)?;
         let mut warnings = passed_over(&document);
         let mut found = values::Found::new(&document);
         warnings.append(&mut found.warnings);
         let amended = found.amended(text);
         let amended = amended.as_deref().and_then(|text| parse(text).ok());
         // What cannot be used may have hidden what is inherited.
-        amended.as_ref().map_or(Ok(()), references::check)?;
+        if let Some(amended) = &amended {
+            levels = levels.max(references::check(amended, 0)?);
+        }
         let (tree, told) = {
-            let told = Told::default();
+            let told = Told { levels: levels.into(), ..Told::default() };
             let usvg_options = usvg::Options {
                 font_family: options.fonts.default_family(),
                 fontdb: options.fonts.database(),
@@ -170,18 +174,21 @@ fn warning(message: impl Into<String>) -> Warning {
     Warning { place: Place::Whole, message: message.into() }
 }
 
-/// Messages from within usvg, each once.
+/// Messages from within usvg, each once, and how many levels of elements it may be in by recursion.
 #[derive(Debug, Default)]
-struct Told(std::sync::Mutex<BTreeSet<String>>);
+struct Told {
+    messages: std::sync::Mutex<BTreeSet<String>>,
+    levels: AtomicUsize,
+}
 
 impl Told {
     fn tell(&self, message: String) {
         // A poisoned lock still holds the messages.
-        self.0.lock().unwrap_or_else(|e| e.into_inner()).insert(message);
+        self.messages.lock().unwrap_or_else(|e| e.into_inner()).insert(message);
     }
 
     fn take(self) -> BTreeSet<String> {
-        self.0.into_inner().unwrap_or_else(|e| e.into_inner())
+        self.messages.into_inner().unwrap_or_else(|e| e.into_inner())
     }
 }
 
@@ -262,12 +269,17 @@ fn passed_over(document: &roxmltree::Document<'_>) -> Vec<Warning> {
 /// Where images come from: the file itself, or what it refers to.
 fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
     let (resources, limit) = (options.resources, options.limits.decoded_bytes);
+    let default = ImageHrefResolver::default_data_resolver();
     ImageHrefResolver {
-        resolve_data: ImageHrefResolver::default_data_resolver(),
+        resolve_data: Box::new(move |mime, bytes, usvg_options| match mime {
+            "image/svg+xml" => nested(&bytes, usvg_options, told),
+            "text/plain" => kind_of(bytes, usvg_options, told),
+            _ => default(mime, bytes, usvg_options),
+        }),
         resolve_string: Box::new(move |href, usvg_options| {
             let path = relative_path(href).map_err(str::to_owned);
             match path.and_then(|path| resources.read(&path, limit)) {
-                Ok(bytes) => kind_of(bytes, usvg_options),
+                Ok(bytes) => kind_of(bytes.into(), usvg_options, told),
                 Err(why) => {
                     told.tell(format!("image `{href}` is left out: {why}"));
                     None
@@ -277,12 +289,30 @@ fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a
     }
 }
 
-fn kind_of(bytes: Vec<u8>, options: &usvg::Options<'_>) -> Option<ImageKind> {
+fn kind_of(bytes: Arc<Vec<u8>>, options: &usvg::Options<'_>, told: &Told) -> Option<ImageKind> {
     match bytes.get(..4)? {
-        b"\x89PNG" => Some(ImageKind::PNG(bytes.into())),
-        [0xff, 0xd8, ..] => Some(ImageKind::JPEG(bytes.into())),
-        b"GIF8" => Some(ImageKind::GIF(bytes.into())),
-        b"RIFF" => Some(ImageKind::WEBP(bytes.into())),
-        _ => usvg::Tree::from_data_nested(&bytes, options).ok().map(ImageKind::SVG),
+        b"\x89PNG" => Some(ImageKind::PNG(bytes)),
+        [0xff, 0xd8, ..] => Some(ImageKind::JPEG(bytes)),
+        b"GIF8" => Some(ImageKind::GIF(bytes)),
+        b"RIFF" => Some(ImageKind::WEBP(bytes)),
+        _ => nested(&bytes, options, told),
     }
+}
+
+/// A drawing that is an image of the drawing, looked at with the same care before usvg goes into it.
+fn nested(bytes: &[u8], options: &usvg::Options<'_>, told: &Told) -> Option<ImageKind> {
+    let document = parse(std::str::from_utf8(bytes).ok()?).ok()?;
+    let around = told.levels.load(Ordering::Relaxed);
+    let checked = check_arcs(&document)
+        .and_then(|()| references::check(&document, around + references::IMAGE));
+    match checked {
+        Ok(levels) => told.levels.store(levels, Ordering::Relaxed),
+        Err(why) => {
+            told.tell(format!("an image that is a drawing is left out: {why}"));
+            return None;
+        }
+    }
+    let tree = usvg::Tree::from_data_nested(bytes, options);
+    told.levels.store(around, Ordering::Relaxed);
+    tree.ok().map(ImageKind::SVG)
 }

@@ -1,8 +1,10 @@
-//! What a drawing's elements refer to: usvg follows patterns, masks and clip paths by recursion, and without end where
-//! three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
+//! What a drawing's elements refer to: usvg follows patterns, masks, clip paths and filters by recursion, and without end
+//! where three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
 
 use crate::{Error, Result};
-use simplecss::{AttributeOperator, DeclarationTokenizer, PseudoClass, StyleSheet};
+use simplecss::{
+    AttributeOperator, Declaration, DeclarationTokenizer, PseudoClass, Rule, StyleSheet,
+};
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
@@ -12,17 +14,23 @@ const MAX_DEPTH: usize = 1024;
 /// What following a reference takes of the stack, in elements.
 const REFERENCE: usize = 8;
 
-/// Elements that are filled and stroked.
-const SHAPES: [&str; 9] =
-    ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "text", "tspan"];
+/// What a drawing that is an image of another one takes of the stack, in elements.
+pub const IMAGE: usize = 64;
+
+/// Elements that are filled and stroked; `a` and `tref` where they stand in a text.
+const SHAPES: [&str; 13] = [
+    "path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "text", "tspan",
+    "textPath", "tref", "a", "use",
+];
 
 /// How something is referred to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Kind {
     Fill,
     Stroke,
     ClipPath,
     Mask,
+    Filter,
     Marker,
     /// By `href`.
     Href,
@@ -35,6 +43,7 @@ impl Kind {
             Self::Fill | Self::Stroke => name == "pattern",
             Self::ClipPath => name == "clipPath",
             Self::Mask => name == "mask",
+            Self::Filter => name == "filter",
             Self::Marker => name == "marker",
             Self::Href => true,
         }
@@ -42,33 +51,46 @@ impl Kind {
 }
 
 /// Properties that refer to elements.
-const PROPERTIES: [(&str, Kind); 7] = [
+const PROPERTIES: [(&str, Kind); 9] = [
     ("fill", Kind::Fill),
     ("stroke", Kind::Stroke),
     ("clip-path", Kind::ClipPath),
     ("mask", Kind::Mask),
+    ("filter", Kind::Filter),
+    ("marker", Kind::Marker),
     ("marker-start", Kind::Marker),
     ("marker-mid", Kind::Marker),
     ("marker-end", Kind::Marker),
 ];
 
-/// Refuses references that go in circles, and elements that are too deep.
+/// Those of which only one value counts, in the order of [`Values`].
+const CASCADED: [Kind; 5] = [Kind::Fill, Kind::Stroke, Kind::ClipPath, Kind::Mask, Kind::Filter];
+
+/// Which property of that name refers to elements.
+fn property(name: &str) -> Option<Kind> {
+    PROPERTIES.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
+}
+
+/// Refuses references that go in circles, and elements that are too deep within one another and within the `above` levels
+/// around the document; gives how many levels there are with those.
 ///
 /// # Errors
 /// [`Error::Decode`] with the place of the element where a circle closes, or that is too deep.
-pub fn check(document: &Document<'_>) -> Result<()> {
-    let with_id = |node: Node<'_, '_>| node.attribute("id").is_some();
+pub fn check(document: &Document<'_>, above: usize) -> Result<usize> {
     let mut ids: HashMap<_, Vec<_>> = HashMap::new();
-    for node in document.descendants().filter(|node| with_id(*node)) {
-        ids.entry(node.attribute("id").unwrap_or_default()).or_default().push(node);
+    for node in document.descendants() {
+        for id in node.attributes().filter(|attribute| attribute.name() == "id") {
+            ids.entry(id.value()).or_default().push(node);
+        }
     }
     let sheet = sheet(document);
-    Walk { document, sheet: &sheet, ids, depths: HashMap::new(), open: Vec::new() }
-        .depth(document.root_element(), Kind::Href, 0, [(None, true); 2])
-        .map(drop)
+    let (depths, around) = (HashMap::new(), HashMap::new());
+    Walk { document, sheet: &sheet, ids, depths, around, open: Vec::new() }
+        .depth(document.root_element(), BY_HREF, above, Values::default())
+        .map(|levels| above + levels)
 }
 
-/// The rules of all style sheets that say what elements refer to, those that count least first.
+/// The rules of all style sheets that say what elements refer to.
 fn sheet<'a>(document: &'a Document<'_>) -> StyleSheet<'a> {
     let mut sheet = StyleSheet::new();
     for style in document.descendants().filter(|node| node.has_tag_name("style")) {
@@ -76,8 +98,8 @@ fn sheet<'a>(document: &'a Document<'_>) -> StyleSheet<'a> {
             sheet.parse_more(style.text().unwrap_or_default());
         }
     }
-    let refers = |name: &str| PROPERTIES.iter().any(|(known, _)| *known == name);
-    sheet.rules.retain(|rule| rule.declarations.iter().any(|said| refers(said.name)));
+    let refers = |rule: &Rule<'_>| rule.declarations.iter().any(|d| property(d.name).is_some());
+    sheet.rules.retain(refers);
     sheet
 }
 
@@ -86,135 +108,200 @@ struct Walk<'a, 'i> {
     sheet: &'a StyleSheet<'a>,
     /// Of several elements with the same id any may be meant.
     ids: HashMap<&'a str, Vec<Node<'a, 'i>>>,
-    /// How deep the elements are that have been followed, with the paints that they have from around them.
-    depths: HashMap<(NodeId, [Option<&'a str>; 2]), usize>,
-    /// Those that are being followed, and how they were referred to.
-    open: Vec<(NodeId, Kind)>,
+    /// How deep the elements are that have been followed, with how they were referred to and what is said around them.
+    depths: HashMap<(NodeId, Opened, Values<'a>), usize>,
+    /// What is said around elements that were referred to.
+    around: HashMap<NodeId, Values<'a>>,
+    /// Those that are being followed.
+    open: Vec<(NodeId, Opened)>,
 }
 
-/// What fill and stroke an element has from around it, and whether that was said outside of what is being followed.
-type Paints<'a> = [(Option<&'a str>, bool); 2];
+/// How an element is referred to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Opened {
+    kind: Kind,
+    /// By a paint that was said outside of what is being followed.
+    is_outside: bool,
+}
 
-/// What is said of each of [`PROPERTIES`], fill and stroke first.
-type Said<'a> = [Option<&'a str>; PROPERTIES.len()];
+const BY_HREF: Opened = Opened { kind: Kind::Href, is_outside: false };
+
+/// What is said of a property.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Value<'a> {
+    text: &'a str,
+    is_important: bool,
+    is_outside: bool,
+}
+
+/// What is said of fill, stroke, clip path, mask and filter.
+type Values<'a> = [Option<Value<'a>>; 5];
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// How many levels there are in an element and in what it refers to; `above` are around it, with these paints.
+    /// How many levels there are in an element and in what it refers to; `above` are around it, where this is said.
     fn depth(
         &mut self,
         start: Node<'a, 'i>,
-        kind: Kind,
+        opened: Opened,
         above: usize,
-        around: Paints<'a>,
+        around: Values<'a>,
     ) -> Result<usize> {
-        let key = (start.id(), around.map(|(paint, _)| paint));
+        let key = (start.id(), opened, around);
         if let Some(depth) = self.depths.get(&key) {
             return if above + depth > MAX_DEPTH { Err(self.too_deep(start)) } else { Ok(*depth) };
         }
-        self.open.push((start.id(), kind));
+        self.open.push((start.id(), opened));
         let is_clip = start.has_tag_name((super::ROOT.0, "clipPath"));
         let mut deepest = 0;
         let mut left = vec![(start, 0, around)];
-        while let Some((node, level, mut paints)) = left.pop() {
+        while let Some((node, level, around)) = left.pop() {
             if above + level > MAX_DEPTH {
                 return Err(self.too_deep(node));
             }
             deepest = deepest.max(level);
-            let said = self.said(node);
-            for (paint, said) in paints.iter_mut().zip(said) {
-                if let Some(value) = said.filter(|value| *value != "inherit") {
-                    *paint = (Some(value), false);
-                }
-            }
-            for (kind, target, is_outside) in self.references(node, &said, &paints, is_clip) {
+            let said = handed_down(self.said(node, &around), &around);
+            for (opened, target) in self.references(node, &said, is_clip) {
                 if let Some(at) = self.open.iter().position(|(id, _)| *id == target.id()) {
-                    if self.is_endless(at, kind, is_outside) {
+                    if self.is_endless(at, opened) {
                         return Err(self.circle(node, target));
                     }
                     continue;
                 }
                 let below = level + REFERENCE;
-                // What `use` shows has its paints from there.
-                let is_use = kind == Kind::Href && node.tag_name().name() == "use";
-                let around = if is_use { paints } else { self.inherited(target) };
-                deepest = deepest.max(below + self.depth(target, kind, above + below, around)?);
+                // What `use` shows stands in its place.
+                let is_use = opened.kind == Kind::Href && node.tag_name().name() == "use";
+                let around = if is_use { said } else { self.around(target) };
+                let around = self.needed(target, around);
+                deepest = deepest.max(below + self.depth(target, opened, above + below, around)?);
             }
             let children = node.children().filter(Node::is_element);
-            left.extend(children.map(|child| (child, level + 1, paints)));
+            left.extend(children.map(|child| (child, level + 1, said)));
         }
         self.open.pop();
         self.depths.insert(key, deepest);
         Ok(deepest)
     }
 
-    /// What an element refers to where it is drawn; clip paths have neither paint nor mask.
+    /// What an element refers to where it is drawn; clip paths have neither paint, mask nor filter.
     fn references(
         &self,
         node: Node<'a, 'i>,
-        said: &Said<'a>,
-        paints: &Paints<'a>,
+        said: &Values<'a>,
         is_clip: bool,
-    ) -> Vec<(Kind, Node<'a, 'i>, bool)> {
-        let mut found = Vec::new();
+    ) -> Vec<(Opened, Node<'a, 'i>)> {
         let is_shape = SHAPES.contains(&node.tag_name().name());
-        for ((_, kind), said) in PROPERTIES.into_iter().zip(said) {
-            let (value, is_outside) = match kind {
-                Kind::Fill if is_shape && !is_clip => paints[0],
-                Kind::Stroke if is_shape && !is_clip => paints[1],
-                Kind::Fill | Kind::Stroke => (None, false),
-                Kind::ClipPath => (*said, false),
-                _ if is_clip => (None, false),
-                _ => (*said, false),
+        let mut found = Vec::new();
+        let mut follow = |opened: Opened, value: &'a str| {
+            let targets = targets_of(value).filter_map(|id| self.ids.get(id)).flatten();
+            let fitting = targets.filter(|target| opened.kind.fits(target.tag_name().name()));
+            found.extend(fitting.map(|target| (opened, *target)));
+        };
+        for (kind, value) in CASCADED.into_iter().zip(said) {
+            let Some(value) = value else { continue };
+            let is_followed = match kind {
+                Kind::ClipPath => true,
+                Kind::Fill | Kind::Stroke => is_shape && !is_clip,
+                Kind::Filter => !is_clip && !self.has_image_of_itself(node, value.text),
+                _ => !is_clip,
             };
-            let targets = value.and_then(target_of).and_then(|id| self.ids.get(id));
-            let fitting = targets.into_iter().flatten();
-            let fitting = fitting.filter(|target| kind.fits(target.tag_name().name()));
-            found.extend(fitting.map(|target| (kind, *target, is_outside)));
+            if is_followed {
+                follow(Opened { kind, is_outside: value.is_outside }, value.text);
+            }
         }
-        let href = node.attributes().find(|a| a.name() == "href").map(|a| a.value());
-        let targets = href.and_then(|href| self.ids.get(href.trim().strip_prefix('#')?));
-        found.extend(targets.into_iter().flatten().map(|target| (Kind::Href, *target, false)));
+        let declared = self.declared(node).map(|declared| (declared.name, declared.value));
+        let markers = attributes(node).chain(declared);
+        let markers = markers.filter(|(name, _)| property(name) == Some(Kind::Marker));
+        let marker = Opened { kind: Kind::Marker, is_outside: false };
+        markers.filter(|_| !is_clip).for_each(|(_, value)| follow(marker, value));
+        // Where links lead is not drawn.
+        if node.tag_name().name() != "a" {
+            found.extend(self.linked(node).map(|target| (BY_HREF, target)));
+        }
         found
+    }
+
+    /// What an element refers to by `href`.
+    fn linked(&self, node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
+        let links = node.attributes().filter(|attribute| attribute.name() == "href");
+        let ids = links.filter_map(|link| link.value().trim().strip_prefix('#'));
+        ids.filter_map(|id| self.ids.get(id)).flatten().copied()
+    }
+
+    /// Whether the filter of an element shows the element: then usvg leaves the filter out.
+    fn has_image_of_itself(&self, node: Node<'a, 'i>, filter: &str) -> bool {
+        let filters = targets_of(filter).filter_map(|id| self.ids.get(id)).flatten();
+        let mut images = filters.flat_map(Node::children);
+        images.any(|image| {
+            image.tag_name().name() == "feImage" && self.linked(image).any(|shown| shown == node)
+        })
     }
 
     /// Whether usvg would follow a circle without end, that closes by a reference to what was opened `at`: it cuts
     /// those of one or two elements of the same kind, and all with a marker or of `href` alone.
-    fn is_endless(&self, at: usize, kind: Kind, is_outside: bool) -> bool {
-        let within = self.open.get(at + 1..).unwrap_or_default().iter().map(|(_, kind)| *kind);
-        let kinds: Vec<Kind> = within.chain([kind]).collect();
-        let is_alike = kinds.iter().all(|other| *other == kind);
-        let is_cut = is_alike && (kinds.len() <= 2 || kind == Kind::Href) && !is_outside;
-        !is_cut && !kinds.contains(&Kind::Marker)
+    fn is_endless(&self, at: usize, closing: Opened) -> bool {
+        let within = self.open.get(at + 1..).unwrap_or_default().iter().map(|(_, opened)| *opened);
+        let circle: Vec<Opened> = within.chain([closing]).collect();
+        // Paints from around what is followed are not seen where circles are cut.
+        let is_alike = circle.iter().all(|other| other.kind == closing.kind && !other.is_outside);
+        let is_cut = is_alike && (circle.len() <= 2 || closing.kind == Kind::Href);
+        !is_cut && circle.iter().all(|other| other.kind != Kind::Marker)
     }
 
-    /// Fill and stroke that are said around an element.
-    fn inherited(&self, node: Node<'a, 'i>) -> Paints<'a> {
-        let mut paints = [(None, true); 2];
-        for around in node.ancestors().skip(1).filter(Node::is_element) {
-            for ((paint, _), said) in paints.iter_mut().zip(self.said(around)) {
-                *paint = paint.or(said.filter(|value| *value != "inherit"));
-            }
-            if paints.iter().all(|(paint, _)| paint.is_some()) {
-                break;
-            }
+    /// What is said around an element, from the root on.
+    fn around(&mut self, node: Node<'a, 'i>) -> Values<'a> {
+        if let Some(known) = self.around.get(&node.id()) {
+            return *known;
         }
-        paints
+        let ancestors: Vec<_> = node.ancestors().skip(1).filter(Node::is_element).collect();
+        let mut around = Values::default();
+        for ancestor in ancestors.into_iter().rev() {
+            around = handed_down(self.said(ancestor, &around), &around);
+        }
+        let around = around.map(|value| value.map(|value| Value { is_outside: true, ..value }));
+        self.around.insert(node.id(), around);
+        around
     }
 
-    /// What is said of each property for an element itself: by its style before the sheets and its attributes, but
-    /// for what is important.
-    fn said(&self, node: Node<'a, 'i>) -> Said<'a> {
-        let mut said = PROPERTIES.map(|(name, _)| (node.attribute(name), false));
-        let rules = self.sheet.rules.iter().filter(|rule| rule.selector.matches(&Styled(node)));
+    /// Of what is said around an element what it and those within it can take: clip path, mask and filter only where
+    /// it asks for them.
+    fn needed(&self, node: Node<'a, 'i>, mut around: Values<'a>) -> Values<'a> {
+        let mut values = attributes(node).chain(self.declared(node).map(|d| (d.name, d.value)));
+        if !values.any(|(name, value)| value == INHERIT && property(name).is_some()) {
+            around[2..].fill(None);
+        }
+        around
+    }
+
+    /// What is said for an element itself, as usvg finds it: of attributes the first counts, of style sheets and the
+    /// element's style the last, but what is important stays. What is taken from around is as important as there.
+    fn said(&self, node: Node<'a, 'i>, around: &Values<'a>) -> Values<'a> {
+        let mut said = Values::default();
+        let mut say = |name: &str, text: &'a str, is_important: bool, is_first: bool| {
+            let at = CASCADED.iter().position(|kind| property(name) == Some(*kind));
+            let Some((slot, around)) = at.and_then(|at| said.get_mut(at).zip(around.get(at)))
+            else {
+                return;
+            };
+            if slot.is_some_and(|before| is_first || before.is_important) {
+                return;
+            }
+            *slot = Some(match (text, around) {
+                (INHERIT, Some(value)) => Value { is_outside: false, ..*value },
+                (INHERIT, None) => Value { text: "none", is_important: false, is_outside: false },
+                _ => Value { text, is_important, is_outside: false },
+            });
+        };
+        attributes(node).for_each(|(name, value)| say(name, value, false, true));
+        self.declared(node).for_each(|said| say(said.name, said.value, said.important, false));
+        said
+    }
+
+    /// What style sheets and its style declare for an element.
+    fn declared(&self, node: Node<'a, 'i>) -> impl Iterator<Item = Declaration<'a>> {
+        let rules = self.sheet.rules.iter();
+        let rules = rules.filter(move |rule| rule.selector.matches(&Styled(node)));
         let own = DeclarationTokenizer::from(node.attribute("style").unwrap_or_default());
-        for declared in rules.flat_map(|rule| rule.declarations.iter().copied()).chain(own) {
-            for ((name, _), (value, important)) in PROPERTIES.iter().zip(&mut said) {
-                if *name == declared.name && (declared.important || !*important) {
-                    (*value, *important) = (Some(declared.value), declared.important);
-                }
-            }
-        }
-        said.map(|(value, _)| value.map(str::trim))
+        rules.flat_map(|rule| rule.declarations.iter().copied()).chain(own)
     }
 
     fn place(&self, node: Node<'_, '_>) -> (u64, u64) {
@@ -265,8 +352,29 @@ impl simplecss::Element for Styled<'_, '_> {
     }
 }
 
-/// The `id` in `url(#id)`.
-fn target_of(value: &str) -> Option<&str> {
-    let (inside, _) = value.split_once("url(")?.1.split_once(')')?;
-    inside.trim().trim_matches(['"', '\'']).strip_prefix('#')
+/// What takes the value of the element around.
+const INHERIT: &str = "inherit";
+
+/// The attributes of an element that usvg reads.
+fn attributes<'a>(node: Node<'a, '_>) -> impl Iterator<Item = (&'a str, &'a str)> {
+    const KNOWN: [&str; 3] =
+        [super::ROOT.0, "http://www.w3.org/1999/xlink", "http://www.w3.org/XML/1998/namespace"];
+    let known = node.attributes().filter(|a| a.namespace().is_none_or(|ns| KNOWN.contains(&ns)));
+    known.map(|attribute| (attribute.name(), attribute.value()))
+}
+
+/// What is said within an element: fill and stroke go down to all within it, the others to those that ask for them.
+fn handed_down<'a>(mut said: Values<'a>, around: &Values<'a>) -> Values<'a> {
+    for (own, around) in said.iter_mut().zip(around).take(2) {
+        *own = own.or(*around);
+    }
+    said
+}
+
+/// Each `id` of `url(#id)` in a value.
+fn targets_of(value: &str) -> impl Iterator<Item = &str> {
+    value.split("url(").skip(1).filter_map(|rest| {
+        let (inside, _) = rest.split_once(')')?;
+        inside.trim().trim_matches(['"', '\'']).trim().strip_prefix('#')
+    })
 }

@@ -263,9 +263,41 @@ fn references_in_a_circle_are_refused() {
         });
         parts.collect::<String>() + &shape(&format!("{property}='url(#{})'", names[0]))
     };
+    let texts = |element: &str| {
+        let name = element.split(' ').next().unwrap_or_default();
+        let parts = ["ab", "bc", "ca"].map(|ids| {
+            let fill = format!("fill='url(#{})'", &ids[1..]);
+            pattern(&ids[..1], "", &format!("<text><{element} {fill}>x</{name}></text>"))
+        });
+        parts.concat() + &filled("a")
+    };
+    let mask =
+        |id: &str, more: &str, inside: &str| format!("<mask id='{id}' {more}>{inside}</mask>");
+    let named = |name: &str, more: &str| {
+        let parts = ["ab", "bc", "ca"].map(|ids| {
+            pattern(&ids[..1], "", &shape(&format!("{name}='url(#{})' {more}", &ids[1..])))
+        });
+        parts.concat() + &filled("a")
+    };
+    let linked = |href: &str| {
+        let parts = ["ab", "bc", "ca"].map(|ids| {
+            let shown = shape(&format!("mask='url(#{})'", &ids[1..]));
+            let id = &ids[..1];
+            mask(id, "", &format!("<use {href}='#k{id}'/>")) + &format!("<g id='k{id}'>{shown}</g>")
+        });
+        parts.concat() + &shape("id='r'")
+    };
+    let important = |ids: &str| {
+        let (id, next) = ids.split_at(1);
+        let inside = pattern(id, "", &shape("style='fill:inherit;fill:none'"));
+        format!("<g style='fill:url(#{next})!important'>{inside}</g>")
+    };
+    let filter =
+        |id: &str, shown: &str| format!("<filter id='{id}'><feImage href='#{shown}'/></filter>");
     let read = |body: &str| {
         let text = format!(
-            "<svg xmlns='http://www.w3.org/2000/svg' width='20' height='20'>\n{body}</svg>"
+            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
+             xmlns:other='urn:other' width='20' height='20'>\n{body}</svg>"
         );
         Drawing::read(text.as_bytes(), &ReadOptions::default()).map_err(|e| e.to_string())
     };
@@ -300,6 +332,56 @@ fn references_in_a_circle_are_refused() {
         pattern("a", "", &shape("style='fill: url( \"#b\" )'"))
             + &pattern("b", "", &shape("stroke='url(#a)'"))
             + &filled("b"),
+        // Whatever is painted.
+        pattern("a", "", "<use href='#r' fill='url(#b)'/>")
+            + &pattern("b", "", "<use href='#r' fill='url(#c)'/>")
+            + &pattern("c", "", "<use href='#r' fill='url(#a)'/>")
+            + &shape("id='r' fill='red'")
+            + &filled("a"),
+        texts("textPath href='#r'") + &shape("id='r'"),
+        texts("a"),
+        texts("tref href='#r'") + "<text id='r'>x</text>",
+        // From one pattern to the other once by fill and once by stroke, which is found last.
+        pattern("a", "", &filled("b"))
+            + &pattern("b", "", &(shape("stroke='url(#a)'") + &filled("a")))
+            + &filled("b"),
+        // A paint from around is not seen where circles are cut, the first of two neither.
+        format!(
+            "{}<g fill='url(#a)'>{}</g>{}",
+            pattern("a", "", &filled("b")),
+            pattern("b", "", &shape("")),
+            filled("b")
+        ),
+        // Other attributes of the same name, first or last.
+        named("other:fill='none' fill", ""),
+        named("xlink:fill", "fill='none'"),
+        linked("xlink:href='#r' href"),
+        linked("other:href='#r' href"),
+        ring(&["a", "b", "c"], "pattern", "fill").replace(" id=", " other:id='z' id="),
+        // Taken from around, what is important there too.
+        format!(
+            "<g mask='url(#b)'>{}</g><g mask='url(#c)'>{}</g><g mask='url(#a)'>{}</g>",
+            mask("a", "mask='inherit'", &shape("")),
+            mask("b", "mask='inherit'", &shape("")),
+            mask("c", "mask='inherit'", &shape(""))
+        ),
+        ["ab", "bc", "ca"].map(important).concat(),
+        // Of what is important the first counts.
+        format!(
+            "<style>.a{{fill:url(#a)!important}} .b{{fill:url(#b)!important}} .c{{fill:url(#c)!important}}</style>{}",
+            ["ab", "bc", "ca"]
+                .map(|ids| {
+                    let style = format!("class='{}' style='fill:none!important'", &ids[1..]);
+                    pattern(&ids[..1], "", &shape(&style))
+                })
+                .concat()
+        ),
+        // Filters, by the images in them.
+        filter("f", "g") + &format!("<g id='g'>{}</g>", shape("filter='url(#f)'")),
+        filter("f", "s")
+            + &filter("g", "r")
+            + &shape("id='r' filter='blur(1) url(#f)'")
+            + &shape("id='s' filter='url(#g)'"),
     ] {
         let told = read(&body).expect_err(&body);
         assert!(told.starts_with("line 2, column") && told.contains("go in a circle"), "{told}");
@@ -314,6 +396,10 @@ fn references_in_a_circle_are_refused() {
         ring(&["a", "b", "c"], "pattern", "fill") + "<style>path{fill:red}</style>",
         pattern("a", "", "<use href='#r' fill='red'/>")
             + &format!("<g fill='url(#a)'>{}</g>", shape("id='r'")),
+        filter("f", "r") + &shape("id='r' filter='url(#f)'"),
+        pattern("a", "", &format!("<a href='#r'>{}</a>", shape("")))
+            + &format!("<g id='r'>{}</g>", filled("a")),
+        ring(&["a", "b", "c"], "pattern", "other:fill"),
     ] {
         assert!(read(&body).is_ok(), "{body}");
     }
@@ -350,4 +436,40 @@ fn references_that_are_deep_are_refused() {
     }
     drawing(&chain(50));
     drawing(&words(50));
+}
+
+/// Drawings in images of a drawing are looked at like the drawing itself.
+#[test]
+fn images_that_are_drawings_cannot_fill_the_stack() {
+    let image = |body: &str| {
+        let text =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{body}</svg>");
+        let text = text.replace('%', "%25").replace('#', "%23").replace('&', "&amp;");
+        let text = text.replace('<', "&lt;").replace('"', "&quot;");
+        format!("<image width='9' height='9' href=\"data:image/svg+xml,{text}\"/>")
+    };
+    let groups = |count: usize, inside: &str| {
+        format!("{}{inside}{}", "<g opacity='.5'>".repeat(count), "</g>".repeat(count))
+    };
+    let rect = "<rect width='20' height='20' fill='lime'/>";
+    let circle = ["ab", "bc", "ca"].map(|ids| {
+        let (id, next) = ids.split_at(1);
+        format!("<mask id='{id}'><g mask='url(#{next})'>{rect}</g></mask>")
+    });
+    for (body, expected) in [
+        (circle.concat(), "go in a circle"),
+        (groups(2000, rect), "more than 1024 levels deep"),
+        (image(&circle.concat()), "go in a circle"),
+        ("<path d='M0 0A1e30 1e30 0 0 0 1e30 1'/>".to_owned(), "farther than arcs can be drawn"),
+    ] {
+        let told = told(&image(&body));
+        let told = told.iter().find(|told| told.contains(expected)).expect("a warning");
+        assert!(told.contains("an image that is a drawing is left out: line 1, column"), "{told}");
+    }
+    // Each is not too deep for itself.
+    let deep = told(&groups(700, &image(&groups(700, rect))));
+    assert!(deep[0].contains("more than 1024 levels deep"), "{deep:?}");
+    let many = image(&image(rect));
+    assert_eq!(told(&many), Vec::<String>::new());
+    assert_eq!(painted(&many).get(4, 4), Some([0, 255, 0, 255]));
 }
