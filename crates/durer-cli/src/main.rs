@@ -35,7 +35,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     beside::clean_up_when_interrupted();
-    match run(parse()) {
+    match parse().and_then(run) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let message = failure.to_string();
@@ -49,15 +49,27 @@ fn main() -> ExitCode {
 }
 
 /// The command line; `render` also gets to know which options were given.
-fn parse() -> Command {
-    let matches = Cli::command().get_matches();
-    let mut cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
+fn parse() -> Result<Command, Failure> {
+    let matches = Cli::command().try_get_matches().map_err(answered)?;
+    let mut cli = Cli::from_arg_matches(&matches).map_err(answered)?;
     if let (Command::Render(args), Some((_, given))) = (&mut cli.command, matches.subcommand()) {
         let by_hand =
             |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
         args.given = given.ids().filter(by_hand).map(ToString::to_string).collect();
     }
-    cli.command
+    Ok(cli.command)
+}
+
+/// Ends with what clap has to say: help and version, or what is wrong with the command line. A failure is what keeps it
+/// from being said.
+fn answered(answer: clap::Error) -> Failure {
+    if answer.use_stderr() {
+        answer.exit();
+    }
+    match answer.print().and_then(|()| std::io::stdout().flush()) {
+        Ok(()) => std::process::exit(answer.exit_code()),
+        Err(e) => Failure::of_stdout(&e),
+    }
 }
 
 fn run(command: Command) -> Result<(), Failure> {

@@ -31,15 +31,35 @@ fn a_model_comes_in_and_a_picture_goes_out() {
 #[test]
 fn a_closed_pipe_ends_quietly() {
     let folder = Folder::with_models();
-    for arguments in
-        ["render cube.obj -o - --size 512x512 --background gradient", "man", "info cube.obj"]
-    {
+    for arguments in [
+        "render cube.obj -o - --size 512x512 --background gradient",
+        "man",
+        "info cube.obj",
+        "--help",
+        "--version",
+    ] {
         let mut command = folder.command(arguments);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let ended = Ended::of(child.wait_with_output().unwrap());
         assert_eq!((ended.code, ended.err.as_str()), (0, ""), "{arguments}");
     }
+}
+
+#[test]
+fn a_full_standard_output_is_told() {
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full");
+    let folder = Folder::with_models();
+    for arguments in
+        ["--help", "-h", "--version", "help", "help fill", "render --help", "man", "info cube.obj"]
+    {
+        let Ok(full) = full() else { return };
+        let ended = Ended::of(folder.command(arguments).stdout(full).output().unwrap());
+        assert_eq!(ended.code, 1, "{arguments}");
+        assert_eq!(ended.err, "durer: standard output: No space left on device\n", "{arguments}");
+    }
+    assert!(folder.must("--version").out.starts_with(b"durer "));
+    folder.run("--nonsense").fails(2, "--nonsense");
 }
 
 #[test]
