@@ -451,6 +451,10 @@ fn declarations_of_svg_follow_css() {
         ("style='Fill-Rule:EvenOdd'", (odd, 0)),
         ("style='fill-rule:evenodd /* without end'", (odd, 0)),
         ("style='/*fill-rule:evenodd'", (not, 0)),
+        // After declarations that mean nothing here.
+        ("style='font:12px/1.5 serif;fill-rule:evenodd'", (odd, 0)),
+        ("style='--own:1;fill:;:;nothing;fill-rule:evenodd'", (odd, 0)),
+        ("style='width:calc((1px + 1px)/2);fill-rule:evenodd ! IMPORTANT'", (odd, 0)),
         ("fill-rule='odd'", (not, 1)),
     ] {
         assert_eq!(rule(style), expected, "{style}");
