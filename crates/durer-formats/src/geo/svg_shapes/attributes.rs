@@ -88,7 +88,8 @@ pub fn property<T: Copy>(
     Ok(found.map(|(_, value)| *value))
 }
 
-/// The value that declarations of CSS give a property: of several the last, but one that is important first.
+/// The value that declarations of CSS give a property: of several the last, but one that is important first. simplecss, which
+/// usvg reads them with, ends at the first declaration that it cannot read, as `font:12px/1.5 serif` or `--own:1`.
 fn declared(style: &str, property: &str) -> Option<String> {
     let style = without_comments(style);
     let mut found: Option<(bool, &str)> = None;
