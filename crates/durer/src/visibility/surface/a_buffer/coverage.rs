@@ -1,96 +1,93 @@
-//! The exact area of a triangle in each pixel of a row.
+//! The exact area of a triangle in each pixel of a row, eight pixels at a time.
 //!
 //! Each edge adds, for every pixel that it crosses, the signed area to its right; the sum along the
 //! row is the covered area, as in analytic anti-aliasing of glyphs (FreeType's and AGG's cells).
 
 use super::edges::RowEdges;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x4, f32x8};
 
-/// The covered area of each pixel of a part of a row, for one triangle at a time.
-#[derive(Debug)]
+/// Pixels that are looked at together.
+pub const EIGHT: usize = 8;
+
+/// How far right of the first each of eight pixels is.
+pub const COLUMNS: [f32; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// A part of an edge that lies nowhere.
+const NOWHERE: f32 = -2.0;
+
+/// Numbers of the three edges; the fourth lane has no edge.
+type Lanes = [f32; 4];
+
+/// What a triangle covers of the pixels of a part of a row.
+#[derive(Debug, Clone, Copy)]
 pub struct Areas {
-    /// How edges in each pixel change the area from there on, and how from the next pixel on; one more
-    /// than there are pixels. Zero between triangles.
-    changes: Vec<[f32; 2]>,
-    /// The first pixel that the triangle may touch, and the one after the last.
-    columns: [i32; 2],
-    /// The area before the next pixel's own edges.
-    sum: f32,
+    /// The edges' parts in these pixels, from left to right.
+    left: Lanes,
+    right: Lanes,
+    /// Height over width; 0 of upright edges.
+    per_pixel: Lanes,
+    /// The height of upright edges, else 0.
+    upright: Lanes,
+    /// What lies left of the first pixel, if any edge does; it covers all pixels.
+    outside: Option<Lanes>,
 }
 
 impl Areas {
-    /// For rows of this width.
-    pub fn new(width: u32) -> Self {
-        Self { changes: vec![[0.0; 2]; width as usize + 1], columns: [0; 2], sum: 0.0 }
-    }
-
     /// Takes a triangle's edges in pixels first … end − 1.
     #[inline(always)]
-    pub fn begin(&mut self, edges: &RowEdges, columns: [i32; 2]) {
-        (self.columns, self.sum) = (columns, 0.0);
+    pub fn new<S: Simd>(simd: S, edges: &RowEdges<S>, [first, end]: [i32; 2]) -> Self {
+        let (zero, nowhere) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, NOWHERE));
+        let (from, end) = (f32x4::splat(simd, first as f32), f32x4::splat(simd, end as f32));
+        let width = edges.right - edges.left;
+        let slanted = width.simd_gt(zero);
+        let per_pixel = slanted.select(edges.height / width, zero);
+        let upright = slanted.select(zero, edges.height);
+        let (left, right) = (edges.left.max(from), edges.right.min(end));
+        // Nor do edges that are not in the row or wholly beside the pixels lie anywhere.
+        let here = left.simd_le(right);
+        let is_cut = edges.left.simd_lt(from).to_bitmask() != 0;
+        let outside = is_cut.then(|| {
+            let part = (edges.right.min(from) - edges.left) / width;
+            let part = slanted.select(part, f32x4::splat(simd, 1.0)).min(f32x4::splat(simd, 1.0));
+            edges.left.simd_lt(from).select(edges.height * part, zero).into()
+        });
+        Self {
+            left: here.select(left, nowhere).into(),
+            right: here.select(right, nowhere).into(),
+            per_pixel: per_pixel.into(),
+            upright: upright.into(),
+            outside,
+        }
+    }
+
+    /// How the edges change the area in eight pixels from column x on: from each on, and from the pixel
+    /// after each on. `is_first` says that the first pixel of the row's part is the first of them.
+    #[inline(always)]
+    pub fn changes<S: Simd>(&self, simd: S, x: i32, is_first: bool) -> [[f32; EIGHT]; 2] {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let column = f32x8::from_slice(simd, &COLUMNS) + x as f32;
+        let after = column + one;
+        let (mut here, mut next) = (zero, zero);
         for i in 0..3 {
-            if edges.height[i] != 0.0 {
-                self.add(edges.left[i], edges.right[i], edges.height[i]);
+            if let Some(outside) = self.outside.filter(|_| is_first) {
+                let mut first = [0.0; EIGHT];
+                first[0] = outside[i];
+                here += f32x8::from_slice(simd, &first);
             }
+            let (left, right) =
+                (f32x8::splat(simd, self.left[i]), f32x8::splat(simd, self.right[i]));
+            // The edge's part within each pixel; none is of negative width.
+            let (x0, x1) = (left.max(column), right.min(after));
+            let mut height = (x1 - x0).max(zero) * self.per_pixel[i];
+            if self.upright[i] != 0.0 {
+                let there = column.simd_le(left) & left.simd_lt(after);
+                height += there.select(f32x8::splat(simd, self.upright[i]), zero);
+            }
+            let right_of_it = (x0 + x1) * 0.5 - column;
+            here += height * (one - right_of_it);
+            next += height * right_of_it;
         }
-    }
-
-    /// The area that the triangle covers, 0 … 1, of the next pixel, so many columns after the first.
-    #[inline(always)]
-    pub fn next(&mut self, column: usize) -> f32 {
-        let Some(changes) = self.changes.get_mut(column) else { return 0.0 };
-        let [here, next] = std::mem::take(changes);
-        let area = self.sum + here;
-        self.sum = area + next;
-        area.clamp(0.0, 1.0)
-    }
-
-    /// Forgets what pixels from this one on were to get; to be called after the last one.
-    #[inline(always)]
-    pub fn end(&mut self, column: usize) {
-        let count = (self.columns[1] - self.columns[0]) as usize;
-        if let Some(rest) = self.changes.get_mut(column..=count) {
-            // One, but for a row left half-way.
-            rest.fill([0.0; 2]);
-        }
-    }
-
-    /// Adds an edge's share; what lies left of the columns covers all pixels, what lies right of them
-    /// none.
-    #[inline(always)]
-    fn add(&mut self, edge_left: f32, edge_right: f32, height: f32) {
-        let [from, end] = self.columns.map(|column| column as f32);
-        let (left, right) = (edge_left.max(from), edge_right.min(end));
-        let width = edge_right - edge_left;
-        let per_pixel = if width > 0.0 { height / width } else { 0.0 };
-        if edge_left < from {
-            let outside =
-                if width > 0.0 { (edge_right.min(from) - edge_left) / width } else { 1.0 };
-            self.changes[0][0] += height * outside.min(1.0);
-        }
-        if left > right || left >= end {
-            return;
-        }
-        // In one pixel for the most part.
-        let next = ((left as i32 + 1) as f32).min(right);
-        let first = if width > 0.0 { per_pixel * (next - left) } else { height };
-        self.add_piece(left, next, first);
-        let mut x = next;
-        while x < right {
-            let next = ((x as i32 + 1) as f32).min(right);
-            self.add_piece(x, next, per_pixel * (next - x));
-            x = next;
-        }
-    }
-
-    /// Adds a piece of an edge within one pixel, of this signed height.
-    #[inline(always)]
-    fn add_piece(&mut self, x0: f32, x1: f32, height: f32) {
-        let column = x0 as i32;
-        let pixel = (column - self.columns[0]).max(0) as usize;
-        let right_of_it = 0.5 * (x0 + x1) - column as f32;
-        if let Some([here, next]) = self.changes.get_mut(pixel) {
-            *here += height * (1.0 - right_of_it);
-            *next += height * right_of_it;
-        }
+        [here.into(), next.into()]
     }
 }

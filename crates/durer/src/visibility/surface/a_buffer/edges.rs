@@ -1,10 +1,12 @@
 //! The three edges of a face, side by side: their parts in a row of pixels, and the sub-pixels of a
 //! pixel that lie inside them.
 
-use super::mask::{Direction, MaskTable};
+use super::coverage::EIGHT;
+use super::mask::{Common, Direction, MaskTable};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXELS};
+use crate::visibility::surface::gather::narrowed;
 use crate::visibility::surface::setup::ScreenTriangle;
-use fearless_simd::{Simd, f32x4, f32x8, f64x4, mask64x4, prelude::*};
+use fearless_simd::{Simd, f32x4, f32x8, f64x4, f64x8, mask64x4, prelude::*};
 
 /// Numbers of the three edges; the fourth lane has no edge.
 type Lanes<T> = [T; 4];
@@ -21,6 +23,9 @@ pub struct Slopes {
 }
 
 impl Slopes {
+    /// Of no edges.
+    pub const NONE: Self = Self { right_per_down: [0.0; 4], directions: [Direction::NONE; 3] };
+
     #[inline(always)]
     pub fn new<S: Simd>(simd: S, t: &ScreenTriangle) -> Self {
         let edges = Edges::new(simd, t);
@@ -86,7 +91,7 @@ impl<S: Simd> Edges<S> {
 
     /// The parts of the edges in row `y`.
     #[inline(always)]
-    pub fn row(&self, simd: S, slopes: &Slopes, y: i32) -> RowEdges {
+    pub fn row(&self, simd: S, slopes: &Slopes, y: i32) -> RowEdges<S> {
         let ([x, top], [_, bottom]) = (self.upper(), self.lower());
         let slope = f64x4::simd_from(simd, slopes.right_per_down);
         let row = f64::from(y) * f64::from(SUBPIXELS);
@@ -103,7 +108,7 @@ impl<S: Simd> Edges<S> {
         let height = there.select((y1 - y0) * self.up.select(per_step, -per_step), none);
         let (left, right) = simd.split_f32x8(simd.narrow_f64x4(left, right));
         let (height, _) = simd.split_f32x8(simd.narrow_f64x4(height, none));
-        RowEdges { left: left.into(), right: right.into(), height: height.into() }
+        RowEdges { left, right, height }
     }
 
     /// The edge functions along a row of pixels.
@@ -116,40 +121,42 @@ impl<S: Simd> Edges<S> {
         // Exact: the guard band leaves room for products and sums.
         let ([a, b], [x0, y0]) = (self.gain(), self.from);
         let first = a * (center(x) - x0) + b * (center(y) - y0);
-        Functions { first, gain: [a, b], step: a * f64::from(SUBPIXELS) }
+        let step = a * f64::from(SUBPIXELS);
+        Functions { first: first.into(), step: step.into(), gain: [a, b] }
     }
 }
 
 /// The edge functions along a row of pixels, in grid steps squared.
 pub struct Functions<S: Simd> {
-    first: f64x4<S>,
+    first: Lanes<f64>,
+    step: Lanes<f64>,
     gain: [f64x4<S>; 2],
-    step: f64x4<S>,
 }
 
+/// How far right of the first each of eight pixels is.
+const COLUMNS_F64: [f64; EIGHT] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
 impl<S: Simd> Functions<S> {
-    /// At the centre of the pixel so many columns after the first, with slopes per pixel.
+    /// At the centres of eight pixels, of which the first is so many columns after the first.
     #[inline(always)]
-    pub fn at(&self, simd: S, columns: usize) -> f32x4<S> {
-        let exact = self.first + self.step * columns as f64;
-        let (at, _) = simd.split_f32x8(simd.narrow_f64x4(exact, exact));
-        at * PER_GRID_STEP
+    pub fn at(&self, simd: S, columns: usize) -> [f32x8<S>; 3] {
+        let columns = f64x8::from_slice(simd, &COLUMNS_F64) + columns as f64;
+        let mut at = [f32x8::splat(simd, 0.0); 3];
+        for (i, at) in at.iter_mut().enumerate() {
+            let exact = columns * self.step[i] + self.first[i];
+            *at = narrowed(simd, exact);
+        }
+        at
     }
 
-    /// The sub-pixels inside all three edges, whose functions at the pixel's centre are these.
+    /// The sub-pixel that lies deepest within a triangle too small for its mask, whose functions at the
+    /// pixel's centre are these.
     #[inline(always)]
-    pub fn mask(&self, simd: S, slopes: &Slopes, table: &MaskTable, at: f32x4<S>) -> u64 {
-        let [i, j, k, _] = table.distances(simd, at * slopes.scale(simd));
-        let [p, q, r] = &slopes.directions;
-        table.mask(p, i) & table.mask(q, j) & table.mask(r, k)
-    }
-
-    /// The sub-pixel that lies deepest within a triangle too small for its mask.
-    #[inline(always)]
-    pub fn nearest(&self, simd: S, slopes: &Slopes, table: &MaskTable, at: f32x4<S>) -> u64 {
+    pub fn nearest(&self, simd: S, slopes: &Slopes, table: &MaskTable, at: Lanes<f32>) -> u64 {
         let scale = slopes.scale(simd).abs();
         let [a, b] = self.gain;
         let (a, b) = simd.split_f32x8(simd.narrow_f64x4(a, b));
+        let at = f32x4::simd_from(simd, at) * PER_GRID_STEP;
         let (at, a, b): (Lanes<f32>, Lanes<f32>, Lanes<f32>) =
             ((at * scale).into(), (a * scale).into(), (b * scale).into());
         let nowhere = f32x8::splat(simd, f32::NEG_INFINITY);
@@ -163,8 +170,8 @@ impl<S: Simd> Functions<S> {
             *depth = d0.min(d1).min(d2);
             greatest = greatest.max(*depth);
         }
-        let all: [f32; 8] = greatest.into();
-        let greatest = f32x8::splat(simd, all.into_iter().fold(f32::NEG_INFINITY, f32::max));
+        let (low, high) = simd.split_f32x8(greatest);
+        let greatest = f32x8::splat(simd, simd.reduce_max_f32x4(low.max(high)));
         for (i, depth) in depths[..centers.len()].iter().enumerate() {
             let found = depth.simd_ge(greatest).to_bitmask();
             if found != 0 {
@@ -175,23 +182,31 @@ impl<S: Simd> Functions<S> {
     }
 }
 
+impl Slopes {
+    /// The sub-pixels inside all three edges in eight pixels, whose functions at the centres are these.
+    #[inline(always)]
+    pub fn masks<S: Simd>(&self, simd: S, table: &MaskTable, [p, q, r]: [f32x8<S>; 3]) -> Common {
+        let [a, b, c] = &self.directions;
+        table.common(simd, SUBPIXELS as f32, [(a, p), (b, q), (c, r)])
+    }
+}
+
 /// The parts of a triangle's edges in one row, each from left to right.
 ///
 /// Where an edge is not in the row or horizontal, its part lies nowhere and has no height.
-#[derive(Debug, Clone, Copy)]
-pub struct RowEdges {
-    pub left: Lanes<f32>,
-    pub right: Lanes<f32>,
+#[derive(Clone, Copy)]
+pub struct RowEdges<S: Simd> {
+    pub left: f32x4<S>,
+    pub right: f32x4<S>,
     /// Pixels downwards; positive where the inside is to the right.
-    pub height: Lanes<f32>,
+    pub height: f32x4<S>,
 }
 
-impl RowEdges {
+impl<S: Simd> RowEdges<S> {
     /// The columns among x0 … x1 − 1 that the triangle may touch, as first and end.
     #[inline(always)]
-    pub fn columns(&self, [x0, x1]: [i32; 2]) -> [i32; 2] {
-        let ([l0, l1, l2, _], [r0, r1, r2, _]) = (self.left, self.right);
-        let (lo, hi) = (l0.min(l1).min(l2), r0.max(r1).max(r2));
+    pub fn columns(&self, simd: S, [x0, x1]: [i32; 2]) -> [i32; 2] {
+        let (lo, hi) = (simd.reduce_min_f32x4(self.left), simd.reduce_max_f32x4(self.right));
         // Where lo is negative, rounding towards zero is as good: x0 is not.
         [(lo as i32).max(x0), (hi as i32).saturating_add(1).min(x1)]
     }

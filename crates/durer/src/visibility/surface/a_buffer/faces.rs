@@ -3,7 +3,7 @@
 use super::fragment::Face;
 use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::visibility::surface::input::SurfaceInput;
-use crate::visibility::surface::setup::ScreenTriangle;
+use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use fearless_simd::Simd;
 
 /// The triangles that touch a row anywhere, not only at pixels' centres.
@@ -21,9 +21,13 @@ pub struct Faces<'a> {
     before: Vec<Active>,
     /// Depth and number of those that begin in the row.
     order: Vec<u64>,
-    /// What was computed of those that were looked at, by place; some places are free.
-    places: Vec<Face>,
+    /// The active ones and what was computed of those that were looked at, by place; some places are free.
+    places: Vec<(ScreenTriangle, Face)>,
     free: Vec<u32>,
+    /// Whether some items come in several pieces.
+    pub in_pieces: bool,
+    /// The run of the latest item that was asked for: its first item, how many it has, and how it covers.
+    run: (u32, u32, Coverage),
 }
 
 /// A triangle that touches the row.
@@ -35,12 +39,9 @@ pub struct Active {
     pub columns: [i32; 2],
     last_row: i32,
     triangle: u32,
-    /// Where its face is kept; [`NOWHERE`] as long as all of it was hidden.
+    /// Where it is kept while it is active.
     place: u32,
 }
-
-/// No place.
-const NOWHERE: u32 = u32::MAX;
 
 impl<'a> Faces<'a> {
     pub fn new(input: &'a SurfaceInput<'a>, height: u32) -> Self {
@@ -51,8 +52,12 @@ impl<'a> Faces<'a> {
         };
         // Counting sort.
         let mut starts = vec![0; height as usize + 2];
-        for row in input.triangles.iter().filter_map(first_row) {
-            starts[row + 2] += 1;
+        let (mut in_pieces, mut latest) = (false, None);
+        for t in &input.triangles {
+            in_pieces |= latest.replace(t.item) == Some(t.item);
+            if let Some(row) = first_row(t) {
+                starts[row + 2] += 1;
+            }
         }
         for row in 2..starts.len() {
             starts[row] += starts[row - 1];
@@ -74,16 +79,27 @@ impl<'a> Faces<'a> {
             order: Vec::new(),
             places: Vec::new(),
             free: Vec::new(),
+            in_pieces,
+            run: (0, 0, Coverage::Opaque),
         }
     }
 
     /// Goes on to a row; rows come in order.
     pub fn advance(&mut self, y: i32) {
-        let Self { waiting, starts, active, before, order, free, .. } = self;
+        let Self { input, waiting, starts, active, before, order, places, free, .. } = self;
         std::mem::swap(active, before);
         active.clear();
         let [first, end] = [0, 1].map(|i| starts[y as usize + i] as usize);
-        let new = &waiting[first..end];
+        let new = &mut waiting[first..end];
+        for new in new.iter_mut() {
+            // All at once, for they have to be waited for.
+            let t = input.triangles[new.triangle as usize];
+            new.place = free.pop().unwrap_or(places.len() as u32);
+            match places.get_mut(new.place as usize) {
+                Some(place) => place.0 = t,
+                None => places.push((t, Face::NONE)),
+            }
+        }
         // Depths are at least 0, so that their bits grow with them.
         let key =
             |(i, new): (usize, &Active)| u64::from((new.depth + 0.0).to_bits()) << 32 | i as u64;
@@ -93,7 +109,7 @@ impl<'a> Faces<'a> {
         let mut new = order.iter().map(|&key| new[key as u32 as usize]).peekable();
         for old in before.iter() {
             if old.last_row < y {
-                free.extend((old.place != NOWHERE).then_some(old.place));
+                free.push(old.place);
                 continue;
             }
             while let Some(nearer) = new.next_if(|new| new.depth <= old.depth) {
@@ -117,33 +133,27 @@ impl<'a> Faces<'a> {
 
     /// What is known of one of them.
     #[inline(always)]
-    pub fn get<S: Simd>(&mut self, simd: S, number: usize) -> (&'a ScreenTriangle, &Face) {
-        let active = &mut self.active[number];
-        let t = &self.input.triangles[active.triangle as usize];
-        if active.place == NOWHERE {
-            let face = Face::new(simd, t, active.triangle, self.input.run_of(t.item).coverage);
-            active.place = match self.free.pop() {
-                Some(place) => {
-                    self.places[place as usize] = face;
-                    place
-                }
-                None => {
-                    self.places.push(face);
-                    self.places.len() as u32 - 1
-                }
-            };
+    pub fn get<S: Simd>(&mut self, simd: S, number: usize) -> &(ScreenTriangle, Face) {
+        let active = &self.active[number];
+        let place = &mut self.places[active.place as usize];
+        if place.1.triangle != active.triangle {
+            let t = &place.0;
+            if t.item.wrapping_sub(self.run.0) >= self.run.1 {
+                let run = self.input.run_of(t.item);
+                self.run = (run.first_item, run.range.len() as u32, run.coverage);
+            }
+            place.1 = Face::new(simd, t, active.triangle, self.run.2);
         }
-        (t, &self.places[active.place as usize])
+        place
     }
 }
 
 impl Active {
-    const NONE: Self =
-        Self { depth: 0.0, columns: [0; 2], last_row: -1, triangle: 0, place: NOWHERE };
+    const NONE: Self = Self { depth: 0.0, columns: [0; 2], last_row: -1, triangle: 0, place: 0 };
 
     fn new(t: &ScreenTriangle, triangle: u32) -> Self {
         let ([left, right], [_, last_row]) = (touched(&t.x), touched(&t.y));
-        Self { depth: t.depth_min, columns: [left, right + 1], last_row, triangle, place: NOWHERE }
+        Self { depth: t.depth_min, columns: [left, right + 1], last_row, triangle, place: 0 }
     }
 }
 

@@ -1,14 +1,12 @@
 //! Fragments: what a triangle leaves in one pixel, in lists that share one pool.
 
-use super::coverage::Areas;
+use super::coverage::{Areas, COLUMNS, EIGHT};
 use super::edges::{Edges, Functions, Slopes};
 use super::faces::Active;
 use super::mask::{Direction, MaskTable};
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
-use fearless_simd::Simd;
-
-/// Faces with at most as many columns are looked for in the pixels before their edges are computed.
-const NARROW: i32 = 8;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
 
 /// No further fragment.
 const END: u32 = u32::MAX;
@@ -47,6 +45,15 @@ pub struct Face {
 }
 
 impl Face {
+    /// Of no triangle.
+    pub const NONE: Self = Self {
+        triangle: u32::MAX,
+        coverage: Coverage::Opaque,
+        slopes: Slopes::NONE,
+        half_depth: 0.0,
+        far: None,
+    };
+
     #[inline(always)]
     pub fn new<S: Simd>(simd: S, t: &ScreenTriangle, triangle: u32, coverage: Coverage) -> Self {
         let half_depth = 0.5 * (t.depth_dx.abs() + t.depth_dy.abs());
@@ -63,9 +70,11 @@ pub struct Pool<'a> {
     nexts: Vec<u32>,
     /// The latest fragment of each pixel.
     heads: Vec<u32>,
+    /// Of each pixel, and of seven more, the depth behind which nothing can be seen.
+    hidden_from: Vec<f32>,
+    /// What fragments cover of each pixel that has any.
     covers: Vec<Cover>,
     max_fragments: usize,
-    areas: Areas,
 }
 
 impl<'a> Pool<'a> {
@@ -76,46 +85,66 @@ impl<'a> Pool<'a> {
             fragments: Vec::new(),
             nexts: Vec::new(),
             heads: vec![END; width as usize],
-            covers: vec![Cover::NONE; width as usize],
+            hidden_from: vec![f32::INFINITY; width as usize + EIGHT - 1],
+            covers: vec![Cover::default(); width as usize],
             max_fragments,
-            areas: Areas::new(width),
         }
     }
 
     /// Forgets the fragments; those of pixels x0 … x1 − 1 are looked for next.
     pub fn clear(&mut self, [x0, x1]: [i32; 2]) {
+        let part = x0 as usize..x1 as usize;
         self.fragments.clear();
         self.nexts.clear();
-        self.heads[x0 as usize..x1 as usize].fill(END);
-        self.covers[x0 as usize..x1 as usize].fill(Cover::NONE);
+        self.heads[part.clone()].fill(END);
+        self.hidden_from[part].fill(f32::INFINITY);
     }
 
     /// A depth behind which nothing of a pixel can be seen: opaque fragments before it cover all of
     /// the pixel. It depends on the order in which fragments came; infinite where there is none.
     #[inline(always)]
     pub fn hidden_from(&self, x: i32) -> f32 {
-        self.covers[x as usize].hidden_from
+        self.hidden_from[x as usize]
     }
 
-    /// Whether what is not nearer than `depth` is hidden in all of pixels x0 … x1 − 1.
+    /// In which of the first `count` of eight pixels from x on something can be seen at these depths, as
+    /// bits.
     #[inline(always)]
-    fn hides(&self, [x0, x1]: [i32; 2], depth: f32) -> bool {
-        self.covers[x0 as usize..x1 as usize].iter().all(|cover| depth > cover.hidden_from)
+    fn seen<S: Simd>(&self, simd: S, x: i32, count: i32, depths: f32x8<S>) -> u64 {
+        let hidden_from = &self.hidden_from[x as usize..][..EIGHT];
+        let seen = depths.simd_le(f32x8::from_slice(simd, hidden_from));
+        seen.to_bitmask() & ((1 << count) - 1)
     }
 
     /// Whether a triangle leaves nothing in a part of the row, as far as that can be said without
     /// looking at its edges.
     #[inline(always)]
-    pub fn rejects(&self, active: &Active, part: [i32; 2]) -> bool {
-        let columns = [active.columns[0].max(part[0]), active.columns[1].min(part[1])];
-        let width = columns[1] - columns[0];
-        width <= 0 || (width <= NARROW && self.hides(columns, active.depth))
+    pub fn rejects<S: Simd>(&self, simd: S, active: &Active, part: [i32; 2]) -> bool {
+        let [x0, x1] = [active.columns[0].max(part[0]), active.columns[1].min(part[1])];
+        if x1 - x0 > EIGHT as i32 {
+            return false;
+        }
+        x0 >= x1 || self.seen(simd, x0, x1 - x0, f32x8::splat(simd, active.depth)) == 0
     }
 
-    /// Whether a pixel has no fragments.
+    /// The fragment of a pixel that has no other.
     #[inline(always)]
-    pub fn is_empty(&self, x: i32) -> bool {
-        self.heads[x as usize] == END
+    pub fn only(&self, x: i32) -> Option<&Fragment> {
+        let number = self.heads[x as usize];
+        let &next = self.nexts.get(number as usize)?;
+        (next == END).then(|| self.fragment(number))
+    }
+
+    /// The first of pixels x0 … x1 − 1 that has fragments, or x1.
+    #[inline(always)]
+    pub fn next_filled(&self, [x0, x1]: [i32; 2]) -> i32 {
+        let part = &self.heads[x0 as usize..x1 as usize];
+        if part.first().is_some_and(|head| *head != END) {
+            return x0;
+        }
+        let eights = part.chunks_exact(EIGHT).take_while(|heads| **heads == [END; EIGHT]).count();
+        let rest = part[EIGHT * eights..].iter().take_while(|head| **head == END).count();
+        x0 + (EIGHT * eights + rest) as i32
     }
 
     /// The numbers of a pixel's fragments, latest first.
@@ -151,59 +180,144 @@ impl<'a> Pool<'a> {
         let edges = Edges::new(simd, t);
         let parts = edges.row(simd, &face.slopes, y);
         let part = columns[1] - columns[0];
-        let columns = parts.columns(columns);
-        let Some(nearest) = nearest_depth(t, face, columns, y) else { return true };
-        if self.hides(columns, nearest) {
+        let columns = parts.columns(simd, columns);
+        let width = columns[1] - columns[0];
+        if width <= 0 || (width > EIGHT as i32 && self.hides(t, face, columns, y)) {
             return true;
         }
-        self.areas.begin(&parts, columns);
-        let functions = edges.functions(simd, columns[0], y);
         let [ox, oy] = t.origin();
-        for x in columns[0]..columns[1] {
-            let (i, column) = ((x - columns[0]) as usize, x as usize);
-            let area = self.areas.next(i);
-            if area <= 0.0 {
+        let depths = Depths { t, half: face.half_depth, from: [ox, y - oy] };
+        let areas = Areas::new(simd, &parts, columns);
+        let functions = edges.functions(simd, columns[0], y);
+        let row = Row { t, face, depths, areas, functions, columns };
+        // Most triangles have no more pixels than these.
+        let mut next = (columns[0], 0.0);
+        let mut room = self.add_eight(simd, &row, &mut next, part > 1, &mut passes, &mut added);
+        while room && next.0 < columns[1] {
+            room = self.add_eight(simd, &row, &mut next, part > 1, &mut passes, &mut added);
+        }
+        room
+    }
+
+    /// Adds a triangle's fragments in up to eight pixels from `next` on, a column and the area before it. Says
+    /// whether there was room, if it is `limited`.
+    #[inline(always)]
+    fn add_eight<S: Simd>(
+        &mut self,
+        simd: S,
+        row: &Row<'_, S>,
+        next: &mut (i32, f32),
+        limited: bool,
+        passes: &mut impl FnMut(i32) -> bool,
+        added: &mut impl FnMut(i32, &Fragment),
+    ) -> bool {
+        let Row { t, face, depths, areas, functions, columns } = row;
+        let (first, mut sum) = *next;
+        let count = (columns[1] - first).min(EIGHT as i32);
+        let [depth, z_min, z_max] = depths.of_eight(simd, first);
+        let before_far = z_min.simd_lt(f32x8::splat(simd, 1.0)).to_bitmask();
+        let seen = self.seen(simd, first, count, z_min) & before_far;
+        *next = (first + EIGHT as i32, 0.0);
+        if seen == 0 && next.0 >= columns[1] {
+            return true;
+        }
+        let [here, after] = areas.changes(simd, first, first == columns[0]);
+        let at = functions.at(simd, (first - columns[0]) as usize);
+        let masks = face.slopes.masks(simd, self.table, at);
+        let [p, q, r]: [[f32; EIGHT]; 3] = [at[0].into(), at[1].into(), at[2].into()];
+        let depth: [f32; EIGHT] = depth.into();
+        let (z_min, z_max): ([f32; EIGHT], [f32; EIGHT]) = (z_min.into(), z_max.into());
+        for i in 0..count as usize % (EIGHT + 1) {
+            let (x, column) = (first + i as i32, first as usize + i);
+            let area = sum + here[i % EIGHT];
+            sum = area + after[i % EIGHT];
+            if area <= 0.0 || seen >> i & 1 == 0 || !passes(x) {
                 continue;
             }
-            let depth = plane_depth(t, (x - ox) as f32, (y - oy) as f32);
-            let z_min = (depth - face.half_depth).max(t.depth_min);
-            if z_min > self.covers[column].hidden_from || z_min >= 1.0 || !passes(x) {
-                continue;
-            }
-            if self.fragments.len() >= self.max_fragments && part > 1 {
-                self.areas.end(i);
+            if limited && self.fragments.len() >= self.max_fragments {
                 return false;
             }
-            let z_max = (depth + face.half_depth).min(t.depth_max).max(z_min);
+            let mask = masks.get(self.table, i);
             let mut fragment = Fragment {
                 item: t.item,
                 triangle: face.triangle,
-                area,
-                z_min,
-                z_max,
+                area: area.min(1.0),
+                z_min: z_min[i % EIGHT],
+                z_max: z_max[i % EIGHT],
                 blended: face.coverage == Coverage::Blended,
-                mask: 0,
-                seen_by: 0,
+                mask,
+                seen_by: mask,
             };
-            fragment.cover(simd, self.table, face, &functions, i, depth);
-            if !fragment.blended {
-                self.covers[column].add(fragment.mask, z_max, self.table.full());
+            if let Some(far) = &face.far {
+                fragment.cut_off(self.table, far, depth[i % EIGHT]);
             }
-            self.nexts.push(self.heads[column]);
-            self.heads[column] = self.fragments.len() as u32;
+            let head = std::mem::replace(&mut self.heads[column], self.fragments.len() as u32);
+            let cover = &mut self.covers[column];
+            if head == END {
+                *cover = Cover::default();
+            }
+            if fragment.mask == 0 {
+                let at = [p[i % EIGHT], q[i % EIGHT], r[i % EIGHT], 0.0];
+                fragment.seen_by = functions.nearest(simd, &face.slopes, self.table, at);
+            } else if !fragment.blended {
+                let hidden_from = &mut self.hidden_from[column];
+                cover.add(fragment.mask, fragment.z_max, self.table.full(), hidden_from);
+            }
+            self.nexts.push(head);
             added(x, &fragment);
             self.fragments.push(fragment);
         }
-        self.areas.end((columns[1] - columns[0]) as usize);
+        next.1 = sum;
         true
+    }
+
+    /// Whether all of a face is hidden in pixels x0 … x1 − 1 of row y, of which there is one.
+    fn hides(&self, t: &ScreenTriangle, face: &Face, [x0, x1]: [i32; 2], y: i32) -> bool {
+        let [ox, oy] = t.origin();
+        let at = |x: i32| plane_depth(t, (x - ox) as f32, (y - oy) as f32);
+        // Rounding keeps the order of the pixels of a row.
+        let nearest = (at(x0).min(at(x1 - 1)) - face.half_depth).max(t.depth_min);
+        self.hidden_from[x0 as usize..x1 as usize].iter().all(|&hidden_from| nearest > hidden_from)
     }
 }
 
-/// What opaque fragments hide of a pixel.
-#[derive(Debug, Clone, Copy)]
+/// A triangle in a row of pixels.
+struct Row<'a, S: Simd> {
+    t: &'a ScreenTriangle,
+    face: &'a Face,
+    depths: Depths<'a>,
+    areas: Areas,
+    functions: Functions<S>,
+    /// The first pixel that it may touch, and the one after the last.
+    columns: [i32; 2],
+}
+
+/// The depths of a triangle in a row of pixels.
+struct Depths<'a> {
+    t: &'a ScreenTriangle,
+    /// Change over half a pixel in both directions.
+    half: f32,
+    /// The column of the triangle's origin, and how many rows below it these are.
+    from: [i32; 2],
+}
+
+impl Depths<'_> {
+    /// In eight pixels from column x on: at the centre, as [`plane_depth`] has it, the smallest and the
+    /// largest.
+    #[inline(always)]
+    fn of_eight<S: Simd>(&self, simd: S, x: i32) -> [f32x8<S>; 3] {
+        let (t, [from_x, from_y]) = (self.t, self.from);
+        let dx = f32x8::from_slice(simd, &COLUMNS) + (x - from_x) as f32;
+        let depth = dx * t.depth_dx + t.depth_dy * from_y as f32 + t.depth;
+        let z_min = (depth - self.half).max(f32x8::splat(simd, t.depth_min));
+        let z_max = (depth + self.half).min(f32x8::splat(simd, t.depth_max)).max(z_min);
+        [depth, z_min, z_max]
+    }
+}
+
+/// What opaque fragments cover of a pixel that do not cover all of it.
+#[derive(Debug, Clone, Copy, Default)]
 struct Cover {
-    /// Nothing beyond this depth can be seen.
-    hidden_from: f32,
     /// The largest depth of the fragments in `mask`.
     farthest: f32,
     /// What has been covered since the last time that all was.
@@ -211,58 +325,30 @@ struct Cover {
 }
 
 impl Cover {
-    const NONE: Self = Self { hidden_from: f32::INFINITY, farthest: 0.0, mask: 0 };
-
-    /// Adds an opaque fragment.
+    /// Adds an opaque fragment; nothing beyond `hidden_from` can be seen.
     #[inline(always)]
-    fn add(&mut self, mask: u64, z_max: f32, full: u64) {
+    fn add(&mut self, mask: u64, z_max: f32, full: u64, hidden_from: &mut f32) {
         if mask == full {
-            self.hidden_from = self.hidden_from.min(z_max);
-        } else if mask != 0 && z_max < self.hidden_from {
+            *hidden_from = hidden_from.min(z_max);
+        } else if z_max < *hidden_from {
             self.mask |= mask;
             self.farthest = self.farthest.max(z_max);
             if self.mask == full {
-                *self = Self { hidden_from: self.farthest, ..Self::NONE };
+                *hidden_from = self.farthest;
+                *self = Self::default();
             }
         }
     }
 }
 
-/// The smallest depth of a face in pixels x0 … x1 − 1 of row y, as its fragments have it; `None`
-/// where there are no such pixels.
-#[inline(always)]
-fn nearest_depth(t: &ScreenTriangle, face: &Face, [x0, x1]: [i32; 2], y: i32) -> Option<f32> {
-    let [ox, oy] = t.origin();
-    let at = |x: i32| plane_depth(t, (x - ox) as f32, (y - oy) as f32);
-    // Rounding keeps the order of the pixels of a row.
-    (x0 < x1).then(|| (at(x0).min(at(x1 - 1)) - face.half_depth).max(t.depth_min))
-}
-
 impl Fragment {
-    /// Finds the mask from the edge functions and the depth at the pixel's centre; what is beyond
-    /// the far plane goes.
-    #[inline(always)]
-    fn cover<S: Simd>(
-        &mut self,
-        simd: S,
-        table: &MaskTable,
-        face: &Face,
-        functions: &Functions<S>,
-        column: usize,
-        depth: f32,
-    ) {
-        let at = functions.at(simd, column);
-        self.mask = functions.mask(simd, &face.slopes, table, at);
-        if let Some(far) = face.far {
-            let before = self.mask & table.half_plane(&far, 1.0 - depth);
-            let all = self.mask.count_ones().max(1);
-            self.area *= before.count_ones() as f32 / all as f32;
-            self.mask = before;
-        }
-        self.seen_by = match self.mask {
-            0 => functions.nearest(simd, &face.slopes, table, at),
-            mask => mask,
-        };
+    /// Takes away what is beyond the far plane; `depth` is that at the pixel's centre.
+    #[cold]
+    fn cut_off(&mut self, table: &MaskTable, far: &Direction, depth: f32) {
+        let before = self.mask & table.half_plane(far, 1.0 - depth);
+        let all = self.mask.count_ones().max(1);
+        self.area *= before.count_ones() as f32 / all as f32;
+        (self.mask, self.seen_by) = (before, before);
     }
 }
 

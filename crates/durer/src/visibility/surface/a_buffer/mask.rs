@@ -6,7 +6,8 @@
 //! exact area says, those with the largest function.
 
 use super::Mask;
-use fearless_simd::{Simd, f32x4, prelude::*};
+use super::coverage::EIGHT;
+use fearless_simd::{Simd, f32x8, prelude::*};
 
 /// Directions in a quadrant. Coarser ones turn edges by more than a sub-pixel's width.
 const DIRECTIONS: usize = 32;
@@ -56,7 +57,7 @@ impl Masks {
 const LAST_DISTANCE: f32 = (DISTANCES - 1) as f32;
 
 /// A linear function on a pixel, divided by |a| + |b|: the direction's part.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Direction {
     /// Where the direction's masks begin in the table.
     start: u32,
@@ -66,12 +67,15 @@ pub struct Direction {
 }
 
 impl Direction {
+    /// Of a function without slope.
+    pub const NONE: Self = Self { start: 0, scale: 0.0 };
+
     /// The direction of a function that grows by `a` per pixel to the right and `b` downwards.
     #[inline(always)]
     pub fn new(a: f32, b: f32) -> Self {
         let length = a.abs() + b.abs();
         if length == 0.0 || !length.is_finite() {
-            return Self::default();
+            return Self::NONE;
         }
         // A function and its opposite use the same masks, so that they never overlap or leave a gap.
         let opposite = b < 0.0 || (b == 0.0 && a < 0.0);
@@ -82,6 +86,25 @@ impl Direction {
         let scale = 1.0 / length;
         let scale = if opposite { -scale } else { scale };
         Self { start: (index * DISTANCES) as u32, scale }
+    }
+}
+
+/// Masks of three half planes in eight pixels, still to be looked up.
+pub struct Common {
+    /// In the table.
+    places: [[i32; EIGHT]; 3],
+    /// The bits of each that are to be turned over.
+    turned: [u64; 3],
+}
+
+impl Common {
+    /// The sub-pixels of a pixel that all three have in common.
+    #[inline(always)]
+    pub fn get(&self, table: &MaskTable, pixel: usize) -> u64 {
+        let [p, q, r] = &self.places;
+        let of = |places: &[i32; EIGHT]| table.masks.get(places[pixel % EIGHT] as usize);
+        let [a, b, c] = self.turned;
+        (of(p) ^ a) & (of(q) ^ b) & (of(r) ^ c)
     }
 }
 
@@ -116,21 +139,38 @@ impl MaskTable {
         self.mask(direction, step as i32)
     }
 
-    /// The places among a direction's masks of functions that are divided and turned as the table
-    /// has them.
+    /// The sub-pixels where three functions are positive, in eight pixels, at whose centres they have
+    /// these values, not divided, times `scale`.
     #[inline(always)]
-    pub fn distances<S: Simd>(&self, simd: S, canonical: f32x4<S>) -> [i32; 4] {
-        let (zero, last) = (f32x4::splat(simd, 0.0), f32x4::splat(simd, LAST_DISTANCE));
-        let step = (canonical + 0.5) * DISTANCES as f32;
-        simd.cvt_i32_f32x4(step.max(zero).min(last)).into()
+    pub fn common<S: Simd>(
+        &self,
+        simd: S,
+        scale: f32,
+        functions: [(&Direction, f32x8<S>); 3],
+    ) -> Common {
+        let (zero, last) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, LAST_DISTANCE));
+        let (mut places, mut turned) = ([[0; EIGHT]; 3], [0; 3]);
+        for (i, (direction, centers)) in functions.iter().enumerate() {
+            // Powers of two change no rounding.
+            let per_center = direction.scale * (DISTANCES as f32 / scale);
+            let step = *centers * per_center + 0.5 * DISTANCES as f32;
+            let place = simd.cvt_i32_f32x8(step.max(zero).min(last));
+            places[i] = (place + direction.start.cast_signed()).into();
+            turned[i] = self.turned(direction);
+        }
+        Common { places, turned }
     }
 
     /// A mask of a direction.
     #[inline(always)]
-    pub fn mask(&self, direction: &Direction, distance: i32) -> u64 {
-        let mask = self.masks.get(direction.start as usize + distance as usize);
-        let turned = if direction.scale < 0.0 { self.full() } else { 0 };
-        mask ^ turned
+    fn mask(&self, direction: &Direction, distance: i32) -> u64 {
+        self.masks.get(direction.start as usize + distance as usize) ^ self.turned(direction)
+    }
+
+    /// The bits to be turned over in a direction's masks.
+    #[inline(always)]
+    fn turned(&self, direction: &Direction) -> u64 {
+        if direction.scale < 0.0 { self.full() } else { 0 }
     }
 
     /// The centres of the sub-pixels, from the pixel's, eight at a time: x and y.

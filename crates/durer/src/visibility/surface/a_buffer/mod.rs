@@ -171,7 +171,6 @@ pub fn render(
         pool: Pool::new(&table, width, options.max_fragments),
         mixed: Mixed::new(width as usize),
         pixel: Pixel::default(),
-        in_pieces: input.triangles.windows(2).any(|two| two[0].item == two[1].item),
     };
     for y in 0..height as i32 {
         rows.faces.advance(y);
@@ -219,8 +218,6 @@ struct Rows<'a> {
     pool: Pool<'a>,
     mixed: Mixed,
     pixel: Pixel,
-    /// Whether some faces come in several pieces.
-    in_pieces: bool,
 }
 
 impl Rows<'_> {
@@ -254,7 +251,7 @@ impl Rows<'_> {
         let Self { faces, pool, .. } = self;
         pool.clear(columns);
         for number in 0..faces.count() {
-            if pool.rejects(faces.active(number), columns) {
+            if pool.rejects(simd, faces.active(number), columns) {
                 continue;
             }
             let (triangle, face) = faces.get(simd, number);
@@ -283,14 +280,27 @@ impl Rows<'_> {
         lit: &mut Lit<'_>,
         t: &mut impl Tracer<Step>,
     ) {
-        let Self { input, table, pool, mixed, pixel, .. } = self;
-        for x in x0..x1 {
+        let Self { input, table, faces, pool, mixed, pixel, .. } = self;
+        let mut x = x0;
+        while x < x1 {
+            let filled = pool.next_filled([x, x1]);
+            if x < filled {
+                mixed.sums[x as usize..filled as usize].fill(Vec4::ZERO + behind);
+                (x..filled).for_each(|x| t.step(|| Step::Background { x, share: 1.0 }));
+                x = filled;
+                continue;
+            }
             let place = Place { triangles: &input.triangles, table, x, y };
             mixed.sums[x as usize] = Vec4::ZERO;
-            if pool.is_empty(x) {
-                pixel.background = 1.0;
+            if let Some(only) = pool.only(x).filter(|f| !f.blended) {
+                // Most pixels.
+                if only.area > 0.0 {
+                    t.step(|| Step::Share { x, item: only.item, share: only.area });
+                    mixed.add(simd, lit, only.item, x as u32, only.area, [x, y]);
+                }
+                pixel.background = 1.0 - only.area;
             } else {
-                pixel.begin(pool, x, table.full(), self.in_pieces);
+                pixel.begin(pool, x, table.full(), faces.in_pieces);
                 if pixel.is_blended() {
                     mixed.sums[x as usize] = blended(pixel, &place, lit, t);
                 } else {
@@ -307,6 +317,7 @@ impl Rows<'_> {
                 t.step(|| Step::Background { x, share: pixel.background });
                 mixed.sums[x as usize] += behind * pixel.background;
             }
+            x += 1;
         }
         Mixed::flush(simd, mixed, lit);
     }

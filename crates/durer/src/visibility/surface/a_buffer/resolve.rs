@@ -17,8 +17,6 @@ pub struct Pixel {
     order: Vec<u64>,
     /// The sub-pixels at which each is seen.
     visible: Vec<u64>,
-    /// Largest depth and mask of opaque fragments, while it is found what they hide.
-    covers: Vec<(f32, u64)>,
     /// What the background shares.
     pub background: f32,
 }
@@ -47,18 +45,17 @@ impl Pixel {
             // Depths are at least 0, so that their bits grow with them.
             let z_min = pool.fragment(number).z_min + 0.0;
             if z_min <= hidden_from {
-                self.order.push(u64::from(z_min.to_bits()) << 32 | u64::from(number));
+                // The latest are the farthest for the most part.
+                self.order.push(!(u64::from(z_min.to_bits()) << 32 | u64::from(number)));
+                sink(&mut self.order);
             }
         }
-        self.order.sort_unstable();
-        self.fragments.extend(self.order.iter().map(|&key| *pool.fragment(key as u32)));
-        if self.fragments.len() < 2 {
-            return;
+        if self.order.len() > FEW {
+            self.order.sort_unstable();
         }
+        self.fragments.extend(self.order.iter().rev().map(|&key| *pool.fragment(!key as u32)));
         if hidden_from.is_finite() {
-            let hidden_from = self.nearest_cover(full);
-            let seen = self.fragments.partition_point(|f| f.z_min <= hidden_from);
-            self.fragments.truncate(seen);
+            self.drop_hidden(full);
         }
         if in_pieces {
             self.fragments.sort_unstable_by_key(|f| (f.item, f.triangle));
@@ -67,21 +64,21 @@ impl Pixel {
         sort(&mut self.fragments);
     }
 
-    /// The smallest depth up to which opaque fragments cover all of the pixel: unlike that by which
-    /// the pool leaves fragments out, it does not depend on the order in which they came.
+    /// Drops what lies wholly behind opaque fragments that cover all: unlike the depth by which the pool
+    /// leaves fragments out, that does not depend on the order in which they came.
     #[inline(always)]
-    fn nearest_cover(&mut self, full: u64) -> f32 {
-        let opaque = self.fragments.iter().filter(|f| !f.blended && f.mask != 0);
-        self.covers.clear();
-        self.covers.extend(opaque.map(|f| (f.z_max, f.mask)));
-        self.covers.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let mut covered = 0;
-        let mut covers = self.covers.iter();
-        let last = covers.find(|(_, mask)| {
-            covered |= mask;
-            covered == full
-        });
-        last.map_or(f32::INFINITY, |&(depth, _)| depth)
+    fn drop_hidden(&mut self, full: u64) {
+        // What hides the farthest may hide the one before it.
+        while let Some(last) = self.fragments.last() {
+            let (mut covered, farthest) = (0, last.z_min);
+            for f in &self.fragments {
+                covered |= if f.z_max < farthest && !f.blended { f.mask } else { 0 };
+            }
+            if covered != full {
+                return;
+            }
+            self.fragments.pop();
+        }
     }
 
     /// Whether something can be seen through.
@@ -105,14 +102,18 @@ impl Pixel {
         }
         for i in 0..self.fragments.len() {
             let f = &self.fragments[i];
-            let visible = self.seen_of(i, twice, place);
-            let part = visible.count_ones() as f32 / f.seen_by.count_ones().max(1) as f32;
-            let share = (f.area * part).min(left);
+            let (mut visible, mut area) = (f.seen_by, f.area);
+            // Sub-pixels of its own alone can be hidden by nothing.
+            if f.mask == 0 || f.mask & twice != 0 {
+                visible = self.seen_of(i, twice, place);
+                area *= visible.count_ones() as f32 / f.seen_by.count_ones().max(1) as f32;
+            }
+            let share = area.min(left);
             left -= share;
             self.shares.push(share);
             self.visible.push(visible);
         }
-        if covered == place.table.full() {
+        if covered == place.table.full() && left > 0.0 {
             left = self.give_to_half_hidden(left);
             left = self.give_to_all(left);
         }
@@ -235,6 +236,18 @@ impl Pixel {
     }
 }
 
+/// Moves the last of some to its place among the others, which are in order, as long as they are few.
+#[inline(always)]
+fn sink(order: &mut [u64]) {
+    let mut at = order.len() - 1;
+    if at < FEW {
+        while at > 0 && order[at] < order[at - 1] {
+            order.swap(at, at - 1);
+            at -= 1;
+        }
+    }
+}
+
 /// Sorts fragments front to back: mostly they are few and nearly so.
 #[inline(always)]
 fn sort(fragments: &mut [Fragment]) {
@@ -251,7 +264,7 @@ fn sort(fragments: &mut [Fragment]) {
     }
 }
 
-/// Up to as many fragments are sorted by insertion.
+/// Up to as many are sorted by insertion.
 const FEW: usize = 16;
 
 #[inline(always)]
