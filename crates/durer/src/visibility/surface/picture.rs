@@ -79,7 +79,7 @@ impl<'a> Picture<'a> {
             framebuffer,
             background: options.background,
             level: options.level,
-            lit: Lit::new(lighting),
+            lit: Lit::by_rows(lighting),
             triangle_count: lighting.scene.triangle_count() as u32,
             height: lighting.view.height(),
         }

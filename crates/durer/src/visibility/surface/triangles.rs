@@ -32,12 +32,17 @@ pub struct Triangles<'a> {
     runs: &'a [Run],
     level: Level,
     transform: Option<RunTransform>,
-    kept: Box<[VisibleTriangle; KEPT]>,
+    /// A power of two.
+    kept: Box<[VisibleTriangle]>,
     wanted: Wanted,
 }
 
-/// Triangles kept: a power of two; about 256 kB, as many as a row of a fine mesh shows.
-const KEPT: usize = 1024;
+/// How many triangles are kept for pictures made tile by tile: about 200 kB, as many as a tile of a fine mesh
+/// shows.
+pub const OF_TILES: usize = 1 << 10;
+
+/// How many are kept for pictures made row by row: rows show more, and all of them again in the next row.
+pub const OF_ROWS: usize = 1 << 12;
 
 /// Items of one run that are to be made ready; their places are already theirs.
 #[derive(Debug, Clone, Copy, Default)]
@@ -51,8 +56,15 @@ struct Wanted {
 }
 
 impl<'a> Triangles<'a> {
-    pub fn new(scene: &'a Scene, view: &'a View, runs: &'a [Run], level: Level) -> Self {
-        let kept = Box::new([VisibleTriangle::default(); KEPT]);
+    /// Keeps as many as `kept`, a power of two.
+    pub fn new(
+        scene: &'a Scene,
+        view: &'a View,
+        runs: &'a [Run],
+        level: Level,
+        kept: usize,
+    ) -> Self {
+        let kept = vec![VisibleTriangle::default(); kept].into_boxed_slice();
         Self { scene, view, runs, level, transform: None, kept, wanted: Wanted::default() }
     }
 
@@ -63,13 +75,13 @@ impl<'a> Triangles<'a> {
             self.want(item, run);
             self.make_ready();
         }
-        &self.kept[place(item)]
+        &self.kept[place(item, &self.kept)]
     }
 
     /// Whether an item is kept or wanted.
     #[inline(always)]
     pub fn has(&self, item: u32) -> bool {
-        self.kept[place(item)].item == item
+        self.kept[place(item, &self.kept)].item == item
     }
 
     /// Has an item made ready, at the latest by [`Self::make_ready`], which comes before [`Self::get`].
@@ -82,7 +94,8 @@ impl<'a> Triangles<'a> {
         self.wanted.items[self.wanted.count] = item;
         self.wanted.corners[self.wanted.count] = self.corners(item, run);
         self.wanted.count += 1;
-        self.kept[place(item)].item = item;
+        let place = place(item, &self.kept);
+        self.kept[place].item = item;
     }
 
     /// The vertices of an item in its mesh; of a line its ends and the first again.
@@ -128,8 +141,8 @@ pub fn parallel_view(view: &View) -> Option<Vec3> {
 }
 
 #[inline(always)]
-fn place(item: u32) -> usize {
-    item as usize % KEPT
+fn place(item: u32, kept: &[VisibleTriangle]) -> usize {
+    item as usize & (kept.len() - 1)
 }
 
 /// Numbers of three corners of eight triangles, by corner.
@@ -142,7 +155,7 @@ fn prepare<S: Simd>(
     t: &RunTransform,
     mesh: &Mesh,
     (items, corners): (&[u32; 8], &[[u32; 3]; 8]),
-    kept: &mut [VisibleTriangle; KEPT],
+    kept: &mut [VisibleTriangle],
 ) {
     let is_triangle = mesh.topology == Topology::Triangles;
     // By corner and axis; all that is read first, for it has to be waited for.
@@ -202,12 +215,12 @@ fn prepare<S: Simd>(
         let ([px, py, pz], [nx, ny, nz]) = (positions[i], normals[i]);
         let rows = transpose(simd, [px, py, pz, nx, ny, nz, none, none]);
         for (&item, row) in items.iter().zip(rows) {
-            row.store_slice(&mut kept[place(item)].rows[i]);
+            row.store_slice(&mut kept[place(item, kept)].rows[i]);
         }
     }
     let settled = settled(simd, t.parallel_view, face, &positions, &normals);
     for (lane, &item) in items.iter().enumerate() {
-        kept[place(item)].settled = settled >> lane & 1 == 1;
+        kept[place(item, kept)].settled = settled >> lane & 1 == 1;
     }
 }
 
@@ -360,7 +373,7 @@ fn store<S: Simd>(
     [x, y]: &[[f64; 8]; 2],
     [constant, dx, dy]: &[[f32x8<S>; 3]; 3],
     face: &[f32x8<S>; 3],
-    kept: &mut [VisibleTriangle; KEPT],
+    kept: &mut [VisibleTriangle],
 ) {
     let none = simd.splat_f32x8(0.0);
     let ([a, b, c], [d, e, f]) = (*constant, *dx);
@@ -368,7 +381,7 @@ fn store<S: Simd>(
     let ([a, b, c], [nx, ny, nz]) = (*dy, *face);
     let second = transpose(simd, [a, b, c, none, nx, ny, nz, none]);
     for (lane, &item) in items.iter().enumerate() {
-        let to = &mut kept[place(item)];
+        let to = &mut kept[place(item, kept)];
         (to.item, to.corners) = (item, corners[lane]);
         to.origin = [x[lane] as i32, y[lane] as i32];
         let [a, b, c, d, e, f, g, h]: [f32; 8] = first[lane].into();

@@ -91,3 +91,54 @@ impl Areas {
         [here.into(), next.into()]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::levels;
+    use fearless_simd::dispatch;
+
+    /// The inside lies right of the first edge and left of the second.
+    const LEFT: Lanes = [2.25, 21.0, f32::INFINITY, f32::INFINITY];
+    const RIGHT: Lanes = [11.5, 21.0, f32::NEG_INFINITY, f32::NEG_INFINITY];
+    const HEIGHT: Lanes = [0.75, -0.75, 0.0, 0.0];
+
+    fn areas<S: Simd>(simd: S, [first, end]: [i32; 2]) -> Vec<f32> {
+        let [left, right, height] =
+            [LEFT, RIGHT, HEIGHT].map(|lanes| f32x4::simd_from(simd, lanes));
+        let areas = Areas::new(simd, &RowEdges { left, right, height }, [first, end]);
+        let (mut found, mut sum) = (Vec::new(), 0.0);
+        for x in (first..end).step_by(EIGHT) {
+            let [here, next] = areas.changes(simd, x, x == first);
+            for (here, next) in here.into_iter().zip(next) {
+                found.push(sum + here);
+                sum += here + next;
+            }
+        }
+        found.truncate((end - first) as usize);
+        found
+    }
+
+    /// The area right of the slanted edge and left of the upright one.
+    fn expected(x: i32) -> f32 {
+        let right_of = |x: f32| {
+            let t = ((x - LEFT[0]) / (RIGHT[0] - LEFT[0])).clamp(0.0, 1.0);
+            0.5 * t * t * (RIGHT[0] - LEFT[0]) + (x - RIGHT[0]).max(0.0)
+        };
+        let x = x as f32;
+        if x < 21.0 { 0.75 * (right_of(x + 1.0) - right_of(x)) } else { 0.0 }
+    }
+
+    #[test]
+    fn areas_are_those_of_the_shape_wherever_a_part_of_the_row_begins_and_ends() {
+        for level in levels() {
+            for (first, end) in [(0, 30), (2, 9), (3, 25), (5, 6), (12, 22), (0, 4), (21, 30)] {
+                let found = dispatch!(level, simd => areas(simd, [first, end]));
+                for (x, found) in (first..end).zip(found) {
+                    let expected = expected(x);
+                    assert!((found - expected).abs() < 1e-5, "{first} {x}: {found} {expected}");
+                }
+            }
+        }
+    }
+}

@@ -17,7 +17,7 @@ use crate::simd::Level;
 use crate::view::View;
 use crate::visibility::surface::attributes::{VisibleTriangle, Weights, blend, run_of};
 use crate::visibility::surface::setup::Run;
-use crate::visibility::surface::triangles::{Triangles, parallel_view};
+use crate::visibility::surface::triangles::{OF_ROWS, OF_TILES, Triangles, parallel_view};
 
 /// Sets of texture coordinates that are looked at.
 const TEX_COORD_SETS: usize = 4;
@@ -96,9 +96,19 @@ pub struct Lit<'a> {
 }
 
 impl<'a> Lit<'a> {
+    /// For a picture that is made tile by tile.
     pub fn new(shared: Lighting<'a>) -> Self {
+        Self::keeping(shared, OF_TILES)
+    }
+
+    /// For a picture that is made row by row.
+    pub fn by_rows(shared: Lighting<'a>) -> Self {
+        Self::keeping(shared, OF_ROWS)
+    }
+
+    fn keeping(shared: Lighting<'a>, kept: usize) -> Self {
         let parallel_view = parallel_view(shared.view);
-        let triangles = Triangles::new(shared.scene, shared.view, shared.runs, shared.level);
+        let triangles = Triangles::new(shared.scene, shared.view, shared.runs, shared.level, kept);
         Self { shared, triangles, latest: None, parallel_view, reflected: None }
     }
 
