@@ -41,7 +41,8 @@ pub struct Triangles<'a> {
 /// shows.
 pub const OF_TILES: usize = 1 << 10;
 
-/// How many are kept for pictures made row by row: rows show more, and all of them again in the next row.
+/// How many are kept for pictures made row by row, about 800 kB: a row shows more than a tile, and most of them
+/// again in the next.
 pub const OF_ROWS: usize = 1 << 12;
 
 /// Items of one run that are to be made ready; their places are already theirs.
