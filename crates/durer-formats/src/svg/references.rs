@@ -11,6 +11,10 @@ use usvg::roxmltree::{Document, Node, NodeId};
 /// Elements within one another and within what refers to them may be so deep, as usvg has it for elements alone.
 const MAX_DEPTH: usize = 1024;
 
+/// References may be followed so many times in all: what refers twice to what refers twice, and so on, would keep
+/// a small file busy for ever.
+const MAX_FOLLOWED: u64 = 1_000_000;
+
 /// What following a reference takes of the stack, in elements.
 const REFERENCE: usize = 8;
 
@@ -71,11 +75,12 @@ fn property(name: &str) -> Option<Kind> {
     PROPERTIES.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
 }
 
-/// Refuses references that go in circles, and elements that are too deep within one another and within the `above` levels
-/// around the document; gives how many levels there are with those.
+/// Refuses references that go in circles or multiply, and elements that are too deep within one another and within
+/// the `above` levels around the document; gives how many levels there are with those.
 ///
 /// # Errors
-/// [`Error::Decode`] with the place of the element where a circle closes, or that is too deep.
+/// [`Error::Decode`] with the place of the element where a circle closes, that is too deep, or from where on there are
+/// too many references.
 pub fn check(document: &Document<'_>, above: usize) -> Result<usize> {
     let mut ids: HashMap<_, Vec<_>> = HashMap::new();
     for node in document.descendants() {
@@ -84,10 +89,10 @@ pub fn check(document: &Document<'_>, above: usize) -> Result<usize> {
         }
     }
     let sheet = sheet(document);
-    let (depths, around) = (HashMap::new(), HashMap::new());
-    Walk { document, sheet: &sheet, ids, depths, around, open: Vec::new() }
-        .depth(document.root_element(), BY_HREF, above, Values::default())
-        .map(|levels| above + levels)
+    let (found, around) = (HashMap::new(), HashMap::new());
+    Walk { document, sheet: &sheet, ids, found, around, open: Vec::new() }
+        .follow(document.root_element(), BY_HREF, above, Values::default())
+        .map(|found| above + found.levels)
 }
 
 /// The rules of all style sheets that say what elements refer to.
@@ -108,12 +113,21 @@ struct Walk<'a, 'i> {
     sheet: &'a StyleSheet<'a>,
     /// Of several elements with the same id any may be meant.
     ids: HashMap<&'a str, Vec<Node<'a, 'i>>>,
-    /// How deep the elements are that have been followed, with how they were referred to and what is said around them.
-    depths: HashMap<(NodeId, Opened, Values<'a>), usize>,
+    /// What was found in the elements that have been followed, with how they were referred to and what is said around
+    /// them.
+    found: HashMap<(NodeId, Opened, Values<'a>), Found>,
     /// What is said around elements that were referred to.
     around: HashMap<NodeId, Values<'a>>,
     /// Those that are being followed.
     open: Vec<(NodeId, Opened)>,
+}
+
+/// What there is in an element and in what it refers to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Found {
+    levels: usize,
+    /// How many times references are followed to draw it once.
+    followed: u64,
 }
 
 /// How an element is referred to.
@@ -138,27 +152,28 @@ struct Value<'a> {
 type Values<'a> = [Option<Value<'a>>; 5];
 
 impl<'a, 'i> Walk<'a, 'i> {
-    /// How many levels there are in an element and in what it refers to; `above` are around it, where this is said.
-    fn depth(
+    /// What there is in an element and in what it refers to; `above` levels are around it, where this is said.
+    fn follow(
         &mut self,
         start: Node<'a, 'i>,
         opened: Opened,
         above: usize,
         around: Values<'a>,
-    ) -> Result<usize> {
+    ) -> Result<Found> {
         let key = (start.id(), opened, around);
-        if let Some(depth) = self.depths.get(&key) {
-            return if above + depth > MAX_DEPTH { Err(self.too_deep(start)) } else { Ok(*depth) };
+        if let Some(found) = self.found.get(&key) {
+            let is_deep = above + found.levels > MAX_DEPTH;
+            return if is_deep { Err(self.too_deep(start)) } else { Ok(*found) };
         }
         self.open.push((start.id(), opened));
         let is_clip = start.has_tag_name((super::ROOT.0, "clipPath"));
-        let mut deepest = 0;
+        let mut found = Found::default();
         let mut left = vec![(start, 0, around)];
         while let Some((node, level, around)) = left.pop() {
             if above + level > MAX_DEPTH {
                 return Err(self.too_deep(node));
             }
-            deepest = deepest.max(level);
+            found.levels = found.levels.max(level);
             let said = handed_down(self.said(node, &around), &around);
             for (opened, target) in self.references(node, &said, is_clip) {
                 if let Some(at) = self.open.iter().position(|(id, _)| *id == target.id()) {
@@ -172,14 +187,19 @@ impl<'a, 'i> Walk<'a, 'i> {
                 let is_use = opened.kind == Kind::Href && node.tag_name().name() == "use";
                 let around = if is_use { said } else { self.around(target) };
                 let around = self.needed(target, around);
-                deepest = deepest.max(below + self.depth(target, opened, above + below, around)?);
+                let of_target = self.follow(target, opened, above + below, around)?;
+                found.levels = found.levels.max(below + of_target.levels);
+                found.followed += 1 + of_target.followed;
+                if found.followed > MAX_FOLLOWED {
+                    return Err(self.too_many(node));
+                }
             }
             let children = node.children().filter(Node::is_element);
             left.extend(children.map(|child| (child, level + 1, said)));
         }
         self.open.pop();
-        self.depths.insert(key, deepest);
-        Ok(deepest)
+        self.found.insert(key, found);
+        Ok(found)
     }
 
     /// What an element refers to where it is drawn; clip paths have neither paint, mask nor filter.
@@ -317,6 +337,15 @@ impl<'a, 'i> Walk<'a, 'i> {
             column,
             format!("references go in a circle: this one to `#{id}` closes it"),
         )
+    }
+
+    fn too_many(&self, node: Node<'_, '_>) -> Error {
+        let (line, column) = self.place(node);
+        let message = format!(
+            "references are followed more than {MAX_FOLLOWED} times: \
+             elements refer more than once to others that do the same"
+        );
+        Error::line(line, column, message)
     }
 
     fn too_deep(&self, node: Node<'_, '_>) -> Error {

@@ -438,6 +438,27 @@ fn references_that_are_deep_are_refused() {
     drawing(&words(50));
 }
 
+#[test]
+fn references_that_multiply_are_refused() {
+    let doubling = |count: usize, element: &str, property: &str| {
+        let parts: String = (0..count)
+            .map(|i| {
+                let shape = format!("<path d='M0 0h9v9z' {property}='url(#a{})'/>", i + 1);
+                format!("<{element} id='a{i}' width='9' height='9'>{shape}{shape}</{element}>")
+            })
+            .collect();
+        format!("{parts}<path d='M0 0h9v9z' {property}='url(#a0)'/>")
+    };
+    for (element, property) in [("pattern", "fill"), ("mask", "mask"), ("clipPath", "clip-path")] {
+        let body = doubling(40, element, property);
+        let text =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{body}</svg>");
+        let told = Drawing::read(text.as_bytes(), &ReadOptions::default()).expect_err("too many");
+        assert!(told.to_string().contains("followed more than 1000000 times"), "{told}");
+        drawing(&doubling(6, element, property));
+    }
+}
+
 /// Drawings in images of a drawing are looked at like the drawing itself.
 #[test]
 fn images_that_are_drawings_cannot_fill_the_stack() {
