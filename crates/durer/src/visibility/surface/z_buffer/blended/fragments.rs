@@ -30,13 +30,13 @@ const MANY: usize = if cfg!(test) { 64 } else { 4 * TILE_PIXELS };
 /// After so many triangles it is asked whether anything comes through.
 const AT_ONCE: usize = 8;
 
-/// Lights the first triangles, as many as their depths do not tell from the others, sorted pixel by pixel: how many
-/// they are.
+/// Lights the first triangles, at least so many and as many as their depths do not tell from the others, sorted pixel by
+/// pixel: how many they are.
 #[inline(always)]
 pub fn light_sorted<S: Simd>(
     simd: S,
     fragments: &mut Fragments,
-    triangles: &[&ScreenTriangle],
+    (triangles, at_least): (&[&ScreenTriangle], usize),
     layers: &mut Layers,
     planes: &mut [SamplePlane],
     area: [[i32; 2]; 2],
@@ -49,7 +49,7 @@ pub fn light_sorted<S: Simd>(
     while taken < triangles.len() && !layers.hide_all(area[1]) {
         let mut part = 0;
         for t in triangles[taken..].iter().take(AT_ONCE) {
-            if t.depth_min > farthest && taken + part > 0 {
+            if t.depth_min > farthest && taken + part >= at_least {
                 break;
             }
             farthest = farthest.max(t.depth_max);

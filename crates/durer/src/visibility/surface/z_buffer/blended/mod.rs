@@ -91,17 +91,18 @@ pub fn light_blended<S: Simd>(
     let Blended { sheet, fragments, layers } = blended;
     layers.open(area);
     while !triangles.is_empty() && !layers.hide_all(area[1]) {
-        let taken = light_sheet(simd, sheet, triangles, layers, planes, area, lit);
+        let taken = match light_sheet(simd, sheet, triangles, layers, planes, area, lit) {
+            Ok(taken) => taken,
+            Err(tried) => {
+                light_sorted(simd, fragments, (triangles, tried), layers, planes, area, lit)
+            }
+        };
         triangles = &triangles[taken..];
-        if taken == 0 {
-            let taken = light_sorted(simd, fragments, triangles, layers, planes, area, lit);
-            triangles = &triangles[taken..];
-        }
     }
 }
 
 /// Lights the first triangles, as many as do not cover each other, if all others are behind them: how many they
-/// are.
+/// are; else lights none and tells how many it has looked at.
 #[inline(always)]
 fn light_sheet<S: Simd>(
     simd: S,
@@ -111,7 +112,7 @@ fn light_sheet<S: Simd>(
     planes: &mut [SamplePlane],
     area: [[i32; 2]; 2],
     lit: &mut Lit<'_>,
-) -> usize {
+) -> Result<usize, usize> {
     sheet.clear();
     let (mut taken, mut farthest) = (0, f32::NEG_INFINITY);
     // The item that covers others, of which the rest is in the sheet.
@@ -126,7 +127,7 @@ fn light_sheet<S: Simd>(
             // Of an item that was cut, a part may be among the others.
             let in_parts = || triangles[..taken].iter().any(|other| other.item == t.item);
             if t.depth_min <= farthest || in_parts() {
-                return 0;
+                return Err(taken + 1);
             }
             over = t.item;
             break;
@@ -162,7 +163,7 @@ fn light_sheet<S: Simd>(
             layers.light(simd, block, items, covered, lit);
         }
     }
-    taken
+    Ok(taken)
 }
 
 /// Whether the box of a triangle takes more than a quarter of a tile.
