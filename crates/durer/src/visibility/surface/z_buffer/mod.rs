@@ -34,8 +34,8 @@ use blended::{Blended, light_blended};
 use fearless_simd::dispatch;
 use front_to_back::FrontToBack;
 use rasterize::{AllPass, FragmentTest, rasterize};
-use resolve::{Area, MaskTest, Output, resolve};
-use tile::{SamplePlane, TILE};
+use resolve::{Area, Codes, MaskTest, resolve};
+use tile::{SamplePlane, TILE, TILE_PIXELS};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -145,6 +145,19 @@ struct Band<'a> {
     normal: Option<&'a mut [[f32; 3]]>,
 }
 
+impl Band<'_> {
+    /// The rows of the colour plane from a column on, as far as a tile's pixels across and down.
+    fn rows_of(
+        &mut self,
+        column: i32,
+        size: [i32; 2],
+    ) -> impl Iterator<Item = (i32, &mut [[u8; 4]])> {
+        let (start, end) = (column as usize, (column + size[0]) as usize);
+        let rows = self.color.chunks_mut(self.width.max(1));
+        (0..size[1]).zip(rows.map(move |row| &mut row[start..end]))
+    }
+}
+
 /// Divides the planes into rows of tiles that threads can write at the same time.
 fn bands(framebuffer: &mut Framebuffer) -> Vec<Band<'_>> {
     let width = framebuffer.width() as usize;
@@ -185,6 +198,7 @@ struct Scratch<'a> {
     center: Vec<SamplePlane>,
     blended: Blended,
     mixed: Mixed,
+    codes: Box<Codes>,
     lit: Lit<'a>,
     order: FrontToBack<'a>,
 }
@@ -196,7 +210,8 @@ impl<'a> Scratch<'a> {
             planes: SamplePlane::of(offsets),
             center: Vec::new(),
             blended: Blended::new(offsets),
-            mixed: Mixed::new(tile::TILE_PIXELS),
+            mixed: Mixed::new(TILE_PIXELS),
+            codes: Box::new([0; TILE_PIXELS]),
             lit: Lit::new(frame.lighting),
             order: FrontToBack::default(),
         }
@@ -254,14 +269,15 @@ impl<'a> Frame<'a> {
         if self.options.cull == Cull::Back {
             return self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
         }
-        for (i, part) in order.parts(self.bins, index).enumerate() {
+        let mut drawn = false;
+        for part in order.parts(self.bins, index) {
             dispatch!(self.options.level, simd => {
-                if i > 0 {
+                if std::mem::take(&mut drawn) {
                     planes.iter_mut().for_each(|plane| plane.find_farthest(simd));
                 }
                 let farthest = planes.iter().map(SamplePlane::farthest_of_all).fold(0, i32::max);
                 let is_seen = |t: &&ScreenTriangle| t.depth_min.to_bits() as i32 <= farthest;
-                let triangles = part.iter().copied().filter(is_seen);
+                let triangles = part.iter().copied().filter(is_seen).inspect(|_| drawn = true);
                 rasterize(simd, planes, area, triangles, None::<&mut AllPass>)
             });
         }
@@ -270,9 +286,7 @@ impl<'a> Frame<'a> {
     /// The colours of a tile that shows nothing but the background.
     fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
         let background = background_rows(self.options.background, self.view.height());
-        for y in 0..size[1] {
-            let start = y as usize * band.width + tile[0] as usize;
-            let row = &mut band.color[start..start + size[0] as usize];
+        for (y, row) in band.rows_of(tile[0], size) {
             row.fill(encode(premultiply(background(tile[1] + y))));
         }
     }
@@ -285,7 +299,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, blended, mixed, lit, order, .. } = scratch;
+        let Scratch { planes, blended, mixed, codes, lit, order, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
         self.rasterize_opaque(order, planes, area, index);
         let mut mask = MaskTest { lit, tile };
@@ -298,9 +312,14 @@ impl<'a> Frame<'a> {
         }
         let background = background_rows(self.options.background, self.view.height());
         let area = Area { tile, size, background: &background };
-        let mut output = Output { color: &mut band.color[tile[0] as usize..], stride: band.width };
         dispatch!(self.options.level, simd =>
-            resolve(simd, planes, blended, mixed, lit, &area, &mut output));
+            resolve(simd, planes, blended, mixed, lit, &area, codes));
+        for (y, row) in band.rows_of(tile[0], size) {
+            let codes = &codes[(y * TILE) as usize..];
+            for (to, code) in row.iter_mut().zip(codes) {
+                *to = code.to_le_bytes();
+            }
+        }
     }
 
     /// Depth, item and normal: one sample at the centre, where blended surfaces count as opaque.

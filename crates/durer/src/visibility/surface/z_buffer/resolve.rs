@@ -3,7 +3,7 @@
 
 use super::blended::{Blended, resolve_blended};
 use super::rasterize::{FragmentTest, one_by_one};
-use super::tile::{SamplePlane, TILE, block_of};
+use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
@@ -52,13 +52,11 @@ pub struct Area<'b> {
     pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
 }
 
-/// A tile's part of the colour plane.
-pub struct Output<'o> {
-    /// Rows of the picture, from the tile's first.
-    pub color: &'o mut [[u8; 4]],
-    /// Pixels of a row.
-    pub stride: usize,
-}
+/// The pixels of a tile, row by row: of each the four bytes of its colour, the first one lowest.
+///
+/// They are written here and copied to the picture when all are there: rows of the picture lie far apart, and
+/// going to and fro between them would make each store wait.
+pub type Codes = [u32; TILE_PIXELS];
 
 /// Lights everything that is visible in a tile.
 pub fn resolve<S: Simd>(
@@ -68,11 +66,11 @@ pub fn resolve<S: Simd>(
     mixed: &mut Mixed,
     lit: &mut Lit<'_>,
     area: &Area<'_>,
-    output: &mut Output<'_>,
+    codes: &mut Codes,
 ) {
-    resolve_opaque(simd, planes, mixed, lit, area, output);
+    resolve_opaque(simd, planes, mixed, lit, area, codes);
     if blended.any() {
-        resolve_blended(simd, planes, blended, lit, area, output);
+        resolve_blended(simd, planes, blended, lit, area, codes);
     }
 }
 
@@ -84,13 +82,15 @@ fn resolve_opaque<S: Simd>(
     mixed: &mut Mixed,
     lit: &mut Lit<'_>,
     area: &Area<'_>,
-    output: &mut Output<'_>,
+    codes: &mut Codes,
 ) {
     // What is behind each row, linear and encoded, apart: pairs of them would be copied piece by piece.
     let (mut behind, mut encoded) = ([Vec4::ZERO; ROWS], [0; ROWS]);
-    for (y, (behind, encoded)) in (0..area.size[1]).zip(behind.iter_mut().zip(&mut encoded)) {
-        *behind = premultiply((area.background)(area.tile[1] + y));
-        *encoded = u32::from_le_bytes(encode(*behind));
+    for (y, row) in (0..area.size[1]).zip(0..ROWS) {
+        behind[row] = premultiply((area.background)(area.tile[1] + y));
+        let as_above = row > 0 && behind[row] == behind[row - 1];
+        encoded[row] =
+            if as_above { encoded[row - 1] } else { u32::from_le_bytes(encode(behind[row])) };
     }
     // Filled anew for each block, but not cleared.
     let mut samples = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
@@ -115,9 +115,11 @@ fn resolve_opaque<S: Simd>(
                     (pixels, [differs, differs_below])
                 }
             };
+            // Of the last row there may be none below; then what is written there is not copied.
+            let (above, below) = simd.split_u32x16(pixels);
+            above.store_slice(&mut codes[first..first + 8]);
+            below.store_slice(&mut codes[second..second + 8]);
             for i in 0..2.min(area.size[1] - y) as usize {
-                let start = (y as usize + i) * output.stride + x as usize;
-                put(&mut output.color[start..start + width], &pixels.as_chunks::<8>().0[i]);
                 if differs[i] != [0; 8] {
                     let behind = behind[row + i];
                     let (differs, at) = (&differs[i][..width], [at[0], at[1] + i as i32]);
@@ -128,8 +130,7 @@ fn resolve_opaque<S: Simd>(
     }
     Mixed::flush(simd, mixed, lit);
     for pixel in mixed.pixels.drain(..) {
-        let (x, y) = (pixel as usize % TILE as usize, pixel as usize / TILE as usize);
-        output.color[y * output.stride + x] = encode(mixed.sums[pixel as usize]);
+        codes[pixel as usize] = u32::from_le_bytes(encode(mixed.sums[pixel as usize]));
     }
 }
 
@@ -202,7 +203,7 @@ fn resolve_block<S: Simd>(
     lit: &mut Lit<'_>,
     [above, below]: [Vec4; 2],
     at: [i32; 2],
-) -> Option<[[u8; 4]; 16]> {
+) -> Option<u32x16<S>> {
     let (first, count) = (samples.first()?, samples.len());
     if above.w < 1.0 || below.w < 1.0 || !are_few(simd, *first) {
         return None;
@@ -241,8 +242,7 @@ fn resolve_block<S: Simd>(
     }
     let [r, g, b] = sums;
     let colors = [r.into(), g.into(), b.into(), [1.0; 16]];
-    let pixels: [u32; 16] = encode_opaque_x16(simd, &colors).into();
-    Some(pixels.map(u32::to_le_bytes))
+    Some(encode_opaque_x16(simd, &colors))
 }
 
 /// Of two rows of eight pixels, those that show one item at all samples; the others show what is behind.
@@ -253,25 +253,15 @@ fn resolve_sixteen<S: Simd>(
     whole: u32x16<S>,
     [above, below]: [u32; 2],
     at: [i32; 2],
-) -> [[u8; 4]; 16] {
+) -> u32x16<S> {
     let behind = simd.combine_u32x8(simd.splat_u32x8(above), simd.splat_u32x8(below));
     let there = whole.simd_ne(u32x16::splat(simd, NO_ITEM));
-    let mut pixels: [u32; 16] = behind.into();
-    if there.any_true() {
-        let mut colors = [[0.0; 16]; 4];
-        Lit::colors_x16(simd, lit, whole, at, &mut colors);
-        pixels = there.select(encode_opaque_x16(simd, &colors), behind).into();
+    if !there.any_true() {
+        return behind;
     }
-    pixels.map(u32::to_le_bytes)
-}
-
-/// Writes a row of up to eight pixels.
-#[inline(always)]
-fn put(out: &mut [[u8; 4]], pixels: &[[u8; 4]; 8]) {
-    match <&mut [[u8; 4]; 8]>::try_from(&mut *out) {
-        Ok(out) => *out = *pixels,
-        Err(_) => out.copy_from_slice(&pixels[..out.len()]),
-    }
+    let mut colors = [[0.0; 16]; 4];
+    Lit::colors_x16(simd, lit, whole, at, &mut colors);
+    there.select(encode_opaque_x16(simd, &colors), behind)
 }
 
 /// Of eight pixels in a row, those that show several items, or one and the background: each item is

@@ -11,7 +11,7 @@ mod sheet;
 mod tests;
 
 use super::rasterize::rasterize;
-use super::resolve::{Area, MOST_SAMPLES, Output};
+use super::resolve::{Area, Codes, MOST_SAMPLES};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
@@ -184,7 +184,7 @@ pub fn resolve_blended<S: Simd>(
     blended: &Blended,
     lit: &mut Lit<'_>,
     area: &Area<'_>,
-    output: &mut Output<'_>,
+    codes: &mut Codes,
 ) {
     let layers = &blended.layers;
     let mut under = [[f32x16::splat(simd, 0.0); 4]; MOST_SAMPLES];
@@ -210,13 +210,13 @@ pub fn resolve_blended<S: Simd>(
         let [x, y] = block_at(block);
         for lane in (0..LANES).filter(|lane| touched >> lane & 1 == 1) {
             let [r, g, b, a] = &mean;
-            let pixel = if a[lane] >= 1.0 {
-                opaque[lane].to_le_bytes()
+            let code = if a[lane] >= 1.0 {
+                opaque[lane]
             } else {
-                encode(Vec4::new(r[lane], g[lane], b[lane], a[lane]))
+                u32::from_le_bytes(encode(Vec4::new(r[lane], g[lane], b[lane], a[lane])))
             };
             let (x, y) = (x as usize + lane % 8, y as usize + lane / 8);
-            output.color[y * output.stride + x] = pixel;
+            codes[y * TILE as usize + x] = code;
         }
     }
 }
