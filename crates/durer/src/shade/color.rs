@@ -133,17 +133,15 @@ pub fn encode_srgb8(linear: f32) -> u8 {
 ///
 /// Cost: one look-up per channel.
 #[inline(always)]
-pub fn encode_opaque_x16<S: Simd>(simd: S, channels: &[[f32; 16]; 4]) -> u32x16<S> {
-    let [r, g, b, _] = channels;
+pub fn encode_opaque_x16<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> u32x16<S> {
     let (r, g, b) = (codes_x16(simd, r), codes_x16(simd, g), codes_x16(simd, b));
     r | (g << 8u32) | (b << 16u32) | (255 << 24)
 }
 
 #[inline(always)]
-fn codes_x16<S: Simd>(simd: S, linear: &[f32; 16]) -> u32x16<S> {
+fn codes_x16<S: Simd>(simd: S, linear: f32x16<S>) -> u32x16<S> {
     // From the first bucket to the largest number below 1; NaN is not above the first.
     let (least, most) = (f32::from_bits(FIRST_BUCKET << BUCKET_SHIFT), 1.0 - f32::EPSILON / 2.0);
-    let linear = f32x16::from_slice(simd, linear);
     let (least, most) = (f32x16::splat(simd, least), f32x16::splat(simd, most));
     let linear = linear.simd_gt(least).select(linear, least);
     let linear = linear.simd_lt(most).select(linear, most);
@@ -286,8 +284,11 @@ mod tests {
         for level in crate::simd::levels() {
             for &r in values.as_chunks::<16>().0 {
                 let g = r.map(|v| v * 0.5);
-                let codes: [u32; 16] = fearless_simd::dispatch!(level, simd =>
-                    encode_opaque_x16(simd, &[r, g, [0.5; 16], [0.5; 16]]).into());
+                let codes: [u32; 16] = fearless_simd::dispatch!(level, simd => {
+                    let half = f32x16::splat(simd, 0.5);
+                    let (r, g) = (f32x16::from_slice(simd, &r), f32x16::from_slice(simd, &g));
+                    encode_opaque_x16(simd, [r, g, half]).into()
+                });
                 let codes = codes.map(u32::to_le_bytes);
                 let half = encode_srgb8(0.5);
                 let one = |i: usize| [encode_srgb8(r[i]), encode_srgb8(g[i]), half, 255];

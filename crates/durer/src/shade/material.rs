@@ -5,7 +5,7 @@ use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
 use super::lookup::TexCoords;
 use super::metallic_roughness::Substance;
-use super::normal::{face_viewer, perturbed};
+use super::normal::{Frame, face_seen, face_viewer, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::plain::Points;
 use super::sample::Sample;
@@ -304,18 +304,22 @@ impl<'a> PreparedMaterial<'a> {
         }
     }
 
-    /// A point with what the textures say of it, to be lit with others.
+    /// A point with what the textures say of it, to be lit with others; its geometric normal must be on the
+    /// viewer's side, as for [`shade_seen`].
     pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample {
-        self.sample_with(surface, self.base(surface), shading)
+        self.sample_with(surface, face_seen, self.base(surface), shading)
     }
 
     #[inline]
-    fn sample_with(&self, surface: &Surface<'_>, base: Vec4, shading: Shading) -> Sample {
-        let mut frame = face_viewer(
-            surface.view.into(),
-            surface.geometric_normal.into(),
-            Vec3Lane::from(surface.normal),
-        );
+    fn sample_with(
+        &self,
+        surface: &Surface<'_>,
+        frame: Framing,
+        base: Vec4,
+        shading: Shading,
+    ) -> Sample {
+        let (view, face) = (surface.view.into(), surface.geometric_normal.into());
+        let mut frame = frame(view, face, surface.normal.into());
         if self.has_normal_map() {
             // The map bends the side that the mesh's normal is on; seen from behind, it is turned
             // with it.
@@ -383,12 +387,36 @@ pub fn shade(
     lights: &PreparedLights,
     shading: Shading,
 ) -> Vec4 {
+    shade_framed(surface, face_viewer, material, lights, shading)
+}
+
+/// [`shade`] of a point whose geometric normal is on the viewer's side already, or zero, which is then not asked.
+pub fn shade_seen(
+    surface: &Surface<'_>,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> Vec4 {
+    shade_framed(surface, face_seen, material, lights, shading)
+}
+
+/// How the directions to the eye, of the face and of the normal become a frame.
+type Framing = fn(Vec3Lane<f32>, Vec3Lane<f32>, Vec3Lane<f32>) -> Frame<f32>;
+
+#[inline]
+fn shade_framed(
+    surface: &Surface<'_>,
+    frame: Framing,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> Vec4 {
     let base = material.base(surface);
     let alpha = material.coverage(base.w);
     if alpha == 0.0 {
         return Vec4::ZERO;
     }
-    let Sample { frame, position, inputs } = material.sample_with(surface, base, shading);
+    let Sample { frame, position, inputs } = material.sample_with(surface, frame, base, shading);
     let shown = formula::display(&frame, position, &inputs, surface.lit.as_ref(), lights, shading);
     Vec3::from(shown).extend(alpha)
 }

@@ -1,8 +1,8 @@
 //! Light on surfaces.
 //!
 //! [`PreparedMaterials`] and [`PreparedLights`] are made once per picture, [`shade`] is called per
-//! visible sample, [`shade_points`] for eight samples of one plain material, [`Samples`] for eight of one with textures, [`shade_vertex`] and
-//! [`shade_face`] for the interpolated and the flat model.
+//! visible sample, [`shade_points`] for sixteen samples of one plain material, [`Samples`] for eight of one with
+//! textures, [`shade_vertex`] and [`shade_face`] for the interpolated and the flat model.
 //!
 //! Space: world axes, but with the origin moved to the eye ([`PreparedLights::origin`]), so that
 //! `f32` suffices far from the world's own origin. Colours are linear with sRGB's primaries.
@@ -33,8 +33,9 @@ pub use flat::shade_face;
 pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub use lookup::TexCoords;
-pub use material::{PreparedMaterial, PreparedMaterials, shade};
-pub use plain::{Faces, Points, shade_points, shade_points_x16};
+pub use material::{PreparedMaterial, PreparedMaterials, shade, shade_seen};
+pub(crate) use plain::shade_lanes;
+pub use plain::{Faces, Points, shade_points};
 pub use sample::{Sample, Samples};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;

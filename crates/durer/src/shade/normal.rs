@@ -18,8 +18,7 @@ pub(super) struct Frame<L> {
 /// Turns face and interpolated normal to the viewer's side of the face.
 ///
 /// The face decides, not the interpolated normal, which near a silhouette may rightly look away; so
-/// nothing is black from behind, whatever the winding. Where a normal is missing (zero, NaN), the
-/// next best is taken: the face's, then the direction to the eye.
+/// nothing is black from behind, whatever the winding.
 #[inline(always)]
 pub(super) fn face_viewer<L: Lane>(
     view: Vec3Lane<L>,
@@ -29,8 +28,25 @@ pub(super) fn face_viewer<L: Lane>(
     let zero = Vec3Lane::splat(view.x, Vec3::ZERO);
     let view = view.unit_or(zero);
     let facing = face.dot(view);
-    let behind = Vec3Lane::if_above(facing.splat(0.0) - facing, 0.0, face.reversed(), view);
-    let face = Vec3Lane::if_above(facing, 0.0, face, behind);
+    let behind = Vec3Lane::if_above(facing.splat(0.0) - facing, 0.0, face.reversed(), zero);
+    framed(view, Vec3Lane::if_above(facing, 0.0, face, behind), normal)
+}
+
+/// The unit vectors where the face's normal is on the viewer's side already.
+#[inline(always)]
+pub(super) fn face_seen<L: Lane>(
+    view: Vec3Lane<L>,
+    face: Vec3Lane<L>,
+    normal: Vec3Lane<L>,
+) -> Frame<L> {
+    framed(view.unit_or(Vec3Lane::splat(view.x, Vec3::ZERO)), face, normal)
+}
+
+/// From a unit vector to the eye and a face on its side. Where a normal is missing (zero, NaN), the next best is
+/// taken: the face's, then the direction to the eye.
+#[inline(always)]
+fn framed<L: Lane>(view: Vec3Lane<L>, face: Vec3Lane<L>, normal: Vec3Lane<L>) -> Frame<L> {
+    let face = Vec3Lane::if_above(face.dot(face), 0.0, face, view);
     let normal = normal.unit_or(face);
     let agrees = normal.dot(face);
     let normal = Vec3Lane::if_above(agrees, 0.0, normal, normal.reversed());

@@ -7,9 +7,10 @@
 use crate::math::{Vec3, Vec4};
 use crate::scene::Mesh;
 use crate::target::NO_ITEM;
+use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4, f32x8, f32x16};
+use fearless_simd::{Simd, f32x4, f32x16};
 
 /// A visible triangle, ready to be interpolated.
 #[derive(Debug, Clone, Copy)]
@@ -18,12 +19,15 @@ pub struct VisibleTriangle {
     pub item: u32,
     /// Its vertices in the mesh.
     pub corners: [u32; 3],
-    /// Of each vertex its position, x to z, and its normal, in one row to be blended in one go.
+    /// Of each vertex its normal, turned where the triangle is seen from behind, and 1, then its position and
+    /// 0, in rows to be blended in one go.
     pub(super) rows: [Row; 3],
-    /// Unit normal of the face's front, world axes.
-    pub face_normal: Vec3,
-    /// Whether it is seen from its front and has normals of a length on its front's side, both by a
-    /// margin, so that rounding changes nothing of it at any of its points.
+    /// Unit normal of the side of the face that is seen, world axes; zero of lines and of what has no area.
+    pub seen_face_normal: Vec3,
+    /// Whether it is the back that is seen. All points of a plane show the same side.
+    pub from_behind: bool,
+    /// Whether its normals have a length and are on its front's side, by a margin, so that rounding changes
+    /// nothing of it at any of its points whose weights have a [usual](USUAL_SUMS) sum.
     pub settled: bool,
     /// The pixel from whose centre x and y are counted.
     pub(super) origin: [i32; 2],
@@ -31,8 +35,11 @@ pub struct VisibleTriangle {
     pub(super) edges: [[f32; 4]; 3],
 }
 
-/// A point of a triangle: position relative to the eye and normal, world axes, and two zeros.
+/// What is blended of a vertex.
 pub type Row = [f32; 8];
+
+/// Undivided weights usually have a sum between these: 1 at the farthest vertex, and the more the nearer.
+pub const USUAL_SUMS: [f32; 2] = [1e-6, 1e6];
 
 impl Default for VisibleTriangle {
     /// No triangle.
@@ -41,7 +48,8 @@ impl Default for VisibleTriangle {
             item: NO_ITEM,
             corners: [0; 3],
             rows: [[0.0; 8]; 3],
-            face_normal: Vec3::ZERO,
+            seen_face_normal: Vec3::ZERO,
+            from_behind: false,
             settled: false,
             origin: [0; 2],
             edges: [[0.0; 4]; 3],
@@ -54,12 +62,6 @@ pub fn run_of(runs: &[Run], item: u32) -> usize {
     runs.partition_point(|run| run.first_item <= item).saturating_sub(1)
 }
 
-/// Of sixteen pixels, eight in each of two rows, how far to the right and how far down they are.
-pub(super) const COLUMNS: [f32; 16] =
-    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-pub(super) const ROWS: [f32; 16] =
-    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
-
 /// Barycentric coordinates of one pixel.
 pub type Weights = [f32; 3];
 
@@ -67,14 +69,26 @@ impl VisibleTriangle {
     /// Of the vertices; world axes, relative to the eye.
     #[inline(always)]
     pub fn positions(&self) -> [Vec3; 3] {
-        self.rows.map(|[x, y, z, ..]| Vec3::new(x, y, z))
+        self.rows.map(|[_, _, _, _, x, y, z, _]| Vec3::new(x, y, z))
     }
 
     /// Of the vertices; world axes, not of unit length; all three the face normal where the mesh has
     /// none.
     #[inline(always)]
     pub fn normals(&self) -> [Vec3; 3] {
-        self.rows.map(|[_, _, _, x, y, z, ..]| Vec3::new(x, y, z))
+        self.rows.map(|[x, y, z, ..]| self.turned(Vec3::new(x, y, z)))
+    }
+
+    /// Unit normal of the face's front, world axes.
+    #[inline(always)]
+    pub fn face_normal(&self) -> Vec3 {
+        self.turned(self.seen_face_normal)
+    }
+
+    /// From the side that is seen to the front, and back.
+    #[inline(always)]
+    fn turned(&self, normal: Vec3) -> Vec3 {
+        if self.from_behind { -normal } else { normal }
     }
 
     /// Edge functions at a point counted from the origin, in this order of operations.
@@ -125,75 +139,87 @@ impl VisibleTriangle {
         Some(tangent.truncate().extend(a.w))
     }
 
-    /// [`Self::weights`] of eight pixels in a row, without shift.
+    /// The normal at a pixel's centre, of any length: weighted without a division, for only its direction
+    /// matters.
     #[inline(always)]
-    pub fn weights_x8<S: Simd>(&self, simd: S, x: i32, y: i32) -> [f32x8<S>; 3] {
-        let lanes = f32x8::from_slice(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        let zero = f32x8::splat(simd, 0.0);
-        let fx = lanes + (x - self.origin[0]) as f32;
-        let fy = (y - self.origin[1]) as f32;
-        let [constant, dx, dy] = &self.edges;
-        let a = (fx * dx[0] + dy[0] * fy + constant[0]).max(zero);
-        let b = (fx * dx[1] + dy[1] * fy + constant[1]).max(zero);
-        let c = (fx * dx[2] + dy[2] * fy + constant[2]).max(zero);
-        let sum = (a + b + c).max(f32x8::splat(simd, f32::MIN_POSITIVE));
-        let inverse = f32x8::splat(simd, 1.0) / sum;
-        [a * inverse, b * inverse, c * inverse]
+    pub fn normal(&self, x: i32, y: i32) -> Vec3 {
+        let (_, [x, y]) = self.edge_functions(x, y);
+        blend(&self.normals(), self.edges_at(x, y).map(|e| e.max(0.0)))
     }
 
-    /// Position and normal at eight pixels in a row, component by component.
+    /// Edge functions, at least 0, at the pixels of a patch.
     #[inline(always)]
-    pub fn points_x8<S: Simd>(&self, simd: S, x: i32, y: i32) -> [f32x8<S>; 6] {
-        let w = self.weights_x8(simd, x, y);
-        let [a, b, c] = &self.rows;
-        let mut points = [w[0]; 6];
-        for (i, to) in points.iter_mut().enumerate() {
-            *to = w[0] * a[i] + w[1] * b[i] + w[2] * c[i];
-        }
-        points
-    }
-
-    /// Position and normal at eight pixels in a row and at the eight below them, component by
-    /// component, bit for bit what [`Self::points_x8`] gives there; and a mask of the pixels that have
-    /// coordinates, which is to say that rounding has not left all of them at 0.
-    #[inline(always)]
-    pub fn points_x16<S: Simd>(&self, simd: S, x: i32, y: i32) -> ([f32x16<S>; 6], u64) {
-        let column = (x - self.origin[0]) as f32;
-        let row = (y - self.origin[1]) as f32;
-        let fx = f32x16::from_slice(simd, &COLUMNS) + column;
-        let fy = f32x16::from_slice(simd, &ROWS) + row;
+    fn edges_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
+        let ([constant, dx, dy], at) = self.edge_functions(patch.at[0], patch.at[1]);
+        let [x, y] = patch.places(simd, at);
         let zero = f32x16::splat(simd, 0.0);
-        let [constant, dx, dy] = &self.edges;
-        let a = (fx * dx[0] + fy * dy[0] + constant[0]).max(zero);
-        let b = (fx * dx[1] + fy * dy[1] + constant[1]).max(zero);
-        let c = (fx * dx[2] + fy * dy[2] + constant[2]).max(zero);
-        let sum = a + b + c;
-        let has_some = sum.simd_gt(zero).to_bitmask();
-        let sum = sum.max(f32x16::splat(simd, f32::MIN_POSITIVE));
-        let inverse = f32x16::splat(simd, 1.0) / sum;
-        let w = [a * inverse, b * inverse, c * inverse];
-        let [a, b, c] = &self.rows;
-        let mut points = [zero; 6];
-        for (i, to) in points.iter_mut().enumerate() {
-            *to = w[0] * a[i] + w[1] * b[i] + w[2] * c[i];
+        let mut edges = [zero; 3];
+        for (i, to) in edges.iter_mut().enumerate() {
+            *to = (x * dx[i] + y * dy[i] + constant[i]).max(zero);
         }
-        (points, has_some)
+        edges
     }
 
-    /// Position and normal at one pixel, bit for bit what [`Self::points_x8`] gives.
+    /// Normals as of [`Self::normal`], but of the side that is seen, at the pixels of a patch; and, as bits, the
+    /// pixels where the sum of their weights is [usual](USUAL_SUMS).
     #[inline(always)]
-    pub fn point<S: Simd>(&self, simd: S, x: i32, y: i32) -> f32x8<S> {
-        let (fx, fy) = ((x - self.origin[0]) as f32, (y - self.origin[1]) as f32);
-        let [constant, dx, dy] = &self.edges;
+    pub fn normals_x16<S: Simd>(&self, simd: S, patch: Patch) -> ([f32x16<S>; 3], u64) {
+        let [a, b, c] = self.edges_x16(simd, patch);
+        let sum = a + b + c;
+        let [least, most] = USUAL_SUMS;
+        let usual = sum.simd_gt(f32x16::splat(simd, least));
+        let usual = usual & sum.simd_lt(f32x16::splat(simd, most));
+        let mut normal = [sum; 3];
+        for (i, to) in normal.iter_mut().enumerate() {
+            *to = a * self.rows[0][i] + b * self.rows[1][i] + c * self.rows[2][i];
+        }
+        (normal, usual.to_bitmask())
+    }
+
+    /// Positions at the pixels of a patch, bit for bit the vertices' blended by [`Self::weights`].
+    #[inline(always)]
+    pub fn positions_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
+        let [a, b, c] = self.edges_x16(simd, patch);
+        let sum = (a + b + c).max(f32x16::splat(simd, f32::MIN_POSITIVE));
+        let inverse = f32x16::splat(simd, 1.0) / sum;
+        let (a, b, c) = (a * inverse, b * inverse, c * inverse);
+        let mut position = [sum; 3];
+        for (i, to) in position.iter_mut().enumerate() {
+            *to = a * self.rows[0][4 + i] + b * self.rows[1][4 + i] + c * self.rows[2][4 + i];
+        }
+        position
+    }
+
+    /// Edge functions, at least 0, at one pixel.
+    #[inline(always)]
+    fn edges_at_pixel<S: Simd>(&self, simd: S, [x, y]: [i32; 2]) -> [f32; 3] {
+        let ([constant, dx, dy], [x, y]) = self.edge_functions(x, y);
         let (dx, dy) = (f32x4::from_slice(simd, dx), f32x4::from_slice(simd, dy));
-        let edges = dx * fx + dy * fy + f32x4::from_slice(simd, constant);
-        let edges = edges.max(f32x4::splat(simd, 0.0));
-        let [a, b, c, _]: [f32; 4] = edges.into();
+        let edges = dx * x + dy * y + f32x4::from_slice(simd, constant);
+        let [a, b, c, _]: [f32; 4] = edges.max(f32x4::splat(simd, 0.0)).into();
+        [a, b, c]
+    }
+
+    /// The normal of [`Self::normals_x16`] at one pixel, bit for bit, and the sum of its weights.
+    #[inline(always)]
+    pub fn normal_and_sum<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
+        let [a, b, c] = self.edges_at_pixel(simd, pixel);
+        let [row_a, row_b, row_c] = &self.rows;
+        let row_a = f32x4::from_slice(simd, &row_a[..4]) * a;
+        let row_b = f32x4::from_slice(simd, &row_b[..4]) * b;
+        let row_c = f32x4::from_slice(simd, &row_c[..4]) * c;
+        row_a + row_b + row_c
+    }
+
+    /// The position of [`Self::positions_x16`] at one pixel, bit for bit, and 0.
+    #[inline(always)]
+    pub fn position<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
+        let [a, b, c] = self.edges_at_pixel(simd, pixel);
         let inverse = 1.0 / (a + b + c).max(f32::MIN_POSITIVE);
         let [row_a, row_b, row_c] = &self.rows;
-        let row_a = f32x8::from_slice(simd, row_a) * (a * inverse);
-        let row_b = f32x8::from_slice(simd, row_b) * (b * inverse);
-        let row_c = f32x8::from_slice(simd, row_c) * (c * inverse);
+        let row_a = f32x4::from_slice(simd, &row_a[4..]) * (a * inverse);
+        let row_b = f32x4::from_slice(simd, &row_b[4..]) * (b * inverse);
+        let row_c = f32x4::from_slice(simd, &row_c[4..]) * (c * inverse);
         row_a + row_b + row_c
     }
 }

@@ -1,71 +1,97 @@
 //! Points of several triangles side by side, so that they can be shaded in one go.
 
-use crate::math::Vec3;
-use crate::shade::lane::{Lane, Vec3Lane};
-use crate::shade::{Faces, Points};
-use crate::visibility::surface::attributes::{Row, VisibleTriangle};
+use crate::shade::lane::Vec3Lane;
+use crate::visibility::surface::attributes::{USUAL_SUMS, VisibleTriangle};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f32x16, f64x8};
 
-/// Up to eight points from anywhere; those not set hold what was there before.
-#[derive(Debug, Clone, Copy, Default)]
+/// Up to sixteen points from anywhere; those not set hold what was there before.
+#[derive(Debug, Clone, Copy)]
 pub struct Gathered {
-    rows: [Row; 8],
-    face_normals: [[f32; 8]; 3],
+    /// Of each point its normal and the sum of its weights.
+    normals: [[f32; 4]; 16],
+    /// Of each its position.
+    positions: [[f32; 4]; 16],
+    /// Unit normals of the sides that are seen, by axis.
+    faces: [[f32; 16]; 3],
+    /// Whether all triangles are settled.
+    settled: bool,
+}
+
+impl Default for Gathered {
+    /// No points.
+    fn default() -> Self {
+        Self {
+            normals: [[0.0, 0.0, 0.0, 1.0]; 16],
+            positions: [[0.0; 4]; 16],
+            faces: [[0.0; 16]; 3],
+            settled: true,
+        }
+    }
 }
 
 impl Gathered {
-    /// Sets the point `lane` to that of a triangle at a pixel.
+    /// Sets the point `lane` to that of a triangle at a pixel, with its position where that is asked for.
     #[inline(always)]
-    pub fn set<S: Simd>(&mut self, simd: S, lane: usize, t: &VisibleTriangle, [x, y]: [i32; 2]) {
-        let lane = lane % 8;
-        t.point(simd, x, y).store_slice(&mut self.rows[lane]);
-        self.face_normals[0][lane] = t.face_normal.x;
-        self.face_normals[1][lane] = t.face_normal.y;
-        self.face_normals[2][lane] = t.face_normal.z;
-    }
-
-    /// The points, component by component.
-    #[inline(always)]
-    pub fn points<S: Simd>(&self, simd: S, parallel_view: Option<Vec3>) -> Points<f32x8<S>> {
-        let (rows, [x, y, z]) = self.columns(simd);
-        points(rows, Faces::Normals(Vec3Lane::new(x, y, z)), parallel_view)
-    }
-
-    /// The points of two, one after the other.
-    #[inline(always)]
-    pub fn both<S: Simd>(
+    pub fn set<S: Simd>(
+        &mut self,
         simd: S,
-        [a, b]: &[Self; 2],
-        parallel_view: Option<Vec3>,
-    ) -> Points<f32x16<S>> {
-        let ((a, a_face), (b, b_face)) = (a.columns(simd), b.columns(simd));
-        let [x, y, z] = combine(simd, a_face, b_face);
-        points(combine(simd, a, b), Faces::Normals(Vec3Lane::new(x, y, z)), parallel_view)
+        lane: usize,
+        t: &VisibleTriangle,
+        pixel: [i32; 2],
+        with_position: bool,
+    ) {
+        let lane = lane % 16;
+        t.normal_and_sum(simd, pixel).store_slice(&mut self.normals[lane]);
+        if with_position {
+            t.position(simd, pixel).store_slice(&mut self.positions[lane]);
+        }
+        for (to, from) in self.faces.iter_mut().zip(t.seen_face_normal.to_array()) {
+            to[lane] = from;
+        }
+        self.settled &= t.settled;
     }
 
-    /// Positions and normals, and the faces' normals.
+    /// The normals, of any length; and whether all points are settled.
     #[inline(always)]
-    fn columns<S: Simd>(&self, simd: S) -> ([f32x8<S>; 6], [f32x8<S>; 3]) {
-        let mut rows = [simd.splat_f32x8(0.0); 8];
-        for (to, row) in rows.iter_mut().zip(&self.rows) {
-            *to = f32x8::from_slice(simd, row);
-        }
-        let [px, py, pz, nx, ny, nz, _, _] = transpose(simd, rows);
-        let [x, y, z] = &self.face_normals;
-        let (x, y) = (f32x8::from_slice(simd, x), f32x8::from_slice(simd, y));
-        ([px, py, pz, nx, ny, nz], [x, y, f32x8::from_slice(simd, z)])
+    pub fn normals<S: Simd>(&self, simd: S) -> ([f32x16<S>; 3], bool) {
+        let [x, y, z, sum] = columns(simd, &self.normals);
+        let [least, most] = USUAL_SUMS;
+        let usual = sum.simd_gt(f32x16::splat(simd, least));
+        let usual = usual & sum.simd_lt(f32x16::splat(simd, most));
+        ([x, y, z], self.settled && usual.all_true())
+    }
+
+    /// The positions that were asked for.
+    #[inline(always)]
+    pub fn positions<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
+        let [x, y, z, _] = columns(simd, &self.positions);
+        Vec3Lane::new(x, y, z)
+    }
+
+    /// Unit normals of the sides that are seen.
+    #[inline(always)]
+    pub fn faces<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
+        let [x, y, z] = &self.faces;
+        let (x, y) = (f32x16::from_slice(simd, x), f32x16::from_slice(simd, y));
+        Vec3Lane::new(x, y, f32x16::from_slice(simd, z))
     }
 }
 
-/// The numbers of eight lanes, and of eight more.
+/// Four numbers of each of sixteen, apart.
 #[inline(always)]
-fn combine<S: Simd, const N: usize>(simd: S, a: [f32x8<S>; N], b: [f32x8<S>; N]) -> [f32x16<S>; N] {
-    let mut both = [simd.splat_f32x16(0.0); N];
-    for i in 0..N {
-        both[i] = simd.combine_f32x8(a[i], b[i]);
-    }
-    both
+fn columns<S: Simd>(simd: S, rows: &[[f32; 4]; 16]) -> [f32x16<S>; 4] {
+    let rows = rows.as_flattened();
+    let a = f32x16::from_slice(simd, &rows[..16]);
+    let b = f32x16::from_slice(simd, &rows[16..32]);
+    let c = f32x16::from_slice(simd, &rows[32..48]);
+    let d = f32x16::from_slice(simd, &rows[48..]);
+    let (even_ab, even_cd) = (simd.unzip_low_f32x16(a, b), simd.unzip_low_f32x16(c, d));
+    let (odd_ab, odd_cd) = (simd.unzip_high_f32x16(a, b), simd.unzip_high_f32x16(c, d));
+    let first = simd.unzip_low_f32x16(even_ab, even_cd);
+    let third = simd.unzip_high_f32x16(even_ab, even_cd);
+    let second = simd.unzip_low_f32x16(odd_ab, odd_cd);
+    [first, second, third, simd.unzip_high_f32x16(odd_ab, odd_cd)]
 }
 
 /// Rows to columns.
@@ -95,19 +121,4 @@ pub fn widened<S: Simd>(simd: S, v: f32x8<S>) -> f64x8<S> {
 pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
     let (a, b) = simd.split_f64x8(v);
     simd.narrow_f64x4(a, b)
-}
-
-/// Points of positions and normals, component by component.
-#[inline(always)]
-pub fn points<L: Lane>(
-    [px, py, pz, nx, ny, nz]: [L; 6],
-    faces: Faces<L>,
-    parallel_view: Option<Vec3>,
-) -> Points<L> {
-    let view = match parallel_view {
-        Some(v) => Vec3Lane::splat(px, v),
-        None => Vec3Lane::new(px, py, pz).reversed(),
-    };
-    let (position, normal) = (Vec3Lane::new(px, py, pz), Vec3Lane::new(nx, ny, nz));
-    Points { position, view, normal, faces }
 }

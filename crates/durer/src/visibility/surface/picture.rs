@@ -5,16 +5,18 @@
 //! come here do too. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
-use crate::shade::color::{encode_rgba8, encode_srgb8};
+use crate::shade::color::{encode_opaque_x16, encode_rgba8};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::SurfaceInput;
-use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::lit::{Lighting, Lit, opaque};
 use crate::visibility::surface::mixed::encode;
-use fearless_simd::{Simd, dispatch};
+use crate::visibility::surface::patch::Patch;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, dispatch, u32x16};
 use fearless_simd_macros::simd;
 
 /// What a picture with one surface per pixel is to have.
@@ -153,7 +155,7 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Lights the pixels of a row, eight at a time.
+/// Lights the pixels of a row, sixteen at a time.
 #[simd]
 fn color_row<S: Simd>(
     simd: S,
@@ -163,20 +165,21 @@ fn color_row<S: Simd>(
     [x, y]: [i32; 2],
     out: &mut [[u8; 4]],
 ) {
-    let behind = encode_rgba8(behind);
-    for (eight, (out, of_out)) in out.chunks_mut(8).zip(items.chunks(8)).enumerate() {
-        let mut items = [NO_ITEM; 8];
+    let behind = u32x16::splat(simd, u32::from_le_bytes(encode_rgba8(behind)));
+    for (i, (out, of_out)) in out.chunks_mut(16).zip(items.chunks(16)).enumerate() {
+        let mut items = [NO_ITEM; 16];
         items[..of_out.len()].copy_from_slice(of_out);
-        let mut colors = [[0.0; 8]; 4];
-        if items != [NO_ITEM; 8] {
-            Lit::colors_x8(simd, lit, &items, x + 8 * eight as i32, y, &mut colors);
+        let shown = u32x16::from_slice(simd, &items);
+        let there = shown.simd_ne(u32x16::splat(simd, NO_ITEM));
+        let mut codes = behind;
+        if there.any_true() {
+            let (mut colors, patch) = ([[0.0; 16]; 4], Patch::row([x + 16 * i as i32, y]));
+            Lit::colors_x16(simd, lit, shown, patch, &mut colors);
+            codes = there.select(encode_opaque_x16(simd, opaque(simd, &colors)), behind);
         }
-        let [r, g, b, _] = colors;
-        for (i, to) in out.iter_mut().enumerate() {
-            *to = match items[i] {
-                NO_ITEM => behind,
-                _ => [encode_srgb8(r[i]), encode_srgb8(g[i]), encode_srgb8(b[i]), 255],
-            };
+        let codes: [u32; 16] = codes.into();
+        for (to, code) in out.iter_mut().zip(codes) {
+            *to = code.to_le_bytes();
         }
     }
 }

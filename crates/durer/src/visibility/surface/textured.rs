@@ -1,9 +1,10 @@
-//! Texture coordinates of sixteen pixels side by side: eight in a row and the eight below them.
+//! Texture coordinates of sixteen pixels side by side.
 
 use crate::math::Vec2;
 use crate::shade::TexCoords;
 use crate::shade::lane::Lane;
-use crate::visibility::surface::attributes::{COLUMNS, ROWS, VisibleTriangle};
+use crate::visibility::surface::attributes::VisibleTriangle;
+use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 
@@ -50,17 +51,17 @@ impl GatheredCoords {
     }
 }
 
-/// The coordinates at sixteen pixels of one triangle, and, where it is `changing`, their change to the pixels beside
+/// The coordinates at the pixels of a patch, of one triangle, and, where it is `changing`, their change to the pixels beside
 /// and below; `corners` has those of its corners.
 #[inline(always)]
 pub fn coordinates_of_one<S: Simd>(
     simd: S,
     t: &VisibleTriangle,
-    [x, y]: [i32; 2],
+    patch: Patch,
     corners: [Vec2; 3],
     changing: bool,
 ) -> TexCoords<f32x16<S>> {
-    let (edges, [x, y]) = t.edge_functions(x, y);
+    let (edges, at) = t.edge_functions(patch.at[0], patch.at[1]);
     let zero = simd.splat_f32x16(0.0);
     let mut all = [[zero; 3]; 3];
     for (all, edges) in all.iter_mut().zip(edges) {
@@ -68,13 +69,11 @@ pub fn coordinates_of_one<S: Simd>(
             *all = simd.splat_f32x16(*edge);
         }
     }
-    let columns = f32x16::from_slice(simd, &COLUMNS) + x;
-    let rows = f32x16::from_slice(simd, &ROWS) + y;
     let (mut u, mut v) = ([zero; 3], [zero; 3]);
     for (i, corner) in corners.iter().enumerate() {
         (u[i], v[i]) = (simd.splat_f32x16(corner.x), simd.splat_f32x16(corner.y));
     }
-    coordinates(simd, &all, [columns, rows], [u, v], changing)
+    coordinates(simd, &all, patch.places(simd, at), [u, v], changing)
 }
 
 #[inline(always)]

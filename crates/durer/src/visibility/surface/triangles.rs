@@ -191,18 +191,17 @@ fn prepare<S: Simd>(
         y[i] = px * m.x_axis.y + py * m.y_axis.y + pz * m.z_axis.y + m.w_axis.y;
         w[i] = px * m.x_axis.w + py * m.y_axis.w + pz * m.z_axis.w + m.w_axis.w;
     }
-    let face = face_normals(simd, &eye, t.handedness);
+    let (face, sides) = face_normals(simd, &eye, t);
     if !is_triangle {
         (x[2], y[2]) = beside_the_line(simd, &x, &y, &w);
     }
     let (origins, edges) = edges(simd, &x, &y, &w);
-    store(simd, items, corners, &origins, &edges, &face, kept);
+    store(simd, items, corners, &origins, &edges, (&face, sides), kept);
 
     let m = &t.normal_from_mesh;
-    let none = simd.splat_f32x8(0.0);
-    let (mut positions, mut normals) = ([[none; 3]; 3], [face; 3]);
+    let (none, one) = (simd.splat_f32x8(0.0), simd.splat_f32x8(1.0));
+    let mut normals = [face; 3];
     for (i, [px, py, pz]) in eye.into_iter().enumerate() {
-        positions[i] = [narrowed(simd, px), narrowed(simd, py), narrowed(simd, pz)];
         if !mesh.normals.is_empty() {
             let [nx, ny, nz] = &vertex_normals[i];
             let (nx, ny) = (f32x8::from_slice(simd, nx), f32x8::from_slice(simd, ny));
@@ -213,43 +212,32 @@ fn prepare<S: Simd>(
                 nx * m.x_axis.z + ny * m.y_axis.z + nz * m.z_axis.z,
             ];
         }
-        let ([px, py, pz], [nx, ny, nz]) = (positions[i], normals[i]);
-        let rows = transpose(simd, [px, py, pz, nx, ny, nz, none, none]);
+        let [nx, ny, nz] = normals[i];
+        let (nx, ny, nz) = (nx * sides, ny * sides, nz * sides);
+        let (px, py, pz) = (narrowed(simd, px), narrowed(simd, py), narrowed(simd, pz));
+        let rows = transpose(simd, [nx, ny, nz, one, px, py, pz, none]);
         for (&item, row) in items.iter().zip(rows) {
             row.store_slice(&mut kept[place(item, kept)].rows[i]);
         }
     }
-    let settled = settled(simd, t.parallel_view, face, &positions, &normals);
+    let settled = settled(simd, face, &normals);
     for (lane, &item) in items.iter().enumerate() {
         kept[place(item, kept)].settled = settled >> lane & 1 == 1;
     }
 }
 
-/// Of the cosine of a settled triangle's front to the eye, and of its normals to its front, the least
-/// square.
+/// Of the cosine of a settled triangle's normals to its front, the least square.
 const LEAST_COSINE2: f32 = 1e-6;
 
-/// Between these are the squared lengths of a settled triangle's vectors.
+/// Between these are the squared lengths of a settled triangle's normals.
 const LENGTHS2: [f32; 2] = [1e-20, 1e20];
 
-/// Which of eight triangles are [settled](VisibleTriangle::settled), as bits; positions and normals by
-/// corner.
+/// Which of eight triangles are [settled](VisibleTriangle::settled), as bits; normals by corner.
 #[inline(always)]
-fn settled<S: Simd>(
-    simd: S,
-    parallel_view: Option<Vec3>,
-    face: [f32x8<S>; 3],
-    positions: &[[f32x8<S>; 3]; 3],
-    normals: &[[f32x8<S>; 3]; 3],
-) -> u64 {
-    // A weighted mean of vectors that make at most an angle with another one does that too.
+fn settled<S: Simd>(simd: S, face: [f32x8<S>; 3], normals: &[[f32x8<S>; 3]; 3]) -> u64 {
+    // A weighted sum of vectors that make at most an angle with another one does that too.
     let mut all = simd.simd_eq_f32x8(face[0], face[0]);
-    for (&[px, py, pz], &normal) in positions.iter().zip(normals) {
-        let to_eye = match parallel_view {
-            Some(v) => [simd.splat_f32x8(v.x), simd.splat_f32x8(v.y), simd.splat_f32x8(v.z)],
-            None => [-px, -py, -pz],
-        };
-        all &= within(simd, dot(face, to_eye), dot(to_eye, to_eye));
+    for &normal in normals {
         all &= within(simd, dot(face, normal), dot(normal, normal));
     }
     all.to_bitmask()
@@ -280,20 +268,31 @@ fn inverse_length<S: Simd>(simd: S, length2: f64x8<S>) -> f64x8<S> {
     simd.select_f64x8(finite & positive, inverse, zero)
 }
 
-/// Unit normals of the faces' fronts, world axes.
+/// Unit normals of the faces' fronts, world axes; and 1 where the front is seen, −1 where the back is.
 #[inline(always)]
 fn face_normals<S: Simd>(
     simd: S,
     [[ax, ay, az], [bx, by, bz], [cx, cy, cz]]: &[[f64x8<S>; 3]; 3],
-    handedness: f64,
-) -> [f32x8<S>; 3] {
+    t: &RunTransform,
+) -> ([f32x8<S>; 3], f32x8<S>) {
+    let handedness = t.handedness;
     let (ux, uy, uz) = (*bx - *ax, *by - *ay, *bz - *az);
     let (vx, vy, vz) = (*cx - *ax, *cy - *ay, *cz - *az);
     let x = (uy * vz - vy * uz) * handedness;
     let y = (uz * vx - vz * ux) * handedness;
     let z = (ux * vy - vx * uy) * handedness;
+    // Between the normal and the way from the eye.
+    let product = match t.parallel_view.map(Vec3::as_dvec3) {
+        Some(v) => -(x * v.x + y * v.y + z * v.z),
+        None => x * *ax + y * *ay + z * *az,
+    };
+    let one = simd.splat_f64x8(1.0);
+    let behind = simd.simd_gt_f64x8(product, simd.splat_f64x8(0.0));
+    let sides = narrowed(simd, simd.select_f64x8(behind, -one, one));
     let inverse = inverse_length(simd, x * x + y * y + z * z);
-    [narrowed(simd, x * inverse), narrowed(simd, y * inverse), narrowed(simd, z * inverse)]
+    let normal =
+        [narrowed(simd, x * inverse), narrowed(simd, y * inverse), narrowed(simd, z * inverse)];
+    (normal, sides)
 }
 
 /// A third corner beside each line, so that coordinates along it can be found.
@@ -309,8 +308,8 @@ fn beside_the_line<S: Simd>(
     (x[0] - along_y * inverse * w[0], y[0] + along_x * inverse * w[0])
 }
 
-/// Edge functions of triangles in homogeneous screen space, positive inside, that sum up to 1/w:
-/// constants and changes along x and y, by edge; and the pixels from whose centres they are counted.
+/// Edge functions of triangles in homogeneous screen space, positive inside, that sum up to the w of the farthest
+/// vertex over w: constants and changes along x and y, by edge; and the pixels from whose centres they are counted.
 #[inline(always)]
 fn edges<S: Simd>(
     simd: S,
@@ -319,13 +318,13 @@ fn edges<S: Simd>(
     w: &Corners<S>,
 ) -> ([[f64; 8]; 2], [[f32x8<S>; 3]; 3]) {
     let (zero, one) = (simd.splat_f64x8(0.0), simd.splat_f64x8(1.0));
-    // Count from the vertex nearest to the eye's side that has a place on the screen.
+    // Count from the farthest vertex, which has a place on the screen if any has.
     let (mut ax, mut ay, mut aw) = (x[0], y[0], w[0]);
     for i in 1..3 {
-        let nearer = simd.simd_gt_f64x8(w[i], zero) & simd.simd_gt_f64x8(w[i], aw);
-        ax = simd.select_f64x8(nearer, x[i], ax);
-        ay = simd.select_f64x8(nearer, y[i], ay);
-        aw = simd.select_f64x8(nearer, w[i], aw);
+        let farther = simd.simd_gt_f64x8(w[i], zero) & simd.simd_gt_f64x8(w[i], aw);
+        ax = simd.select_f64x8(farther, x[i], ax);
+        ay = simd.select_f64x8(farther, y[i], ay);
+        aw = simd.select_f64x8(farther, w[i], aw);
     }
     let (ox, oy) = (pixel(simd, ax / aw), pixel(simd, ay / aw));
     let (center_x, center_y) = (ox + 0.5, oy + 0.5);
@@ -344,7 +343,7 @@ fn edges<S: Simd>(
     }
     let determinant = lx[0] * cross_x[0] + ly[0] * cross_y[0] + w[0] * cross_w[0];
     let flat = simd.simd_eq_f64x8(determinant, zero);
-    let inverse = one / determinant;
+    let inverse = aw / determinant;
     let mut edges = [[simd.splat_f32x8(0.0); 3]; 3];
     for (to, (from, without)) in
         edges.iter_mut().zip([(cross_w, one), (cross_x, zero), (cross_y, zero)])
@@ -373,23 +372,24 @@ fn store<S: Simd>(
     corners: &[[u32; 3]; 8],
     [x, y]: &[[f64; 8]; 2],
     [constant, dx, dy]: &[[f32x8<S>; 3]; 3],
-    face: &[f32x8<S>; 3],
+    (&[nx, ny, nz], sides): (&[f32x8<S>; 3], f32x8<S>),
     kept: &mut [VisibleTriangle],
 ) {
     let none = simd.splat_f32x8(0.0);
     let ([a, b, c], [d, e, f]) = (*constant, *dx);
     let first = transpose(simd, [a, b, c, none, d, e, f, none]);
-    let ([a, b, c], [nx, ny, nz]) = (*dy, *face);
-    let second = transpose(simd, [a, b, c, none, nx, ny, nz, none]);
+    let ([a, b, c], n) = (*dy, [nx * sides, ny * sides, nz * sides]);
+    let second = transpose(simd, [a, b, c, none, n[0], n[1], n[2], sides]);
     for (lane, &item) in items.iter().enumerate() {
         let to = &mut kept[place(item, kept)];
         (to.item, to.corners) = (item, corners[lane]);
         to.origin = [x[lane] as i32, y[lane] as i32];
         let [a, b, c, d, e, f, g, h]: [f32; 8] = first[lane].into();
         (to.edges[0], to.edges[1]) = ([a, b, c, d], [e, f, g, h]);
-        let [a, b, c, d, nx, ny, nz, _]: [f32; 8] = second[lane].into();
+        let [a, b, c, d, nx, ny, nz, side]: [f32; 8] = second[lane].into();
         to.edges[2] = [a, b, c, d];
-        to.face_normal = Vec3::new(nx, ny, nz);
+        to.seen_face_normal = Vec3::new(nx, ny, nz);
+        to.from_behind = side < 0.0;
     }
 }
 

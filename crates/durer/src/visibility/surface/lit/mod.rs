@@ -1,22 +1,26 @@
-//! Lighting visible items: one pixel with everything a material can have; in [`eight`] several at a time.
+//! Lighting visible items: one pixel with everything a material can have; in [`sixteen`] several at a time.
 
-mod eight;
+mod batch;
 mod queue;
 mod sixteen;
+#[cfg(test)]
+mod tests;
 
+pub use batch::Batch;
 pub use queue::{QUEUE, Queue, Queued};
-pub use sixteen::are_few;
+pub use sixteen::opaque;
 
 use crate::math::{DMat3, Vec2, Vec3, Vec4};
 use crate::scene::{Mesh, Scene, Topology};
 use crate::shade::{
     PreparedLights, PreparedMaterial, PreparedMaterials, Reflected, Shading, Surface, TexCoord,
-    shade, shade_face, shade_vertex,
+    shade, shade_face, shade_seen, shade_vertex,
 };
 use crate::simd::Level;
 use crate::view::View;
 use crate::visibility::surface::attributes::{VisibleTriangle, Weights, blend, run_of};
 use crate::visibility::surface::setup::Run;
+use crate::visibility::surface::sight::Sight;
 use crate::visibility::surface::triangles::{OF_ROWS, OF_TILES, Triangles, parallel_view};
 
 /// Sets of texture coordinates that are looked at.
@@ -52,9 +56,9 @@ struct RunInfo<'a> {
     mesh: &'a Mesh,
     material: &'a PreparedMaterial<'a>,
     shading: Shading,
-    /// Whether eight pixels can be shaded at a time.
+    /// Whether sixteen pixels can be shaded at a time.
     plain: bool,
-    /// Whether eight pixels can be lit at a time, after their textures were looked up one by one.
+    /// Whether several pixels can be lit at a time, after their textures were looked up one by one.
     together: bool,
     /// By what sixteen pixels can also be looked up at a time.
     looked_up: Option<LookedUp<'a>>,
@@ -91,6 +95,8 @@ pub struct Lit<'a> {
     latest: Option<RunInfo<'a>>,
     /// Towards the eye where projection lines are parallel.
     parallel_view: Option<Vec3>,
+    /// Towards the eye, by pixel.
+    sight: Sight,
     /// The light on the face or at the corners of the latest triangle; for flat and Gouraud.
     reflected: Option<(u32, [Reflected; 3])>,
 }
@@ -107,9 +113,9 @@ impl<'a> Lit<'a> {
     }
 
     fn keeping(shared: Lighting<'a>, kept: usize) -> Self {
-        let parallel_view = parallel_view(shared.view);
+        let (parallel_view, sight) = (parallel_view(shared.view), Sight::new(shared.view));
         let triangles = Triangles::new(shared.scene, shared.view, shared.runs, shared.level, kept);
-        Self { shared, triangles, latest: None, parallel_view, reflected: None }
+        Self { shared, triangles, latest: None, parallel_view, sight, reflected: None }
     }
 
     /// The run of an item, and what it is made of.
@@ -177,7 +183,10 @@ impl<'a> Lit<'a> {
         self.with_surface_seen(item, seen, |surface, material, _, shading| {
             // Light on corners or faces would not know what lights reach the point.
             let surface = Surface { lit: None, ..*surface };
-            shade(&surface, material, lights, shading)
+            match seen {
+                Seen::Pixel(..) => shade_seen(&surface, material, lights, shading),
+                Seen::Point { .. } => shade(&surface, material, lights, shading),
+            }
         })
     }
 
@@ -213,7 +222,7 @@ impl<'a> Lit<'a> {
     /// Linear RGBA, straight alpha, of an item at a pixel's centre.
     pub fn color(&mut self, item: u32, x: i32, y: i32) -> Vec4 {
         self.with_surface(item, x, y, |surface, material, lights, shading| {
-            shade(surface, material, lights, shading)
+            shade_seen(surface, material, lights, shading)
         })
     }
 
@@ -224,11 +233,9 @@ impl<'a> Lit<'a> {
 
     /// Unit normal of an item at a pixel's centre, world axes, turned to the eye.
     pub fn normal(&mut self, item: u32, x: i32, y: i32) -> Vec3 {
-        let (parallel, run) = (self.parallel_view, self.run_info(item).run);
+        let (view, run) = (self.sight.towards_eye([x, y]), self.run_info(item).run);
         let t = self.triangles.get(item, run);
-        let w = t.weights(x, y, [0.0; 2]);
-        let normal = blend(&t.normals(), w).normalize_or(t.face_normal);
-        let view = parallel.unwrap_or(-blend(&t.positions(), w));
+        let normal = t.normal(x, y).normalize_or(t.seen_face_normal);
         if normal.dot(view) < 0.0 { -normal } else { normal }
     }
 
@@ -250,19 +257,22 @@ impl<'a> Lit<'a> {
     ) -> R {
         let RunInfo { run, mesh, material, shading, .. } = self.run_info(item);
         let lit = self.reflected(item, run, material, shading);
-        let parallel = self.parallel_view;
+        let sight = self.sight;
         let t = self.triangles.get(item, run);
-        let (w, view) = match seen {
-            Seen::Pixel(x, y) => (t.weights(x, y, [0.0; 2]), parallel),
-            Seen::Point { weights, view } => (weights, Some(view)),
+        let (w, view, normal, face) = match seen {
+            Seen::Pixel(x, y) => {
+                let view = sight.towards_eye([x, y]);
+                (t.weights(x, y, [0.0; 2]), view, t.normal(x, y), t.seen_face_normal)
+            }
+            Seen::Point { weights: w, view } => (w, view, blend(&t.normals(), w), t.face_normal()),
         };
         let position = blend(&t.positions(), w);
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
         let mut surface = Surface {
             position,
-            view: view.unwrap_or(-position),
-            normal: blend(&t.normals(), w),
-            geometric_normal: t.face_normal,
+            view,
+            normal,
+            geometric_normal: face,
             lit: lit.map(|corners| Reflected::interpolate(corners, w)),
             ..Surface::default()
         };
@@ -316,12 +326,12 @@ impl<'a> Lit<'a> {
         let corners = if shading == Shading::Flat {
             let [a, b, c] = t.positions();
             let centroid = (a + b + c) / 3.0;
-            [shade_face(centroid, view(centroid), t.face_normal, material, lights); 3]
+            [shade_face(centroid, view(centroid), t.face_normal(), material, lights); 3]
         } else {
             let (positions, normals) = (t.positions(), t.normals());
             [0, 1, 2].map(|i| {
                 let (p, n) = (positions[i], normals[i]);
-                shade_vertex(p, view(p), n, t.face_normal, material, lights)
+                shade_vertex(p, view(p), n, t.face_normal(), material, lights)
             })
         };
         self.reflected = Some((item, corners));

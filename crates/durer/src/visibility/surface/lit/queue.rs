@@ -1,7 +1,7 @@
 //! Items at pixels from anywhere, that are lit when there are enough of them.
 
 use super::Lit;
-use crate::shade::shade_points_x16;
+use crate::shade::shade_points;
 use crate::visibility::surface::gather::Gathered;
 use fearless_simd::Simd;
 
@@ -55,11 +55,13 @@ impl Lit<'_> {
         let items = &queue.items[..queue.count.min(QUEUE)];
         items.iter().for_each(|&item| self.expect(item));
         self.make_ready();
-        let mut gathered = [Gathered::default(); 2];
+        let (mut gathered, with_positions) = (Gathered::default(), self.with_positions());
         for (i, (&item, &pixel)) in items.iter().zip(&queue.pixels).enumerate() {
-            gathered[i / 8].set(simd, i, self.triangles.get(item, info.run), pixel);
+            let t = self.triangles.get(item, info.run);
+            gathered.set(simd, i, t, pixel, with_positions);
         }
-        let points = Gathered::both(simd, &gathered, self.parallel_view);
-        shade_points_x16(simd, &points, info.material, self.shared.lights, info.shading)
+        let view = self.sight.towards_eye_of(simd, &queue.pixels);
+        let points = self.gathered_points(simd, &gathered, view);
+        shade_points(simd, &points, info.material, self.shared.lights, info.shading)
     }
 }

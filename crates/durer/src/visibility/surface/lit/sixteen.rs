@@ -1,127 +1,184 @@
-//! Lighting visible items sixteen pixels at a time: eight in a row and the eight below them, which show
-//! mostly the same triangles.
+//! Lighting visible items sixteen pixels at a time, where their materials allow it.
 
 use super::{Lit, LookedUp, RunInfo};
+use crate::math::{Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{Faces, Points, PreparedMaterial, Shading, TexCoords, shade_points_x16};
+use crate::shade::{
+    Faces, Points, PreparedMaterial, Sample, Samples, Shading, TexCoords, shade_points,
+};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::gather::{Gathered, points};
+use crate::visibility::surface::gather::Gathered;
+use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 use fearless_simd_macros::simd;
 
-/// Sixteen pixels whose neighbours in their rows differ at most as often are interpolated triangle by
-/// triangle, others pixel by pixel.
-const FEW_CHANGES: u32 = 5;
-
-/// Whether sixteen pixels in two rows show few triangles.
+/// Red, green and blue.
 #[inline(always)]
-pub fn are_few<S: Simd>(simd: S, shown: u32x16<S>) -> bool {
-    // All but the last of each row.
-    const IN_ROWS: u64 = 0x7f7f;
-    let beside = simd.slide_u32x16::<1>(shown, shown);
-    (shown.simd_ne(beside).to_bitmask() & IN_ROWS).count_ones() <= FEW_CHANGES
+pub fn opaque<S: Simd>(simd: S, [r, g, b, _]: &[[f32; 16]; 4]) -> [f32x16<S>; 3] {
+    let (r, g) = (f32x16::from_slice(simd, r), f32x16::from_slice(simd, g));
+    [r, g, f32x16::from_slice(simd, b)]
 }
 
 impl<'a> Lit<'a> {
-    /// Linear RGBA, straight alpha, of two rows of eight pixels, from (x, y) and from the pixel below:
-    /// of those with an item, of which there is one. The bits are those of [`Self::colors_x8`].
+    /// Linear RGBA, straight alpha, of the pixels of a patch: of those with an item, of which there is one.
+    ///
+    /// Where the material allows it they are lit together, else one by one; the bits are the same.
     #[simd]
     pub fn colors_x16<S: Simd>(
         simd: S,
         this: &mut Lit<'_>,
         shown: u32x16<S>,
-        [x, y]: [i32; 2],
+        patch: Patch,
         colors: &mut [[f32; 16]; 4],
     ) {
         let items: [u32; 16] = shown.into();
         let there = shown.simd_ne(u32x16::splat(simd, NO_ITEM)).to_bitmask();
-        let info = this.run_info(items[there.trailing_zeros() as usize % 16]);
-        let mine = (shown - info.first_item).simd_lt(u32x16::splat(simd, info.count));
-        if info.plain && mine.to_bitmask() == there {
-            let points = if are_few(simd, shown) {
-                this.points_by_triangle(simd, info.run, (shown, &items), there, [x, y])
-            } else {
-                this.points_by_pixel(simd, info.run, &items, there, [x, y])
-            };
-            let (material, lights) = (info.material, this.shared.lights);
-            let [r, g, b] = shade_points_x16(simd, &points, material, lights, info.shading);
-            *colors = [r, g, b, [material.plain_alpha(); 16]];
-            return;
-        }
-        if let Some(looked_up) = info.looked_up
-            && mine.to_bitmask() == there
-        {
-            let run = (&info, looked_up);
-            *colors = this.looked_up_x16(simd, run, (shown, &items), there, [x, y]);
-            return;
-        }
-        let (rows, _) = items.as_chunks::<8>();
-        for (i, row) in rows.iter().enumerate().filter(|(_, row)| **row != [NO_ITEM; 8]) {
-            let mut eight = [[0.0; 8]; 4];
-            Self::colors_x8(simd, this, row, x, y + i as i32, &mut eight);
-            for (to, from) in colors.iter_mut().zip(&eight) {
-                to[8 * i..8 * i + 8].copy_from_slice(from);
+        let mut left = there;
+        while left != 0 {
+            let info = this.run_info(items[left.trailing_zeros() as usize % 16]);
+            let mine = (shown - info.first_item).simd_lt(u32x16::splat(simd, info.count));
+            let bits = mine.to_bitmask();
+            let shaded = this.colors_of_run(simd, &info, (shown, &items), bits, patch);
+            if bits == there {
+                *colors = shaded;
+                return;
+            }
+            left &= !bits;
+            for (to, from) in colors.iter_mut().zip(&shaded) {
+                let (old, new) = (f32x16::from_slice(simd, to), f32x16::from_slice(simd, from));
+                mine.select(new, old).store_slice(to);
             }
         }
     }
 
-    /// Linear red, green and blue of one item at sixteen pixels as in [`Self::colors_x16`], of which `there` tells
-    /// where it shows; `None` where its material asks for more than [`shade_points_x16`].
+    /// Colours as in [`Self::colors_x16`] of the pixels of a set, all of one run.
+    #[inline(always)]
+    fn colors_of_run<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        (shown, items): (u32x16<S>, &[u32; 16]),
+        there: u64,
+        patch: Patch,
+    ) -> [[f32; 16]; 4] {
+        if info.plain {
+            let points = self.points(simd, info.run, (shown, items), there, patch);
+            let (material, lights) = (info.material, self.shared.lights);
+            let [r, g, b] = shade_points(simd, &points, material, lights, info.shading);
+            [r, g, b, [material.plain_alpha(); 16]]
+        } else if let Some(looked_up) = info.looked_up {
+            self.looked_up_x16(simd, (info, looked_up), (shown, items), there, patch)
+        } else if info.together {
+            self.sampled_x16(simd, info, items, there, patch)
+        } else {
+            let mut colors = [[0.0; 16]; 4];
+            for i in (0..16).filter(|i| there >> i & 1 == 1) {
+                let [x, y] = patch.pixel(i);
+                let color: Vec4 = self.color(items[i], x, y);
+                for (channel, value) in colors.iter_mut().zip(color.to_array()) {
+                    channel[i] = value;
+                }
+            }
+            colors
+        }
+    }
+
+    /// Linear red, green and blue of one item at the pixels of a patch, of which `there` tells where it shows; `None`
+    /// where its material asks for more than [`shade_points`].
     #[inline(always)]
     pub fn colors_of_one_x16<S: Simd>(
         &mut self,
         simd: S,
         item: u32,
         there: u64,
-        [x, y]: [i32; 2],
+        patch: Patch,
     ) -> Option<[[f32; 16]; 3]> {
         let info = self.run_info(item);
         if !info.plain {
             return None;
         }
-        let without_shadows = self.shared.lights.shadows.is_empty();
+        let (with_positions, with_shadows) = (self.with_positions(), self.with_shadows());
+        let view = self.sight.towards_eye_x16(simd, patch);
         let t = self.triangles.get(item, info.run);
-        let (rows, has_coordinates) = t.points_x16(simd, x, y);
-        let faces = if without_shadows && t.settled && there & !has_coordinates == 0 {
+        let ([x, y, z], usual) = t.normals_x16(simd, patch);
+        let mut position = view;
+        if with_positions {
+            let [x, y, z] = t.positions_x16(simd, patch);
+            position = Vec3Lane::new(x, y, z);
+        }
+        let faces = if !with_shadows && t.settled && there & !usual == 0 {
             Faces::Settled
         } else {
-            Faces::Normals(Vec3Lane::splat(rows[0], t.face_normal))
+            Faces::Seen(Vec3Lane::splat(x, t.seen_face_normal))
         };
-        let points = points(rows, faces, self.parallel_view);
+        let points = Points { position, view, normal: Vec3Lane::new(x, y, z), faces };
         let lights = self.shared.lights;
-        Some(shade_points_x16(simd, &points, info.material, lights, info.shading))
+        Some(shade_points(simd, &points, info.material, lights, info.shading))
     }
 
     /// Colours as in [`Self::colors_x16`] of the pixels of a set, all of a run whose textures are looked up together.
     #[inline(always)]
-    pub(super) fn looked_up_x16<S: Simd>(
+    fn looked_up_x16<S: Simd>(
         &mut self,
         simd: S,
         (info, looked_up): (&RunInfo<'a>, LookedUp<'a>),
         (shown, items): (u32x16<S>, &[u32; 16]),
         there: u64,
-        at: [i32; 2],
+        patch: Patch,
     ) -> [[f32; 16]; 4] {
-        let few = are_few(simd, shown);
         let points = if info.shading == Shading::Unlit {
             // Nothing is asked of them.
-            points([f32x16::splat(simd, 0.0); 6], Faces::Settled, self.parallel_view)
-        } else if few {
-            self.points_by_triangle(simd, info.run, (shown, items), there, at)
+            let none = Vec3Lane::splat(f32x16::splat(simd, 0.0), Vec3::ZERO);
+            Points { position: none, view: none, normal: none, faces: Faces::Settled }
         } else {
-            self.points_by_pixel(simd, info.run, items, there, at)
+            self.points(simd, info.run, (shown, items), there, patch)
         };
-        let coords = if few {
-            self.coords_by_triangle(simd, (info.run, looked_up), (shown, items), there, at)
+        let coords = if patch.shows_few(simd, shown) {
+            self.coords_by_triangle(simd, (info.run, looked_up), (shown, items), there, patch)
         } else {
-            self.coords_by_pixel(simd, (info.run, looked_up), items, there, at)
+            self.coords_by_pixel(simd, (info.run, looked_up), items, there, patch)
         };
         let (material, lights) = (info.material, self.shared.lights);
         let (color, alpha) =
             PreparedMaterial::shade_x16(simd, material, &points, &coords, lights, info.shading);
         [color.x.into(), color.y.into(), color.z.into(), alpha.into()]
+    }
+
+    /// The same of a run that is lit together after its textures were looked up one by one.
+    #[inline(always)]
+    fn sampled_x16<S: Simd>(
+        &mut self,
+        simd: S,
+        info: &RunInfo<'a>,
+        items: &[u32; 16],
+        there: u64,
+        patch: Patch,
+    ) -> [[f32; 16]; 4] {
+        let mut colors = [[1.0; 16]; 4];
+        for first in [0, 8] {
+            if there >> first & 0xff == 0 {
+                continue;
+            }
+            let mut samples = Samples::default();
+            for i in (first..first + 8).filter(|i| there >> i & 1 == 1) {
+                let [x, y] = patch.pixel(i);
+                samples.set(i % 8, &self.sample(items[i], x, y));
+            }
+            let shaded = Samples::shade(simd, &samples, self.shared.lights, info.shading);
+            for (to, from) in colors.iter_mut().zip(&shaded) {
+                to[first..first + 8].copy_from_slice(from);
+            }
+        }
+        colors
+    }
+
+    /// What the textures say of an item at a pixel's centre.
+    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample {
+        self.with_surface(item, x, y, |surface, material, _, shading| {
+            material.sample(surface, shading)
+        })
     }
 
     /// The texture coordinates at the pixels of a set, all of one run.
@@ -132,15 +189,14 @@ impl<'a> Lit<'a> {
         (run, LookedUp { coords, changing }): (usize, LookedUp<'a>),
         items: &[u32; 16],
         mut left: u64,
-        [x, y]: [i32; 2],
+        patch: Patch,
     ) -> TexCoords<f32x16<S>> {
         let mut gathered = GatheredCoords::default();
         while left != 0 {
             let i = left.trailing_zeros() as usize % 16;
             left &= left - 1;
-            let pixel = [x + i as i32 % 8, y + i as i32 / 8];
             let t = self.triangles.get(items[i], run);
-            gathered.set(i, t, pixel, t.corners.map(|c| coords[c as usize]));
+            gathered.set(i, t, patch.pixel(i), t.corners.map(|c| coords[c as usize]));
         }
         gathered.coordinates(simd, changing)
     }
@@ -154,12 +210,12 @@ impl<'a> Lit<'a> {
         (run, LookedUp { coords, changing }): (usize, LookedUp<'a>),
         (shown, items): (u32x16<S>, &[u32; 16]),
         there: u64,
-        at: [i32; 2],
+        patch: Patch,
     ) -> TexCoords<f32x16<S>> {
         let first = items[there.trailing_zeros() as usize % 16];
         let t = self.triangles.get(first, run);
         let corners = t.corners.map(|c| coords[c as usize]);
-        let mut all = coordinates_of_one(simd, t, at, corners, changing);
+        let mut all = coordinates_of_one(simd, t, patch, corners, changing);
         let mut left = there & !shown.simd_eq(u32x16::splat(simd, first)).to_bitmask();
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 16];
@@ -167,7 +223,7 @@ impl<'a> Lit<'a> {
             left &= !same.to_bitmask();
             let t = self.triangles.get(item, run);
             let corners = t.corners.map(|c| coords[c as usize]);
-            let of_t = coordinates_of_one(simd, t, at, corners, changing);
+            let of_t = coordinates_of_one(simd, t, patch, corners, changing);
             for k in 0..2 {
                 all.uv[k] = same.select(of_t.uv[k], all.uv[k]);
                 all.ddx[k] = same.select(of_t.ddx[k], all.ddx[k]);
@@ -177,7 +233,36 @@ impl<'a> Lit<'a> {
         all
     }
 
+    /// Whether lights ask where points lie.
+    #[inline(always)]
+    pub(super) fn with_positions(&self) -> bool {
+        self.with_shadows() || !self.shared.lights.points.is_empty()
+    }
+
+    /// Whether shadows ask where points lie and which way their faces look.
+    #[inline(always)]
+    fn with_shadows(&self) -> bool {
+        !self.shared.lights.shadows.is_empty()
+    }
+
     /// The points that the pixels of a set show, all of one run.
+    #[inline(always)]
+    pub(super) fn points<S: Simd>(
+        &mut self,
+        simd: S,
+        run: usize,
+        (shown, items): (u32x16<S>, &[u32; 16]),
+        there: u64,
+        patch: Patch,
+    ) -> Points<f32x16<S>> {
+        if patch.shows_few(simd, shown) {
+            self.points_by_triangle(simd, run, (shown, items), there, patch)
+        } else {
+            self.points_by_pixel(simd, run, items, there, patch)
+        }
+    }
+
+    /// The points: each gathered from its triangle.
     #[inline(always)]
     fn points_by_pixel<S: Simd>(
         &mut self,
@@ -185,53 +270,79 @@ impl<'a> Lit<'a> {
         run: usize,
         items: &[u32; 16],
         mut left: u64,
-        [x, y]: [i32; 2],
+        patch: Patch,
     ) -> Points<f32x16<S>> {
-        let mut rows = [Gathered::default(); 2];
+        let (mut gathered, with_positions) = (Gathered::default(), self.with_positions());
         while left != 0 {
             let i = left.trailing_zeros() as usize % 16;
             left &= left - 1;
-            let pixel = [x + i as i32 % 8, y + i as i32 / 8];
-            rows[i / 8].set(simd, i, self.triangles.get(items[i], run), pixel);
+            let t = self.triangles.get(items[i], run);
+            gathered.set(simd, i, t, patch.pixel(i), with_positions);
         }
-        Gathered::both(simd, &rows, self.parallel_view)
+        self.gathered_points(simd, &gathered, self.sight.towards_eye_x16(simd, patch))
     }
 
-    /// The same: all sixteen points of each triangle, of which those that show it are taken.
+    /// Points with their directions to the eye.
+    #[inline(always)]
+    pub(super) fn gathered_points<S: Simd>(
+        &self,
+        simd: S,
+        gathered: &Gathered,
+        view: Vec3Lane<f32x16<S>>,
+    ) -> Points<f32x16<S>> {
+        let ([x, y, z], settled) = gathered.normals(simd);
+        let faces = if settled && !self.with_shadows() {
+            Faces::Settled
+        } else {
+            Faces::Seen(gathered.faces(simd))
+        };
+        let position = if self.with_positions() { gathered.positions(simd) } else { view };
+        Points { position, view, normal: Vec3Lane::new(x, y, z), faces }
+    }
+
+    /// The points: of each triangle at all pixels, of which those that show it are taken.
     #[inline(always)]
     fn points_by_triangle<S: Simd>(
         &mut self,
         simd: S,
         run: usize,
         (shown, items): (u32x16<S>, &[u32; 16]),
-        mut left: u64,
-        [x, y]: [i32; 2],
+        there: u64,
+        patch: Patch,
     ) -> Points<f32x16<S>> {
-        let zero = f32x16::splat(simd, 0.0);
-        let mut row = [zero; 6];
-        let mut settled = self.shared.lights.shadows.is_empty();
-        let there = left;
+        let with_positions = self.with_positions();
+        let view = self.sight.towards_eye_x16(simd, patch);
+        let (mut normal, mut position) = ([view.x; 3], [view.x; 3]);
+        let mut settled = !self.with_shadows();
+        let mut left = there;
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 16];
             let same = shown.simd_eq(u32x16::splat(simd, item));
             let bits = same.to_bitmask();
             left &= !bits;
             let t = self.triangles.get(item, run);
-            let (of_t, has_coordinates) = t.points_x16(simd, x, y);
-            settled &= t.settled && bits & !has_coordinates == 0;
-            for (to, from) in row.iter_mut().zip(of_t) {
+            let (of_t, usual) = t.normals_x16(simd, patch);
+            settled &= t.settled && bits & !usual == 0;
+            for (to, from) in normal.iter_mut().zip(of_t) {
                 *to = same.select(from, *to);
+            }
+            if with_positions {
+                for (to, from) in position.iter_mut().zip(t.positions_x16(simd, patch)) {
+                    *to = same.select(from, *to);
+                }
             }
         }
         let faces = if settled {
             Faces::Settled
         } else {
-            Faces::Normals(self.face_normals(simd, run, (shown, items), there))
+            Faces::Seen(self.face_normals(simd, run, (shown, items), there))
         };
-        points(row, faces, self.parallel_view)
+        let ([nx, ny, nz], [px, py, pz]) = (normal, position);
+        let (normal, position) = (Vec3Lane::new(nx, ny, nz), Vec3Lane::new(px, py, pz));
+        Points { position, view, normal, faces }
     }
 
-    /// The unit normals of the faces that the pixels of a set show.
+    /// The unit normals of the sides of faces that the pixels of a set show.
     #[inline(always)]
     fn face_normals<S: Simd>(
         &mut self,
@@ -245,7 +356,7 @@ impl<'a> Lit<'a> {
             let item = items[left.trailing_zeros() as usize % 16];
             let same = shown.simd_eq(u32x16::splat(simd, item));
             left &= !same.to_bitmask();
-            let of_face = self.triangles.get(item, run).face_normal.to_array();
+            let of_face = self.triangles.get(item, run).seen_face_normal.to_array();
             for (to, from) in normal.iter_mut().zip(of_face) {
                 *to = same.select(f32x16::splat(simd, from), *to);
             }

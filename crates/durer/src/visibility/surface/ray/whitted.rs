@@ -113,8 +113,9 @@ impl<'a> Whitted<'a> {
     fn point(&mut self, item: u32, seen: Seen, weights: [f32; 3], view: Vec3) -> Point {
         let t = self.lit.triangle(item);
         let view = view.normalize_or_zero();
-        let front = t.face_normal.dot(view) >= 0.0;
-        let face_normal = if front { t.face_normal } else { -t.face_normal };
+        let face_normal = t.face_normal();
+        let front = face_normal.dot(view) >= 0.0;
+        let face_normal = if front { face_normal } else { -face_normal };
         let normal = blend(&t.normals(), weights).normalize_or(face_normal);
         let normal = if normal.dot(view) < 0.0 { -normal } else { normal };
         let position = blend(&t.positions(), weights);

@@ -25,7 +25,7 @@ use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
-use crate::visibility::surface::lit::{Lighting, Lit};
+use crate::visibility::surface::lit::{Batch, Lighting, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
@@ -197,6 +197,7 @@ struct Scratch<'a> {
     /// One sample at the pixel's centre, for depth, item and normal: made where they are first asked for.
     center: Vec<SamplePlane>,
     blended: Blended,
+    batch: Batch,
     mixed: Mixed,
     codes: Box<Codes>,
     lit: Lit<'a>,
@@ -210,6 +211,7 @@ impl<'a> Scratch<'a> {
             planes: SamplePlane::of(offsets),
             center: Vec::new(),
             blended: Blended::new(offsets),
+            batch: Batch::default(),
             mixed: Mixed::new(TILE_PIXELS),
             codes: Box::new([0; TILE_PIXELS]),
             lit: Lit::new(frame.lighting),
@@ -299,7 +301,7 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, blended, mixed, codes, lit, order, .. } = scratch;
+        let Scratch { planes, blended, batch, mixed, codes, lit, order, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
         self.rasterize_opaque(order, planes, area, index);
         let mut mask = MaskTest { lit, tile };
@@ -313,7 +315,7 @@ impl<'a> Frame<'a> {
         let background = background_rows(self.options.background, self.view.height());
         let area = Area { tile, size, background: &background };
         dispatch!(self.options.level, simd =>
-            resolve(simd, planes, blended, mixed, lit, &area, codes));
+            resolve(simd, planes, blended, (batch, mixed), lit, &area, codes));
         for (y, row) in band.rows_of(tile[0], size) {
             let codes = &codes[(y * TILE) as usize..];
             for (to, code) in row.iter_mut().zip(codes) {

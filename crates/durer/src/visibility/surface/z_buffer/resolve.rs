@@ -7,8 +7,9 @@ use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Lit, are_few};
+use crate::visibility::surface::lit::{Batch, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
+use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x8, u32x16};
@@ -63,12 +64,12 @@ pub fn resolve<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
     blended: &Blended,
-    mixed: &mut Mixed,
+    (batch, mixed): (&mut Batch, &mut Mixed),
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     codes: &mut Codes,
 ) {
-    resolve_opaque(simd, planes, mixed, lit, area, codes);
+    resolve_opaque(simd, planes, (batch, mixed), lit, area, codes);
     if blended.any() {
         resolve_blended(simd, planes, blended, lit, area, codes);
     }
@@ -79,7 +80,7 @@ pub fn resolve<S: Simd>(
 fn resolve_opaque<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
-    mixed: &mut Mixed,
+    (batch, mixed): (&mut Batch, &mut Mixed),
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     codes: &mut Codes,
@@ -100,25 +101,27 @@ fn resolve_opaque<S: Simd>(
         expect_column(simd, planes, x, area.size[1], lit);
         for y in (0..area.size[1]).step_by(2) {
             let at = [area.tile[0] + x, area.tile[1] + y];
+            let patch = Patch::block(at);
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let row = y as usize % TILE as usize;
             let count = samples_of_block(simd, planes, first, &mut samples);
             let both = [behind[row], behind[row + 1]];
-            let (pixels, differs) = match resolve_block(simd, &samples[..count], lit, both, at) {
-                Some(pixels) => (pixels, [[0; 8]; 2]),
-                None => {
-                    let (above, differs) = whole_pixels(simd, planes, first);
-                    let (below, differs_below) = whole_pixels(simd, planes, second);
-                    let whole = simd.combine_u32x8(above, below);
-                    let encoded = [encoded[row], encoded[row + 1]];
-                    let pixels = resolve_sixteen(simd, lit, whole, encoded, at);
-                    (pixels, [differs, differs_below])
-                }
-            };
             // Of the last row there may be none below; then what is written there is not copied.
-            let (above, below) = simd.split_u32x16(pixels);
-            above.store_slice(&mut codes[first..first + 8]);
-            below.store_slice(&mut codes[second..second + 8]);
+            if let Some(pixels) = resolve_block(simd, &samples[..count], lit, both, patch) {
+                let (above, below) = simd.split_u32x16(pixels);
+                above.store_slice(&mut codes[first..first + 8]);
+                below.store_slice(&mut codes[second..second + 8]);
+                continue;
+            }
+            let (above, above_differs) = whole_pixels(simd, planes, first);
+            let (below, below_differs) = whole_pixels(simd, planes, second);
+            let differs = [above_differs, below_differs];
+            codes[first..first + 8].fill(encoded[row]);
+            codes[second..second + 8].fill(encoded[row + 1]);
+            let whole = simd.combine_u32x8(above, below);
+            if whole.simd_ne(u32x16::splat(simd, NO_ITEM)).any_true() {
+                batch.light(simd, lit, whole, patch, [first, second], codes);
+            }
             for i in 0..2.min(area.size[1] - y) as usize {
                 if differs[i] != [0; 8] {
                     let behind = behind[row + i];
@@ -128,6 +131,7 @@ fn resolve_opaque<S: Simd>(
             }
         }
     }
+    Batch::flush(simd, batch, lit, codes);
     Mixed::flush(simd, mixed, lit);
     for pixel in mixed.pixels.drain(..) {
         codes[pixel as usize] = u32::from_le_bytes(encode(mixed.sums[pixel as usize]));
@@ -202,10 +206,10 @@ fn resolve_block<S: Simd>(
     samples: &[u32x16<S>],
     lit: &mut Lit<'_>,
     [above, below]: [Vec4; 2],
-    at: [i32; 2],
+    patch: Patch,
 ) -> Option<u32x16<S>> {
     let (first, count) = (samples.first()?, samples.len());
-    if above.w < 1.0 || below.w < 1.0 || !are_few(simd, *first) {
+    if above.w < 1.0 || below.w < 1.0 || !patch.shows_few(simd, *first) {
         return None;
     }
     let zero = f32x16::splat(simd, 0.0);
@@ -231,7 +235,7 @@ fn resolve_block<S: Simd>(
                 *to = simd.combine_f32x8(above, below);
             }
         } else {
-            let shaded = lit.colors_of_one_x16(simd, item, there, at)?;
+            let shaded = lit.colors_of_one_x16(simd, item, there, patch)?;
             for (to, from) in colors.iter_mut().zip(&shaded) {
                 *to = f32x16::from_slice(simd, from);
             }
@@ -240,28 +244,7 @@ fn resolve_block<S: Simd>(
             *sum += color * weight;
         }
     }
-    let [r, g, b] = sums;
-    let colors = [r.into(), g.into(), b.into(), [1.0; 16]];
-    Some(encode_opaque_x16(simd, &colors))
-}
-
-/// Of two rows of eight pixels, those that show one item at all samples; the others show what is behind.
-#[inline(always)]
-fn resolve_sixteen<S: Simd>(
-    simd: S,
-    lit: &mut Lit<'_>,
-    whole: u32x16<S>,
-    [above, below]: [u32; 2],
-    at: [i32; 2],
-) -> u32x16<S> {
-    let behind = simd.combine_u32x8(simd.splat_u32x8(above), simd.splat_u32x8(below));
-    let there = whole.simd_ne(u32x16::splat(simd, NO_ITEM));
-    if !there.any_true() {
-        return behind;
-    }
-    let mut colors = [[0.0; 16]; 4];
-    Lit::colors_x16(simd, lit, whole, at, &mut colors);
-    there.select(encode_opaque_x16(simd, &colors), behind)
+    Some(encode_opaque_x16(simd, sums))
 }
 
 /// Of eight pixels in a row, those that show several items, or one and the background: each item is

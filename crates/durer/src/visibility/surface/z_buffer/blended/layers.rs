@@ -5,6 +5,7 @@ use super::{BLOCKS, LANES, block_at, place_of};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::LEAST_THROUGH;
 use crate::visibility::surface::lit::Lit;
+use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 
@@ -112,8 +113,8 @@ impl Layers {
         }
         let [x, y] = block_at(block);
         let mut colors = [[0.0; LANES]; 4];
-        let at = [self.tile[0] + x, self.tile[1] + y];
-        Lit::colors_x16(simd, lit, items, at, &mut colors);
+        let patch = Patch::block([self.tile[0] + x, self.tile[1] + y]);
+        Lit::colors_x16(simd, lit, items, patch, &mut colors);
         // What is not there may have been shaded as well.
         let zero = f32x16::splat(simd, 0.0);
         let alpha = there.select(f32x16::from_slice(simd, &colors[3]), zero);

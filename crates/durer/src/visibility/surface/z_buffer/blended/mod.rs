@@ -17,8 +17,9 @@ use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::Lit;
+use crate::visibility::surface::lit::{Lit, opaque};
 use crate::visibility::surface::mixed::encode;
+use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
@@ -206,7 +207,7 @@ pub fn resolve_blended<S: Simd>(
         for (to, sum) in mean.iter_mut().zip(sums) {
             (sum * (1.0 / layers.count as f32)).store_slice(to);
         }
-        let opaque: [u32; LANES] = encode_opaque_x16(simd, &mean).into();
+        let opaque: [u32; LANES] = encode_opaque_x16(simd, opaque(simd, &mean)).into();
         let [x, y] = block_at(block);
         for lane in (0..LANES).filter(|lane| touched >> lane & 1 == 1) {
             let [r, g, b, a] = &mean;
@@ -233,6 +234,7 @@ fn behind_block<S: Simd>(
 ) {
     let [x, y] = block_at(block);
     let at = [area.tile[0] + x, area.tile[1] + y];
+    let patch = Patch::block(at);
     // Of the last row there may be none below.
     let below = (y + 1).min(area.size[1] - 1) + area.tile[1];
     let above = premultiply((area.background)(at[1])).to_array();
@@ -262,7 +264,7 @@ fn behind_block<S: Simd>(
         let unlit = left.simd_ne(none);
         if unlit.any_true() {
             let mut shaded = [[0.0; LANES]; 4];
-            Lit::colors_x16(simd, lit, left, at, &mut shaded);
+            Lit::colors_x16(simd, lit, left, patch, &mut shaded);
             shaded[3] = [1.0; LANES];
             for (to, shaded) in colors[i].iter_mut().zip(&shaded) {
                 *to = unlit.select(f32x16::from_slice(simd, shaded), *to);

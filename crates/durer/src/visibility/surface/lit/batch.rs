@@ -1,0 +1,112 @@
+//! Patches that wait until there are enough of them to be lit in one loop, in which nothing waits for anything but
+//! its own patch.
+
+use super::{Lit, opaque};
+use crate::shade::color::encode_opaque_x16;
+use crate::shade::lane::Vec3Lane;
+use crate::shade::{Faces, Points, shade_lanes};
+use crate::target::NO_ITEM;
+use crate::visibility::surface::patch::Patch;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, u32x8, u32x16};
+use fearless_simd_macros::simd;
+
+/// Up to so many patches wait.
+const MOST: usize = 32;
+
+/// Patches of settled points of one plain run under lights from infinitely far away.
+#[derive(Default)]
+pub struct Batch {
+    waiting: Vec<Waiting>,
+    /// The first item of their run.
+    first_item: u32,
+}
+
+/// A patch that waits.
+struct Waiting {
+    /// By axis, of any length.
+    normals: [[f32; 16]; 3],
+    /// The items that it shows; [`NO_ITEM`] where it shows none.
+    shown: [u32; 16],
+    patch: Patch,
+    /// Where its two halves go.
+    places: [usize; 2],
+}
+
+impl Batch {
+    /// Lights the pixels of a patch that show an item, of which there is one, now or at the latest by
+    /// [`Self::flush`]; its halves of eight pixels go to the given places of `codes`.
+    #[inline(always)]
+    pub fn light<S: Simd>(
+        &mut self,
+        simd: S,
+        lit: &mut Lit<'_>,
+        shown: u32x16<S>,
+        patch: Patch,
+        places: [usize; 2],
+        codes: &mut [u32],
+    ) {
+        let items: [u32; 16] = shown.into();
+        let there = shown.simd_ne(u32x16::splat(simd, NO_ITEM)).to_bitmask();
+        let info = lit.run_info(items[there.trailing_zeros() as usize % 16]);
+        let mine = (shown - info.first_item).simd_lt(u32x16::splat(simd, info.count));
+        if !info.plain || lit.with_positions() || mine.to_bitmask() != there {
+            let mut colors = [[0.0; 16]; 4];
+            Lit::colors_x16(simd, lit, shown, patch, &mut colors);
+            return put(simd, opaque(simd, &colors), shown, places, codes);
+        }
+        let points = lit.points(simd, info.run, (shown, &items), there, patch);
+        if let Faces::Seen(_) = points.faces {
+            let lights = lit.shared.lights;
+            let color = shade_lanes(&points, info.material, lights, info.shading);
+            return put(simd, [color.x, color.y, color.z], shown, places, codes);
+        }
+        if self.waiting.len() == MOST || self.first_item != info.first_item {
+            Self::flush(simd, self, lit, codes);
+        }
+        self.first_item = info.first_item;
+        let Vec3Lane { x, y, z } = points.normal;
+        let normals = [x.into(), y.into(), z.into()];
+        self.waiting.push(Waiting { normals, shown: items, patch, places });
+    }
+
+    /// Lights what waits.
+    #[simd]
+    pub fn flush<S: Simd>(simd: S, this: &mut Self, lit: &mut Lit<'_>, codes: &mut [u32]) {
+        if this.waiting.is_empty() {
+            return;
+        }
+        let info = lit.run_info(this.first_item);
+        let (sight, lights) = (lit.sight, lit.shared.lights);
+        for Waiting { normals, shown, patch, places } in this.waiting.drain(..) {
+            let normal = opaque(simd, &[normals[0], normals[1], normals[2], normals[0]]);
+            let view = sight.towards_eye_x16(simd, patch);
+            let normal = Vec3Lane::new(normal[0], normal[1], normal[2]);
+            // Nobody asks for positions.
+            let points = Points { position: view, view, normal, faces: Faces::Settled };
+            let color = shade_lanes(&points, info.material, lights, info.shading);
+            let shown = u32x16::from_slice(simd, &shown);
+            put(simd, [color.x, color.y, color.z], shown, places, codes);
+        }
+    }
+}
+
+/// Writes the codes of colours where an item is shown.
+#[inline(always)]
+fn put<S: Simd>(
+    simd: S,
+    colors: [f32x16<S>; 3],
+    shown: u32x16<S>,
+    [first, second]: [usize; 2],
+    codes: &mut [u32],
+) {
+    let (above, below) = simd.split_u32x16(encode_opaque_x16(simd, colors));
+    let (above_shown, below_shown) = simd.split_u32x16(shown);
+    let none = simd.splat_u32x8(NO_ITEM);
+    for (new, shown, place) in [(above, above_shown, first), (below, below_shown, second)] {
+        let codes = &mut codes[place..place + 8];
+        let old = u32x8::from_slice(simd, codes);
+        let there = simd.simd_ne_u32x8(shown, none);
+        simd.select_u32x8(there, new, old).store_slice(codes);
+    }
+}

@@ -1,0 +1,186 @@
+//! However pixels are lit, alone or with others, in whatever order, the bits are the same.
+
+use super::*;
+use crate::math::{DMat4, DVec3};
+use crate::scene::{Camera, Instance, Light, LightKind, Material, Part, Projection};
+use crate::shade::color::encode_srgb8;
+use crate::simd::levels;
+use crate::target::NO_ITEM;
+use crate::visibility::surface::patch::Patch;
+use crate::visibility::surface::setup::runs;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, dispatch, u32x16};
+
+/// Where the eye is.
+const EYE: DVec3 = DVec3::new(0.3, 0.2, 4.0);
+
+/// Triangles of a run.
+const TRIANGLES: u32 = 24;
+
+/// Pseudo-random numbers −1 … 1.
+struct Numbers(u32);
+
+impl Numbers {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8) as f32 / 8_388_608.0 - 1.0
+    }
+
+    fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.next(), self.next(), self.next())
+    }
+
+    fn below(&mut self, count: u32) -> u32 {
+        (((self.next() + 1.0) * 0.5 * count as f32) as u32).min(count - 1)
+    }
+}
+
+/// Two runs of triangles that look all ways; every fourth is nearly or wholly edge-on, some have normals that are
+/// not on their front's side, or none.
+fn scene() -> Scene {
+    let mut numbers = Numbers(7);
+    let mesh = |numbers: &mut Numbers| {
+        let mut mesh = Mesh::default();
+        for i in 0..TRIANGLES {
+            let a = numbers.vector();
+            let (b, mut c) = (numbers.vector(), numbers.vector());
+            if i % 4 == 0 {
+                // Towards the eye from a, but for a little.
+                let off = [0.0, 1e-7, 1e-4][numbers.below(3) as usize];
+                c = a + (EYE.as_vec3() - a) * 0.3 + numbers.vector() * off;
+            }
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            for corner in [a, b, c] {
+                mesh.positions.push(corner);
+                let scale = [1.0, 0.3, 1.5, 1e-12][numbers.below(4) as usize];
+                mesh.normals.push(match i % 8 {
+                    3 => Vec3::ZERO,
+                    6 | 7 => numbers.vector(),
+                    _ => normal * scale + numbers.vector() * scale * 0.1,
+                });
+            }
+        }
+        mesh
+    };
+    let meshes: Vec<Mesh> = (0..2)
+        .map(|material| Mesh {
+            parts: vec![Part {
+                range: 0..TRIANGLES,
+                material: Some(material),
+                name: String::new(),
+            }],
+            ..mesh(&mut numbers)
+        })
+        .collect();
+    let material = |model| Material {
+        model,
+        base_color: Vec4::new(0.9, 0.6, 0.2, 1.0),
+        metallic: 0.4,
+        roughness: 0.3,
+        double_sided: true,
+        ..Material::default()
+    };
+    use crate::scene::ShadingModel::{MetallicRoughness, Phong};
+    let instance = |mesh| Instance { mesh, world_from_mesh: DMat4::IDENTITY, name: String::new() };
+    Scene {
+        meshes,
+        instances: vec![instance(0), instance(1)],
+        materials: vec![material(Phong), material(MetallicRoughness)],
+        ..Scene::default()
+    }
+}
+
+/// Colours of a patch as bits, by pixel; those without an item are left out.
+type Bits = Vec<[u32; 3]>;
+
+fn bits(colors: &[[f32; 16]; 4], items: &[u32; 16]) -> Bits {
+    let shown = (0..16).filter(|&i| items[i] != NO_ITEM);
+    shown.map(|i| [0, 1, 2].map(|k| colors[k][i].to_bits())).collect()
+}
+
+/// In every way, what each pixel of patches shows.
+fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) {
+    let mut batch = Batch::default();
+    let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);
+    for k in 0..64 {
+        // As many triangles as a patch may show, of one run or of both.
+        let (kinds, runs) = (1 + numbers.below(12), 1 + numbers.below(2));
+        let kinds: Vec<u32> = (0..kinds).map(|_| numbers.below(TRIANGLES * runs)).collect();
+        let mut item = kinds[0];
+        let mut items = [NO_ITEM; 16];
+        for to in &mut items[..(8 + 8 * (k % 2))] {
+            if numbers.below(3) == 0 {
+                item = kinds[numbers.below(kinds.len() as u32) as usize];
+            }
+            *to = if numbers.below(9) == 0 { NO_ITEM } else { item };
+        }
+        items[3] = item;
+        let at = [numbers.below(90) as i32, numbers.below(60) as i32];
+        let shown = u32x16::from_slice(simd, &items);
+        for patch in [Patch::row(at), Patch::block(at)] {
+            let mut together = [[0.0; 16]; 4];
+            Lit::colors_x16(simd, lit, shown, patch, &mut together);
+            let mut one_by_one = [[0.0; 16]; 4];
+            for i in (0..16).filter(|&i| items[i] != NO_ITEM) {
+                let [x, y] = patch.pixel(i);
+                let color = lit.color(items[i], x, y).to_array();
+                for (channel, value) in one_by_one.iter_mut().zip(color) {
+                    channel[i] = value;
+                }
+                let code = [0, 1, 2].map(|k| encode_srgb8(color[k]));
+                expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
+                // The whole patch of its triangle.
+                let of_one = lit.colors_of_one_x16(simd, items[i], 1 << i, patch).expect("plain");
+                let of_one = [of_one[0], of_one[1], of_one[2], [1.0; 16]];
+                let mut only = [NO_ITEM; 16];
+                only[i] = items[i];
+                assert_eq!(bits(&of_one, &only), bits(&one_by_one, &only));
+            }
+            assert_eq!(bits(&together, &items), bits(&one_by_one, &items), "{items:?} {patch:?}");
+            let mut queue = Queue::default();
+            for i in (0..16).filter(|&i| items[i] != NO_ITEM) {
+                if lit.queue(items[i], patch.pixel(i), &mut queue) == Queued::OtherRun {
+                    continue;
+                }
+                let queued = lit.shade_queue(simd, &queue);
+                let last = queue.count - 1;
+                let color = [0, 1, 2].map(|k| queued[k][last].to_bits());
+                assert_eq!(color, [0, 1, 2].map(|k| one_by_one[k][i].to_bits()));
+            }
+        }
+        batch.light(simd, lit, shown, Patch::block(at), [16 * k, 16 * k + 8], &mut codes);
+    }
+    Batch::flush(simd, &mut batch, lit, &mut codes);
+    assert_eq!(codes, expected);
+}
+
+#[test]
+fn pixels_are_lit_alike_alone_and_together() {
+    let scene = scene();
+    let runs = runs(&scene).expect("runs");
+    let materials = PreparedMaterials::new(&scene);
+    let lamp = LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0), range: None };
+    let lamp = Light { kind: lamp, color: Vec3::splat(5.0) };
+    for projection in
+        [Projection::Perspective { fov_y: 0.8 }, Projection::Orthographic { height: 3.0 }]
+    {
+        let (target, up) = (DVec3::ZERO, DVec3::Y);
+        let camera = Camera { eye: EYE, target, up, projection, near: 0.1, far: 10.0 };
+        let view = View::new(camera, 96, 64).expect("view");
+        for lights in [PreparedLights::auto(&camera), PreparedLights::new(&[lamp], &camera)] {
+            for level in levels() {
+                let lighting = Lighting {
+                    scene: &scene,
+                    view: &view,
+                    runs: &runs,
+                    materials: &materials,
+                    lights: &lights,
+                    shading: None,
+                    level,
+                };
+                let (mut lit, mut numbers) = (Lit::new(lighting), Numbers(11));
+                dispatch!(level, simd => light_all(simd, &mut lit, &mut numbers));
+            }
+        }
+    }
+}
