@@ -78,16 +78,17 @@ impl Batch {
         }
         let info = lit.run_info(this.first_item);
         let (sight, lights) = (lit.sight, lit.shared.lights);
-        for Waiting { normals, shown, patch, places } in this.waiting.drain(..) {
-            let normal = opaque(simd, &[normals[0], normals[1], normals[2], normals[0]]);
-            let view = sight.towards_eye_x16(simd, patch);
-            let normal = Vec3Lane::new(normal[0], normal[1], normal[2]);
+        for Waiting { normals: [x, y, z], shown, patch, places } in &this.waiting {
+            let (x, y) = (f32x16::from_slice(simd, x), f32x16::from_slice(simd, y));
+            let normal = Vec3Lane::new(x, y, f32x16::from_slice(simd, z));
+            let view = sight.towards_eye_x16(simd, *patch);
             // Nobody asks for positions.
             let points = Points { position: view, view, normal, faces: Faces::Settled };
             let color = shade_lanes(&points, info.material, lights, info.shading);
-            let shown = u32x16::from_slice(simd, &shown);
-            put(simd, [color.x, color.y, color.z], shown, places, codes);
+            let shown = u32x16::from_slice(simd, shown);
+            put(simd, [color.x, color.y, color.z], shown, *places, codes);
         }
+        this.waiting.clear();
     }
 }
 
