@@ -6,7 +6,7 @@ use crate::math::{Vec2, Vec3};
 
 /// The unit vectors of a surface point, all on the viewer's side.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame<L> {
+pub(crate) struct Frame<L> {
     /// To the eye.
     pub view: Vec3Lane<L>,
     /// The face's own normal.

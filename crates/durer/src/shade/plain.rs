@@ -34,7 +34,7 @@ pub enum Faces<L> {
 impl<L: Lane> Points<L> {
     /// The unit vectors at the points, all on the viewer's side.
     #[inline(always)]
-    pub(super) fn frame(&self) -> Frame<L> {
+    pub(crate) fn frame(&self) -> Frame<L> {
         match self.faces {
             Faces::Seen(face) => face_seen(self.view, face, self.normal),
             Faces::Settled => {
@@ -70,9 +70,20 @@ pub(crate) fn shade_lanes<L: Lane>(
     lights: &PreparedLights,
     shading: Shading,
 ) -> Vec3Lane<L> {
-    let frame = points.frame();
-    let inputs = material.constant_inputs(points.position.x);
-    formula::display(&frame, points.position, &inputs, None, lights, shading)
+    shade_frame(&points.frame(), points.position, material, lights, shading)
+}
+
+/// The second half of [`shade_lanes`]: what comes after [`Points::frame`].
+#[inline(always)]
+pub(crate) fn shade_frame<L: Lane>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    material: &PreparedMaterial<'_>,
+    lights: &PreparedLights,
+    shading: Shading,
+) -> Vec3Lane<L> {
+    let inputs = material.constant_inputs(position.x);
+    formula::display(frame, position, &inputs, None, lights, shading)
 }
 
 #[cfg(test)]

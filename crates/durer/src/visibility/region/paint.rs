@@ -218,6 +218,7 @@ pub fn colors(
         materials: &materials,
         lights,
         shading,
+        reach: 0,
         level: default_level(),
     };
     let parts = parallel::map(shown.chunks(TASK).collect(), |part| {

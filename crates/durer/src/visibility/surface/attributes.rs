@@ -6,56 +6,33 @@
 
 use crate::math::{Vec3, Vec4};
 use crate::scene::Mesh;
-use crate::target::NO_ITEM;
+use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::Run;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x16};
 
 /// A visible triangle, ready to be interpolated.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct VisibleTriangle {
-    /// Its item.
-    pub item: u32,
+    /// Its item, and its normals where they are settled.
+    pub normals: NormalPlane,
     /// Its vertices in the mesh.
     pub corners: [u32; 3],
-    /// Of each vertex its normal, turned where the triangle is seen from behind, and 1, then its position and
+    /// Of each vertex its normal, turned where the triangle is seen from behind, and 0, then its position and
     /// 0, in rows to be blended in one go.
     pub(super) rows: [Row; 3],
     /// Unit normal of the side of the face that is seen, world axes; zero of lines and of what has no area.
     pub seen_face_normal: Vec3,
     /// Whether it is the back that is seen. All points of a plane show the same side.
     pub from_behind: bool,
-    /// Whether its normals have a length and are on its front's side, by a margin, so that rounding changes
-    /// nothing of it at any of its points whose weights have a [usual](USUAL_SUMS) sum.
-    pub settled: bool,
-    /// The pixel from whose centre x and y are counted.
-    pub(super) origin: [i32; 2],
-    /// Edge function i at (x, y) is `edges[0][i] + (edges[1][i]·x + edges[2][i]·y)`; the fourth is not used.
+    /// Edge function i at (x, y), counted from the origin of the normals, is
+    /// `edges[0][i] + (edges[1][i]·x + edges[2][i]·y)`; the fourth is not used.
     pub(super) edges: [[f32; 4]; 3],
 }
 
 /// What is blended of a vertex.
 pub type Row = [f32; 8];
-
-/// Undivided weights usually have a sum between these: 1 at the farthest vertex, and the more the nearer.
-pub const USUAL_SUMS: [f32; 2] = [1e-6, 1e6];
-
-impl Default for VisibleTriangle {
-    /// No triangle.
-    fn default() -> Self {
-        Self {
-            item: NO_ITEM,
-            corners: [0; 3],
-            rows: [[0.0; 8]; 3],
-            seen_face_normal: Vec3::ZERO,
-            from_behind: false,
-            settled: false,
-            origin: [0; 2],
-            edges: [[0.0; 4]; 3],
-        }
-    }
-}
 
 /// The run that holds an item that was drawn.
 pub fn run_of(runs: &[Run], item: u32) -> usize {
@@ -75,7 +52,7 @@ impl VisibleTriangle {
     /// Of the vertices; world axes, not of unit length; all three the face normal where the mesh has
     /// none.
     #[inline(always)]
-    pub fn normals(&self) -> [Vec3; 3] {
+    pub fn corner_normals(&self) -> [Vec3; 3] {
         self.rows.map(|[x, y, z, ..]| self.turned(Vec3::new(x, y, z)))
     }
 
@@ -102,15 +79,15 @@ impl VisibleTriangle {
     /// them: what [`Self::weights`] and [`Self::weights_beside`] start from.
     #[inline(always)]
     pub fn edge_functions(&self, x: i32, y: i32) -> (&[[f32; 4]; 3], [f32; 2]) {
-        (&self.edges, [(x - self.origin[0]) as f32, (y - self.origin[1]) as f32])
+        (&self.edges, [(x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32])
     }
 
     /// Perspective-correct barycentric coordinates at a pixel's centre moved by `shift` pixels; kept
     /// within the triangle where the point lies outside, as it may at edges.
     #[inline(always)]
     pub fn weights(&self, x: i32, y: i32, shift: [f32; 2]) -> Weights {
-        let fx = (x - self.origin[0]) as f32 + shift[0];
-        let fy = (y - self.origin[1]) as f32 + shift[1];
+        let fx = (x - self.normals.origin[0]) as f32 + shift[0];
+        let fy = (y - self.normals.origin[1]) as f32 + shift[1];
         let [a, b, c] = self.edges_at(fx, fy).map(|e| e.max(0.0));
         let inverse = 1.0 / (a + b + c).max(f32::MIN_POSITIVE);
         [a * inverse, b * inverse, c * inverse]
@@ -119,7 +96,8 @@ impl VisibleTriangle {
     /// Coordinates at the centres of the pixels to the right and below, also outside the triangle.
     pub fn weights_beside(&self, x: i32, y: i32) -> (Weights, Weights) {
         let at = |x: i32, y: i32| {
-            let (fx, fy) = ((x - self.origin[0]) as f32, (y - self.origin[1]) as f32);
+            let (fx, fy) =
+                ((x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32);
             let [a, b, c] = self.edges_at(fx, fy);
             let sum = a + b + c;
             // Beyond the horizon there is no such point: the derivative is that of the border.
@@ -143,8 +121,17 @@ impl VisibleTriangle {
     /// matters.
     #[inline(always)]
     pub fn normal(&self, x: i32, y: i32) -> Vec3 {
+        if self.normals.settled {
+            return self.turned(self.normals.at([x, y]));
+        }
+        self.normal_within(x, y)
+    }
+
+    /// The normal with weights kept within the triangle.
+    #[inline(always)]
+    pub fn normal_within(&self, x: i32, y: i32) -> Vec3 {
         let (_, [x, y]) = self.edge_functions(x, y);
-        blend(&self.normals(), self.edges_at(x, y).map(|e| e.max(0.0)))
+        blend(&self.corner_normals(), self.edges_at(x, y).map(|e| e.max(0.0)))
     }
 
     /// Edge functions, at least 0, at the pixels of a patch.
@@ -160,20 +147,18 @@ impl VisibleTriangle {
         edges
     }
 
-    /// Normals as of [`Self::normal`], but of the side that is seen, at the pixels of a patch; and, as bits, the
-    /// pixels where the sum of their weights is [usual](USUAL_SUMS).
+    /// Normals as of [`Self::normal`], bit for bit, but of the side that is seen, at the pixels of a patch.
     #[inline(always)]
-    pub fn normals_x16<S: Simd>(&self, simd: S, patch: Patch) -> ([f32x16<S>; 3], u64) {
+    pub fn normals_x16<S: Simd>(&self, simd: S, patch: Patch) -> [f32x16<S>; 3] {
+        if self.normals.settled {
+            return self.normals.of_patch(simd, patch);
+        }
         let [a, b, c] = self.edges_x16(simd, patch);
-        let sum = a + b + c;
-        let [least, most] = USUAL_SUMS;
-        let usual = sum.simd_gt(f32x16::splat(simd, least));
-        let usual = usual & sum.simd_lt(f32x16::splat(simd, most));
-        let mut normal = [sum; 3];
+        let mut normal = [a; 3];
         for (i, to) in normal.iter_mut().enumerate() {
             *to = a * self.rows[0][i] + b * self.rows[1][i] + c * self.rows[2][i];
         }
-        (normal, usual.to_bitmask())
+        normal
     }
 
     /// Positions at the pixels of a patch, bit for bit the vertices' blended by [`Self::weights`].
@@ -200,9 +185,12 @@ impl VisibleTriangle {
         [a, b, c]
     }
 
-    /// The normal of [`Self::normals_x16`] at one pixel, bit for bit, and the sum of its weights.
+    /// The normal of [`Self::normals_x16`] at one pixel, bit for bit, and any number.
     #[inline(always)]
-    pub fn normal_and_sum<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
+    pub fn normal_x4<S: Simd>(&self, simd: S, pixel: [i32; 2]) -> f32x4<S> {
+        if self.normals.settled {
+            return self.normals.at_x4(simd, pixel);
+        }
         let [a, b, c] = self.edges_at_pixel(simd, pixel);
         let [row_a, row_b, row_c] = &self.rows;
         let row_a = f32x4::from_slice(simd, &row_a[..4]) * a;

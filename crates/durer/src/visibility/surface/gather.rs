@@ -1,80 +1,32 @@
-//! Points of several triangles side by side, so that they can be shaded in one go.
+//! Vectors at points of several triangles side by side, so that they can be shaded in one go.
 
+use crate::math::Vec3;
 use crate::shade::lane::Vec3Lane;
-use crate::visibility::surface::attributes::{USUAL_SUMS, VisibleTriangle};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f32x16, f64x8};
+use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x8};
 
-/// Up to sixteen points from anywhere; those not set hold what was there before.
-#[derive(Debug, Clone, Copy)]
-pub struct Gathered {
-    /// Of each point its normal and the sum of its weights.
-    normals: [[f32; 4]; 16],
-    /// Of each its position.
-    positions: [[f32; 4]; 16],
-    /// Unit normals of the sides that are seen, by axis.
-    faces: [[f32; 16]; 3],
-    /// Whether all triangles are settled.
-    settled: bool,
-}
-
-impl Default for Gathered {
-    /// No points.
-    fn default() -> Self {
-        Self {
-            normals: [[0.0, 0.0, 0.0, 1.0]; 16],
-            positions: [[0.0; 4]; 16],
-            faces: [[0.0; 16]; 3],
-            settled: true,
-        }
-    }
-}
+/// Vectors at up to sixteen points from anywhere; those not set are 0.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Gathered([[f32; 4]; 16]);
 
 impl Gathered {
-    /// Sets the point `lane` to that of a triangle at a pixel, with its position where that is asked for.
+    /// Sets the vector of a point; the fourth number does not matter.
     #[inline(always)]
-    pub fn set<S: Simd>(
-        &mut self,
-        simd: S,
-        lane: usize,
-        t: &VisibleTriangle,
-        pixel: [i32; 2],
-        with_position: bool,
-    ) {
-        let lane = lane % 16;
-        t.normal_and_sum(simd, pixel).store_slice(&mut self.normals[lane]);
-        if with_position {
-            t.position(simd, pixel).store_slice(&mut self.positions[lane]);
-        }
-        for (to, from) in self.faces.iter_mut().zip(t.seen_face_normal.to_array()) {
-            to[lane] = from;
-        }
-        self.settled &= t.settled;
+    pub fn set<S: Simd>(&mut self, lane: usize, vector: f32x4<S>) {
+        vector.store_slice(&mut self.0[lane % 16]);
     }
 
-    /// The normals, of any length; and whether all points are settled.
+    /// The same with three numbers.
     #[inline(always)]
-    pub fn normals<S: Simd>(&self, simd: S) -> ([f32x16<S>; 3], bool) {
-        let [x, y, z, sum] = columns(simd, &self.normals);
-        let [least, most] = USUAL_SUMS;
-        let usual = sum.simd_gt(f32x16::splat(simd, least));
-        let usual = usual & sum.simd_lt(f32x16::splat(simd, most));
-        ([x, y, z], self.settled && usual.all_true())
+    pub fn set_vector(&mut self, lane: usize, v: Vec3) {
+        self.0[lane % 16] = [v.x, v.y, v.z, 0.0];
     }
 
-    /// The positions that were asked for.
+    /// The vectors side by side.
     #[inline(always)]
-    pub fn positions<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
-        let [x, y, z, _] = columns(simd, &self.positions);
+    pub fn vectors<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
+        let [x, y, z, _] = columns(simd, &self.0);
         Vec3Lane::new(x, y, z)
-    }
-
-    /// Unit normals of the sides that are seen.
-    #[inline(always)]
-    pub fn faces<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
-        let [x, y, z] = &self.faces;
-        let (x, y) = (f32x16::from_slice(simd, x), f32x16::from_slice(simd, y));
-        Vec3Lane::new(x, y, f32x16::from_slice(simd, z))
     }
 }
 

@@ -13,6 +13,7 @@ pub(crate) mod lit;
 pub mod method;
 pub(crate) mod mixed;
 pub(crate) mod nearest;
+pub(crate) mod normal_plane;
 pub(crate) mod patch;
 pub mod picture;
 pub mod ray;
@@ -87,6 +88,11 @@ impl Samples {
             Self::Four => &FOUR,
             Self::Sixteen => &SIXTEEN,
         }
+    }
+
+    /// How far from the pixel's centre they lie at most, along x or y, in 1/256 pixel.
+    pub(crate) fn reach(self) -> i32 {
+        self.offsets().iter().flatten().map(|o| o.abs()).max().unwrap_or(0)
     }
 }
 

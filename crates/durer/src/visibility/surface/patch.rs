@@ -66,6 +66,16 @@ impl Patch {
         [self.at[0] + column as i32, self.at[1] + (lane >> shift) as i32]
     }
 
+    /// All pixels.
+    #[inline(always)]
+    pub fn pixels(self) -> [[i32; 2]; 16] {
+        let mut pixels = [self.at; 16];
+        for (lane, pixel) in pixels.iter_mut().enumerate() {
+            *pixel = self.pixel(lane);
+        }
+        pixels
+    }
+
     /// Columns and rows of the pixels, counted from a place that is given as that of the first pixel.
     #[inline(always)]
     pub fn places<S: Simd>(self, simd: S, [x, y]: [f32; 2]) -> [f32x16<S>; 2] {

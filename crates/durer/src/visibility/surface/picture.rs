@@ -52,11 +52,12 @@ pub(crate) struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
+    /// Of items that are found up to `reach`/256 pixels from pixels' centres.
     pub fn new(
         input: &'a SurfaceInput<'a>,
         materials: &'a PreparedMaterials<'a>,
         lights: &'a PreparedLights,
-        options: &Options,
+        (options, reach): (&Options, i32),
         framebuffer: &'a mut Framebuffer,
     ) -> Self {
         let lighting = Lighting {
@@ -66,6 +67,7 @@ impl<'a> Picture<'a> {
             materials,
             lights,
             shading: options.shading,
+            reach,
             level: options.level,
         };
         Self::with_lighting(lighting, options, framebuffer)

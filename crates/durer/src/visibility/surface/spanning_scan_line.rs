@@ -108,7 +108,7 @@ pub fn render(
 ) {
     let materials = PreparedMaterials::new(input.scene);
     let (width, height) = (input.view.width(), input.view.height());
-    let mut picture = Picture::new(input, &materials, lights, options, framebuffer);
+    let mut picture = Picture::new(input, &materials, lights, (options, 0), framebuffer);
     let mut list = ActiveList::new(&input.triangles, width, height);
     let mut edges = EdgeList::default();
     let mut line = Line {

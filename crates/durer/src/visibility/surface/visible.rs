@@ -101,7 +101,7 @@ impl<'a> Masks<'a> {
     }
 }
 
-/// Calls `f` with what is needed to light an input's items.
+/// Calls `f` with what is needed to light an input's items, which are found at pixels' centres.
 pub fn with_lighting<R>(
     input: &SurfaceInput<'_>,
     lights: &PreparedLights,
@@ -116,6 +116,7 @@ pub fn with_lighting<R>(
         materials: &materials,
         lights,
         shading: look.shading,
+        reach: 0,
         level: look.level,
     })
 }

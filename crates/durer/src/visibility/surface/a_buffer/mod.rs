@@ -26,6 +26,7 @@ mod resolve;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
+use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::Level;
@@ -160,7 +161,8 @@ pub fn render(
     let (width, height) = (input.view.width(), input.view.height());
     let Options { shading, background, level, .. } = *options;
     let of_picture = picture::Options { shading, background, level };
-    let mut picture = Picture::new(input, &materials, lights, &of_picture, framebuffer);
+    let mut picture =
+        Picture::new(input, &materials, lights, (&of_picture, HALF_PIXEL), framebuffer);
     let table = MaskTable::new(options.mask);
     let mut centers = Centers::new(input, &picture);
     let mut rows = Rows {

@@ -4,7 +4,7 @@
 use super::{Lit, opaque};
 use crate::shade::color::encode_opaque_x16;
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{Faces, Points, shade_lanes};
+use crate::shade::{Faces, Frame, Points, shade_frame};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
@@ -24,8 +24,10 @@ pub struct Batch {
 
 /// A patch that waits.
 struct Waiting {
-    /// By axis, of any length.
-    normals: [[f32; 16]; 3],
+    /// By axis: normals of any length, then of unit length, then colours.
+    vectors: [[f32; 16]; 3],
+    /// By axis: unit vectors to the eye, once they are known.
+    views: [[f32; 16]; 3],
     /// The items that it shows; [`NO_ITEM`] where it shows none.
     shown: [u32; 16],
     patch: Patch,
@@ -50,27 +52,25 @@ impl Batch {
         let there = shown.simd_ne(u32x16::splat(simd, NO_ITEM)).to_bitmask();
         let info = lit.run_info(items[there.trailing_zeros() as usize % 16]);
         let mine = (shown - info.first_item).simd_lt(u32x16::splat(simd, info.count));
-        if !info.plain || lit.with_positions() || mine.to_bitmask() != there {
+        let one_run = info.plain && mine.to_bitmask() == there;
+        let normal = one_run
+            .then(|| lit.settled_normals(simd, info.run, (shown, &items), there, patch))
+            .flatten();
+        let Some(normal) = normal else {
             let mut colors = [[0.0; 16]; 4];
             Lit::colors_x16(simd, lit, shown, patch, &mut colors);
             return put(simd, opaque(simd, &colors), shown, places, codes);
-        }
-        let points = lit.points(simd, info.run, (shown, &items), there, patch);
-        if let Faces::Seen(_) = points.faces {
-            let lights = lit.shared.lights;
-            let color = shade_lanes(&points, info.material, lights, info.shading);
-            return put(simd, [color.x, color.y, color.z], shown, places, codes);
-        }
+        };
         if self.waiting.len() == MOST || self.first_item != info.first_item {
             Self::flush(simd, self, lit, codes);
         }
         self.first_item = info.first_item;
-        let Vec3Lane { x, y, z } = points.normal;
-        let normals = [x.into(), y.into(), z.into()];
-        self.waiting.push(Waiting { normals, shown: items, patch, places });
+        let (vectors, views) = (stored(normal), [[0.0; 16]; 3]);
+        self.waiting.push(Waiting { vectors, views, shown: items, patch, places });
     }
 
-    /// Lights what waits.
+    /// Lights what waits, in three loops: a processor looks ahead by less than what there is to do for one patch,
+    /// but by several patches of a third of it.
     #[simd]
     pub fn flush<S: Simd>(simd: S, this: &mut Self, lit: &mut Lit<'_>, codes: &mut [u32]) {
         if this.waiting.is_empty() {
@@ -78,18 +78,35 @@ impl Batch {
         }
         let info = lit.run_info(this.first_item);
         let (sight, lights) = (lit.sight, lit.shared.lights);
-        for Waiting { normals: [x, y, z], shown, patch, places } in &this.waiting {
-            let (x, y) = (f32x16::from_slice(simd, x), f32x16::from_slice(simd, y));
-            let normal = Vec3Lane::new(x, y, f32x16::from_slice(simd, z));
-            let view = sight.towards_eye_x16(simd, *patch);
+        for Waiting { vectors, views, patch, .. } in &mut this.waiting {
+            let (view, normal) = (sight.towards_eye_x16(simd, *patch), loaded(simd, vectors));
             // Nobody asks for positions.
             let points = Points { position: view, view, normal, faces: Faces::Settled };
-            let color = shade_lanes(&points, info.material, lights, info.shading);
-            let shown = u32x16::from_slice(simd, shown);
-            put(simd, [color.x, color.y, color.z], shown, *places, codes);
+            let frame = points.frame();
+            (*vectors, *views) = (stored(frame.normal), stored(frame.view));
+        }
+        for Waiting { vectors, views, .. } in &mut this.waiting {
+            let (normal, view) = (loaded(simd, vectors), loaded(simd, views));
+            let frame = Frame { view, face: normal, normal };
+            *vectors = stored(shade_frame(&frame, view, info.material, lights, info.shading));
+        }
+        for Waiting { vectors, shown, places, .. } in &this.waiting {
+            let Vec3Lane { x, y, z } = loaded(simd, vectors);
+            put(simd, [x, y, z], u32x16::from_slice(simd, shown), *places, codes);
         }
         this.waiting.clear();
     }
+}
+
+#[inline(always)]
+fn stored<S: Simd>(v: Vec3Lane<f32x16<S>>) -> [[f32; 16]; 3] {
+    [v.x.into(), v.y.into(), v.z.into()]
+}
+
+#[inline(always)]
+fn loaded<S: Simd>(simd: S, [x, y, z]: &[[f32; 16]; 3]) -> Vec3Lane<f32x16<S>> {
+    let (x, y) = (f32x16::from_slice(simd, x), f32x16::from_slice(simd, y));
+    Vec3Lane::new(x, y, f32x16::from_slice(simd, z))
 }
 
 /// Writes the codes of colours where an item is shown.

@@ -21,7 +21,7 @@ use crate::view::View;
 use crate::visibility::surface::attributes::{VisibleTriangle, Weights, blend, run_of};
 use crate::visibility::surface::setup::Run;
 use crate::visibility::surface::sight::Sight;
-use crate::visibility::surface::triangles::{OF_ROWS, OF_TILES, Triangles, parallel_view};
+use crate::visibility::surface::triangles::{OF_ROWS, OF_TILES, Part, Triangles, parallel_view};
 
 /// Sets of texture coordinates that are looked at.
 const TEX_COORD_SETS: usize = 4;
@@ -35,6 +35,8 @@ pub struct Lighting<'a> {
     pub materials: &'a PreparedMaterials<'a>,
     pub lights: &'a PreparedLights,
     pub shading: Option<Shading>,
+    /// How far from pixels' centres items may be found that are then lit there, in 1/256 pixel.
+    pub reach: i32,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
 }
@@ -91,6 +93,8 @@ pub enum Seen {
 pub struct Lit<'a> {
     shared: Lighting<'a>,
     triangles: Triangles<'a>,
+    /// What lighting several pixels of plain materials asks of their triangles.
+    part: Part,
     /// The run of the latest item.
     latest: Option<RunInfo<'a>>,
     /// Towards the eye where projection lines are parallel.
@@ -114,8 +118,12 @@ impl<'a> Lit<'a> {
 
     fn keeping(shared: Lighting<'a>, kept: usize) -> Self {
         let (parallel_view, sight) = (parallel_view(shared.view), Sight::new(shared.view));
-        let triangles = Triangles::new(shared.scene, shared.view, shared.runs, shared.level, kept);
-        Self { shared, triangles, latest: None, parallel_view, sight, reflected: None }
+        let Lighting { scene, view, runs, reach, level, .. } = shared;
+        let triangles = Triangles::new(scene, view, runs, level, (kept, reach));
+        // Lights ask where points lie, or shadows which way their faces look.
+        let more = !shared.lights.shadows.is_empty() || !shared.lights.points.is_empty();
+        let part = if more { Part::All } else { Part::Normals };
+        Self { shared, triangles, part, latest: None, parallel_view, sight, reflected: None }
     }
 
     /// The run of an item, and what it is made of.
@@ -167,9 +175,10 @@ impl<'a> Lit<'a> {
     /// time is faster than each when it is needed.
     #[inline(always)]
     pub fn expect(&mut self, item: u32) {
-        if !self.triangles.has(item) {
-            let run = self.run_info(item).run;
-            self.triangles.want(item, run);
+        let info = self.run_info(item);
+        let part = if info.plain { self.part } else { Part::All };
+        if !self.triangles.has(item, part) {
+            self.triangles.want(item, info.run, part);
         }
     }
 
@@ -235,7 +244,7 @@ impl<'a> Lit<'a> {
     pub fn normal(&mut self, item: u32, x: i32, y: i32) -> Vec3 {
         let (view, run) = (self.sight.towards_eye([x, y]), self.run_info(item).run);
         let t = self.triangles.get(item, run);
-        let normal = t.normal(x, y).normalize_or(t.seen_face_normal);
+        let normal = t.normal_within(x, y).normalize_or(t.seen_face_normal);
         if normal.dot(view) < 0.0 { -normal } else { normal }
     }
 
@@ -264,7 +273,9 @@ impl<'a> Lit<'a> {
                 let view = sight.towards_eye([x, y]);
                 (t.weights(x, y, [0.0; 2]), view, t.normal(x, y), t.seen_face_normal)
             }
-            Seen::Point { weights: w, view } => (w, view, blend(&t.normals(), w), t.face_normal()),
+            Seen::Point { weights: w, view } => {
+                (w, view, blend(&t.corner_normals(), w), t.face_normal())
+            }
         };
         let position = blend(&t.positions(), w);
         let mut tex_coords = [TexCoord::default(); TEX_COORD_SETS];
@@ -328,7 +339,7 @@ impl<'a> Lit<'a> {
             let centroid = (a + b + c) / 3.0;
             [shade_face(centroid, view(centroid), t.face_normal(), material, lights); 3]
         } else {
-            let (positions, normals) = (t.positions(), t.normals());
+            let (positions, normals) = (t.positions(), t.corner_normals());
             [0, 1, 2].map(|i| {
                 let (p, n) = (positions[i], normals[i]);
                 shade_vertex(p, view(p), n, t.face_normal(), material, lights)

@@ -1,8 +1,8 @@
 //! Items at pixels from anywhere, that are lit when there are enough of them.
 
 use super::Lit;
-use crate::shade::shade_points;
-use crate::visibility::surface::gather::Gathered;
+use crate::shade::{Faces, Points, shade_points};
+use crate::visibility::surface::triangles::Part;
 use fearless_simd::Simd;
 
 /// Whether an item has been queued.
@@ -55,13 +55,16 @@ impl Lit<'_> {
         let items = &queue.items[..queue.count.min(QUEUE)];
         items.iter().for_each(|&item| self.expect(item));
         self.make_ready();
-        let (mut gathered, with_positions) = (Gathered::default(), self.with_positions());
-        for (i, (&item, &pixel)) in items.iter().zip(&queue.pixels).enumerate() {
-            let t = self.triangles.get(item, info.run);
-            gathered.set(simd, i, t, pixel, with_positions);
-        }
-        let view = self.sight.towards_eye_of(simd, &queue.pixels);
-        let points = self.gathered_points(simd, &gathered, view);
+        let (run, there, pixels) = (info.run, (1 << items.len()) - 1, &queue.pixels);
+        let settled = match self.part {
+            Part::All => None,
+            Part::Normals => self.settled_by_pixel(simd, run, &queue.items, there, pixels),
+        };
+        let view = self.sight.towards_eye_of(simd, pixels);
+        let points = match settled {
+            Some(normal) => Points { position: view, view, normal, faces: Faces::Settled },
+            None => self.points_by_pixel(simd, run, &queue.items, there, (pixels, view)),
+        };
         shade_points(simd, &points, info.material, self.shared.lights, info.shading)
     }
 }

@@ -8,8 +8,10 @@ use crate::shade::{
 };
 use crate::target::NO_ITEM;
 use crate::visibility::surface::gather::Gathered;
+use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
+use crate::visibility::surface::triangles::Part;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 use fearless_simd_macros::simd;
@@ -85,35 +87,31 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Linear red, green and blue of one item at the pixels of a patch, of which `there` tells where it shows; `None`
-    /// where its material asks for more than [`shade_points`].
+    /// Linear red, green and blue of one item at the pixels of a patch; `None` where its material asks for more than
+    /// [`shade_points`].
     #[inline(always)]
     pub fn colors_of_one_x16<S: Simd>(
         &mut self,
         simd: S,
         item: u32,
-        there: u64,
         patch: Patch,
     ) -> Option<[[f32; 16]; 3]> {
         let info = self.run_info(item);
         if !info.plain {
             return None;
         }
-        let (with_positions, with_shadows) = (self.with_positions(), self.with_shadows());
         let view = self.sight.towards_eye_x16(simd, patch);
-        let t = self.triangles.get(item, info.run);
-        let ([x, y, z], usual) = t.normals_x16(simd, patch);
-        let mut position = view;
-        if with_positions {
-            let [x, y, z] = t.positions_x16(simd, patch);
-            position = Vec3Lane::new(x, y, z);
-        }
-        let faces = if !with_shadows && t.settled && there & !usual == 0 {
-            Faces::Settled
-        } else {
-            Faces::Seen(Vec3Lane::splat(x, t.seen_face_normal))
+        let points = match self.settled_plane(item, info.run) {
+            Some(normals) => {
+                let [x, y, z] = normals.of_patch(simd, patch);
+                let normal = Vec3Lane::new(x, y, z);
+                Points { position: view, view, normal, faces: Faces::Settled }
+            }
+            None => {
+                let shown = (u32x16::splat(simd, item), &[item; 16]);
+                self.points_by_triangle(simd, info.run, shown, 0xffff, (patch, view))
+            }
         };
-        let points = Points { position, view, normal: Vec3Lane::new(x, y, z), faces };
         let lights = self.shared.lights;
         Some(shade_points(simd, &points, info.material, lights, info.shading))
     }
@@ -233,9 +231,18 @@ impl<'a> Lit<'a> {
         all
     }
 
+    /// The normals of an item, where they are settled and nobody asks for more.
+    #[inline(always)]
+    fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
+        match self.part {
+            Part::All => None,
+            Part::Normals => Some(self.triangles.normals(item, run)).filter(|n| n.settled),
+        }
+    }
+
     /// Whether lights ask where points lie.
     #[inline(always)]
-    pub(super) fn with_positions(&self) -> bool {
+    fn with_positions(&self) -> bool {
         self.with_shadows() || !self.shared.lights.points.is_empty()
     }
 
@@ -247,57 +254,110 @@ impl<'a> Lit<'a> {
 
     /// The points that the pixels of a set show, all of one run.
     #[inline(always)]
-    pub(super) fn points<S: Simd>(
+    fn points<S: Simd>(
+        &mut self,
+        simd: S,
+        run: usize,
+        shown: (u32x16<S>, &[u32; 16]),
+        there: u64,
+        patch: Patch,
+    ) -> Points<f32x16<S>> {
+        let view = self.sight.towards_eye_x16(simd, patch);
+        if let Some(normal) = self.settled_normals(simd, run, shown, there, patch) {
+            Points { position: view, view, normal, faces: Faces::Settled }
+        } else if patch.shows_few(simd, shown.0) {
+            self.points_by_triangle(simd, run, shown, there, (patch, view))
+        } else {
+            self.points_by_pixel(simd, run, shown.1, there, (&patch.pixels(), view))
+        }
+    }
+
+    /// The normals, where all are settled and nobody asks for more.
+    #[inline(always)]
+    pub(super) fn settled_normals<S: Simd>(
         &mut self,
         simd: S,
         run: usize,
         (shown, items): (u32x16<S>, &[u32; 16]),
         there: u64,
         patch: Patch,
-    ) -> Points<f32x16<S>> {
-        if patch.shows_few(simd, shown) {
-            self.points_by_triangle(simd, run, (shown, items), there, patch)
-        } else {
-            self.points_by_pixel(simd, run, items, there, patch)
+    ) -> Option<Vec3Lane<f32x16<S>>> {
+        if self.part == Part::All {
+            return None;
         }
+        if !patch.shows_few(simd, shown) {
+            return self.settled_by_pixel(simd, run, items, there, &patch.pixels());
+        }
+        let mut normal = [f32x16::splat(simd, 0.0); 3];
+        let mut left = there;
+        while left != 0 {
+            let item = items[left.trailing_zeros() as usize % 16];
+            let same = shown.simd_eq(u32x16::splat(simd, item));
+            left &= !same.to_bitmask();
+            let normals = self.triangles.normals(item, run);
+            if !normals.settled {
+                return None;
+            }
+            let of_item = normals.of_patch(simd, patch);
+            for (to, from) in normal.iter_mut().zip(of_item) {
+                *to = same.select(from, *to);
+            }
+        }
+        let [x, y, z] = normal;
+        Some(Vec3Lane::new(x, y, z))
     }
 
-    /// The points: each gathered from its triangle.
+    /// The same of any pixels, each gathered from its triangle.
     #[inline(always)]
-    fn points_by_pixel<S: Simd>(
+    pub(super) fn settled_by_pixel<S: Simd>(
         &mut self,
         simd: S,
         run: usize,
         items: &[u32; 16],
         mut left: u64,
-        patch: Patch,
+        pixels: &[[i32; 2]; 16],
+    ) -> Option<Vec3Lane<f32x16<S>>> {
+        let mut gathered = Gathered::default();
+        while left != 0 {
+            let i = left.trailing_zeros() as usize % 16;
+            left &= left - 1;
+            let normals = self.triangles.normals(items[i], run);
+            if !normals.settled {
+                return None;
+            }
+            gathered.set(i, normals.at_x4(simd, pixels[i]));
+        }
+        Some(gathered.vectors(simd))
+    }
+
+    /// The points: each gathered from its triangle.
+    #[inline(always)]
+    pub(super) fn points_by_pixel<S: Simd>(
+        &mut self,
+        simd: S,
+        run: usize,
+        items: &[u32; 16],
+        there: u64,
+        (pixels, view): (&[[i32; 2]; 16], Vec3Lane<f32x16<S>>),
     ) -> Points<f32x16<S>> {
-        let (mut gathered, with_positions) = (Gathered::default(), self.with_positions());
+        let (mut normals, mut positions) = (Gathered::default(), Gathered::default());
+        let mut faces = Gathered::default();
+        let with_positions = self.with_positions();
+        let (mut settled, mut left) = (!self.with_shadows(), there);
         while left != 0 {
             let i = left.trailing_zeros() as usize % 16;
             left &= left - 1;
             let t = self.triangles.get(items[i], run);
-            gathered.set(simd, i, t, patch.pixel(i), with_positions);
+            settled &= t.normals.settled;
+            normals.set(i, t.normal_x4(simd, pixels[i]));
+            faces.set_vector(i, t.seen_face_normal);
+            if with_positions {
+                positions.set(i, t.position(simd, pixels[i]));
+            }
         }
-        self.gathered_points(simd, &gathered, self.sight.towards_eye_x16(simd, patch))
-    }
-
-    /// Points with their directions to the eye.
-    #[inline(always)]
-    pub(super) fn gathered_points<S: Simd>(
-        &self,
-        simd: S,
-        gathered: &Gathered,
-        view: Vec3Lane<f32x16<S>>,
-    ) -> Points<f32x16<S>> {
-        let ([x, y, z], settled) = gathered.normals(simd);
-        let faces = if settled && !self.with_shadows() {
-            Faces::Settled
-        } else {
-            Faces::Seen(gathered.faces(simd))
-        };
-        let position = if self.with_positions() { gathered.positions(simd) } else { view };
-        Points { position, view, normal: Vec3Lane::new(x, y, z), faces }
+        let position = if with_positions { positions.vectors(simd) } else { view };
+        let faces = if settled { Faces::Settled } else { Faces::Seen(faces.vectors(simd)) };
+        Points { position, view, normal: normals.vectors(simd), faces }
     }
 
     /// The points: of each triangle at all pixels, of which those that show it are taken.
@@ -308,22 +368,19 @@ impl<'a> Lit<'a> {
         run: usize,
         (shown, items): (u32x16<S>, &[u32; 16]),
         there: u64,
-        patch: Patch,
+        (patch, view): (Patch, Vec3Lane<f32x16<S>>),
     ) -> Points<f32x16<S>> {
         let with_positions = self.with_positions();
-        let view = self.sight.towards_eye_x16(simd, patch);
         let (mut normal, mut position) = ([view.x; 3], [view.x; 3]);
-        let mut settled = !self.with_shadows();
-        let mut left = there;
+        let (mut settled, mut left) = (!self.with_shadows(), there);
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 16];
             let same = shown.simd_eq(u32x16::splat(simd, item));
-            let bits = same.to_bitmask();
-            left &= !bits;
+            left &= !same.to_bitmask();
             let t = self.triangles.get(item, run);
-            let (of_t, usual) = t.normals_x16(simd, patch);
-            settled &= t.settled && bits & !usual == 0;
-            for (to, from) in normal.iter_mut().zip(of_t) {
+            settled &= t.normals.settled;
+            let of_item = t.normals_x16(simd, patch);
+            for (to, from) in normal.iter_mut().zip(of_item) {
                 *to = same.select(from, *to);
             }
             if with_positions {

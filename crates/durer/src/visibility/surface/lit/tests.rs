@@ -130,7 +130,7 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) {
                 let code = [0, 1, 2].map(|k| encode_srgb8(color[k]));
                 expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
                 // The whole patch of its triangle.
-                let of_one = lit.colors_of_one_x16(simd, items[i], 1 << i, patch).expect("plain");
+                let of_one = lit.colors_of_one_x16(simd, items[i], patch).expect("plain");
                 let of_one = [of_one[0], of_one[1], of_one[2], [1.0; 16]];
                 let mut only = [NO_ITEM; 16];
                 only[i] = items[i];
@@ -176,6 +176,7 @@ fn pixels_are_lit_alike_alone_and_together() {
                     materials: &materials,
                     lights: &lights,
                     shading: None,
+                    reach: 128,
                     level,
                 };
                 let (mut lit, mut numbers) = (Lit::new(lighting), Numbers(11));

@@ -128,6 +128,7 @@ pub fn render(
         Step::Begin
     });
     with_lighting(input, lights, &options.look, |lighting| {
+        let lighting = Lighting { reach: options.samples.reach(), ..lighting };
         let rays = ScreenRays::new(&input.triangles, input.view);
         let secondary = options.shadows || options.reflections;
         let world = secondary.then(|| WorldTriangles::new(input));

@@ -116,7 +116,7 @@ impl<'a> Whitted<'a> {
         let face_normal = t.face_normal();
         let front = face_normal.dot(view) >= 0.0;
         let face_normal = if front { face_normal } else { -face_normal };
-        let normal = blend(&t.normals(), weights).normalize_or(face_normal);
+        let normal = blend(&t.corner_normals(), weights).normalize_or(face_normal);
         let normal = if normal.dot(view) < 0.0 { -normal } else { normal };
         let position = blend(&t.positions(), weights);
         Point { item, seen, position, view, normal, face_normal, front }

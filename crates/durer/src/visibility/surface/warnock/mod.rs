@@ -16,6 +16,7 @@ mod glass;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
+use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::PreparedLights;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
@@ -131,6 +132,8 @@ pub fn render(
     t: &mut impl Tracer<Step>,
 ) {
     with_lighting(input, lights, &options.look, |lighting| {
+        let reach = if options.sub_levels == 0 { 0 } else { HALF_PIXEL };
+        let lighting = Lighting { reach, ..lighting };
         let blended = input.having(Coverage::Blended);
         if !blended.is_empty() {
             return glass::render(input, lighting, blended, options, framebuffer, t);

@@ -101,8 +101,7 @@ pub fn render(
 ) -> crate::Result<Report> {
     let start = std::time::Instant::now();
     let runs = runs(scene)?;
-    let offsets = options.samples.offsets();
-    let reach = offsets.iter().flatten().map(|o| o.abs()).max().unwrap_or(0);
+    let reach = options.samples.reach();
     let filter = Filter { cull: options.cull, sample_reach: reach };
     let bins = crate::parallel::map(jobs(&runs), |job| {
         Bins::new(&job, &runs, scene, view, filter, options.level)
@@ -122,6 +121,7 @@ pub fn render(
         materials: &materials,
         lights,
         shading: options.shading,
+        reach,
         level: options.level,
     };
     let triangle_count = scene.triangle_count() as u32;

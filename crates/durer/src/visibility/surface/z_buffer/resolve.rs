@@ -220,11 +220,10 @@ fn resolve_block<S: Simd>(
     while let Some(k) = (0..count).find(|&k| left[k] != 0) {
         let items: [u32; 16] = samples[k].into();
         let item = items[left[k].trailing_zeros() as usize % 16];
-        let (mut weight, mut there) = (zero, 0);
+        let mut weight = zero;
         for (sample, left) in samples.iter().zip(&mut left) {
             let same = sample.simd_eq(u32x16::splat(simd, item));
             weight += same.select(share, zero);
-            there |= same.to_bitmask();
             *left &= !same.to_bitmask();
         }
         let mut colors = [zero; 3];
@@ -235,7 +234,7 @@ fn resolve_block<S: Simd>(
                 *to = simd.combine_f32x8(above, below);
             }
         } else {
-            let shaded = lit.colors_of_one_x16(simd, item, there, patch)?;
+            let shaded = lit.colors_of_one_x16(simd, item, patch)?;
             for (to, from) in colors.iter_mut().zip(&shaded) {
                 *to = f32x16::from_slice(simd, from);
             }

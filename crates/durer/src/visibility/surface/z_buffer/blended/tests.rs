@@ -80,6 +80,7 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
             materials: &materials,
             lights: &lights,
             shading: None,
+            reach: samples.reach(),
             level,
         };
         let (mut lit, area) = (Lit::new(lighting), [[0, 0], [64, 64]]);

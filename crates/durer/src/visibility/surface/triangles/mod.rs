@@ -1,0 +1,252 @@
+//! Visible triangles by item: made ready to be interpolated eight at a time, the latest ones kept, for
+//! neighbours share them.
+//!
+//! Most pixels ask for normals alone; then a [`NormalPlane`] is all that is made of a triangle.
+
+mod prepare;
+
+use crate::math::{DMat3, DMat4, Mat3, Vec3};
+use crate::raster::fixed::SUBPIXELS;
+use crate::scene::{Projection, Scene, Topology};
+use crate::simd::Level;
+use crate::view::View;
+use crate::visibility::surface::attributes::VisibleTriangle;
+use crate::visibility::surface::normal_plane::NormalPlane;
+use crate::visibility::surface::setup::Run;
+use fearless_simd::dispatch;
+use prepare::{prepare, prepare_normals};
+
+/// What all triangles of a run share.
+#[derive(Debug, Clone, Copy)]
+struct RunTransform {
+    run: usize,
+    screen_from_mesh: DMat4,
+    eye_from_mesh: DMat4,
+    normal_from_mesh: Mat3,
+    /// −1 where the instance mirrors, so that fronts stay fronts.
+    handedness: f64,
+    /// All that is seen has at least this w.
+    least_w: f64,
+    /// By how much edge functions may change from one pixel to the next for a triangle to be settled.
+    most_change: f32,
+}
+
+/// Finds visible triangles by item; keeps the latest ones.
+pub struct Triangles<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    runs: &'a [Run],
+    level: Level,
+    /// By how much edge functions may change from one pixel to the next for a triangle to be settled.
+    most_change: f32,
+    transform: Option<RunTransform>,
+    /// As many as of `normals`.
+    kept: Box<[VisibleTriangle]>,
+    /// A power of two.
+    normals: Box<[NormalPlane]>,
+    wanted: Wanted,
+    /// Whether all of the latest were settled.
+    settled: bool,
+}
+
+/// How many triangles are kept for pictures made tile by tile: about 200 kB, as many as a tile of a fine mesh
+/// shows.
+pub const OF_TILES: usize = 1 << 10;
+
+/// How many are kept for pictures made row by row, about 800 kB: a row shows more than a tile, and most of them
+/// again in the next.
+pub const OF_ROWS: usize = 1 << 12;
+
+/// What of an item is to be made ready.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Part {
+    /// A [`NormalPlane`]; the rest only where one of several is not settled.
+    #[default]
+    Normals,
+    /// A [`VisibleTriangle`], with the normals in it.
+    All,
+}
+
+/// Items of one run of which the same part is to be made ready; their places are already theirs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Wanted {
+    items: [u32; 8],
+    /// Their vertices in the mesh: read when they are wanted, for where they lie is asked for soon after, and
+    /// neither is in the cache.
+    corners: [[u32; 3]; 8],
+    count: usize,
+    run: usize,
+    part: Part,
+}
+
+/// Undivided weights of a settled triangle are at least minus this wherever a sample of its pixels may be.
+const LEAST_WEIGHT: f32 = 0.5;
+
+impl<'a> Triangles<'a> {
+    /// Keeps as many as `kept`, a power of two; samples are up to `reach`/256 pixels from pixels' centres.
+    pub fn new(
+        scene: &'a Scene,
+        view: &'a View,
+        runs: &'a [Run],
+        level: Level,
+        (kept, reach): (usize, i32),
+    ) -> Self {
+        // Vertices were rounded to 1/256 pixel before samples were found in their triangles.
+        let most_change = LEAST_WEIGHT * SUBPIXELS as f32 / (reach + 1) as f32;
+        let normals = vec![NormalPlane::default(); kept].into_boxed_slice();
+        let kept = vec![VisibleTriangle::default(); kept].into_boxed_slice();
+        Self {
+            scene,
+            view,
+            runs,
+            level,
+            most_change,
+            transform: None,
+            kept,
+            normals,
+            wanted: Wanted::default(),
+            settled: true,
+        }
+    }
+
+    /// The triangle of an item that the rasterizer has drawn.
+    #[inline(always)]
+    pub fn get(&mut self, item: u32, run: usize) -> &VisibleTriangle {
+        if !self.has(item, Part::All) {
+            self.want(item, run, Part::All);
+            self.make_ready();
+        }
+        &self.kept[place(item, &self.kept)]
+    }
+
+    /// Its normals.
+    #[inline(always)]
+    pub fn normals(&mut self, item: u32, run: usize) -> &NormalPlane {
+        if !self.has(item, Part::Normals) {
+            self.want(item, run, Part::Normals);
+            self.make_ready();
+        }
+        &self.normals[place(item, &self.normals)]
+    }
+
+    /// Whether a part of an item is kept or wanted.
+    #[inline(always)]
+    pub fn has(&self, item: u32, part: Part) -> bool {
+        match part {
+            Part::Normals => self.normals[place(item, &self.normals)].item == item,
+            Part::All => self.kept[place(item, &self.kept)].normals.item == item,
+        }
+    }
+
+    /// Has a part of an item made ready, at the latest by [`Self::make_ready`], which comes before [`Self::get`] and
+    /// [`Self::normals`].
+    #[inline(never)]
+    pub fn want(&mut self, item: u32, run: usize, part: Part) {
+        let Wanted { items, count, run: of, part: of_part, .. } = &self.wanted;
+        if *count == items.len() || *of != run || *of_part != part {
+            self.make_ready();
+        }
+        (self.wanted.run, self.wanted.part) = (run, part);
+        self.wanted.items[self.wanted.count] = item;
+        self.wanted.corners[self.wanted.count] = self.corners(item, run);
+        self.wanted.count += 1;
+        match part {
+            Part::Normals => self.normals[place(item, &self.normals)].item = item,
+            Part::All => self.kept[place(item, &self.kept)].normals.item = item,
+        }
+    }
+
+    /// The vertices of an item in its mesh; of a line its ends and the first again.
+    fn corners(&self, item: u32, run: usize) -> [u32; 3] {
+        let run = &self.runs[run];
+        let mesh = &self.scene.meshes[run.mesh];
+        let primitive = (run.range.start + (item - run.first_item)) as usize;
+        if mesh.topology == Topology::Triangles {
+            return mesh.triangle(primitive);
+        }
+        let [a, b] = mesh.line_or_point(primitive);
+        [a, b, a]
+    }
+
+    /// Makes all items ready that are wanted.
+    pub fn make_ready(&mut self) {
+        let Wanted { mut items, mut corners, count, run: index, part } = self.wanted;
+        if count == 0 {
+            return;
+        }
+        self.wanted.count = 0;
+        for i in count..8 {
+            (items[i], corners[i]) = (items[0], corners[0]);
+        }
+        let mesh = &self.scene.meshes[self.runs[index].mesh];
+        if self.transform.as_ref().is_none_or(|t| t.run != index) {
+            let run = &self.runs[index];
+            let new = RunTransform::new(index, run, self.scene, self.view, self.most_change);
+            self.transform = Some(new);
+        }
+        let Some(t) = &self.transform else { return };
+        let (of, kept, normals) = ((&items, &corners), &mut *self.kept, &mut *self.normals);
+        let (first, settled) = (part == Part::Normals && self.settled, &mut self.settled);
+        dispatch!(self.level, simd => {
+            if first {
+                *settled = prepare_normals(simd, t, mesh, of, normals);
+            }
+            if !(first && *settled) {
+                prepare(simd, t, mesh, of, kept);
+            }
+        });
+        if part == Part::Normals && !first {
+            // Where some are not settled, more are not that follow, and all would be made ready twice.
+            self.settled = true;
+            for item in items {
+                let of_item = self.kept[place(item, &self.kept)].normals;
+                self.settled &= of_item.settled;
+                self.normals[place(item, &self.normals)] = of_item;
+            }
+        }
+    }
+}
+
+/// Towards the eye where projection lines are parallel, world axes.
+pub fn parallel_view(view: &View) -> Option<Vec3> {
+    let camera = view.camera();
+    match camera.projection {
+        Projection::Perspective { .. } => None,
+        Projection::Orthographic { .. } => Some(camera.axes()[2].as_vec3()),
+    }
+}
+
+#[inline(always)]
+fn place<T>(item: u32, kept: &[T]) -> usize {
+    item as usize & (kept.len() - 1)
+}
+
+impl RunTransform {
+    fn new(index: usize, run: &Run, scene: &Scene, view: &View, most_change: f32) -> Self {
+        let world_from_mesh = scene.instances[run.instance].world_from_mesh;
+        let eye_from_world = DMat4::from_translation(-view.camera().eye);
+        let linear = DMat3::from_mat4(world_from_mesh);
+        let determinant = linear.determinant();
+        // The cofactor matrix takes normals along, also where the inverse does not exist.
+        let cofactors = DMat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        );
+        let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
+        let largest = cofactors.to_cols_array().into_iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let scale = if largest > 0.0 { sign / largest } else { 1.0 };
+        Self {
+            run: index,
+            screen_from_mesh: view.screen_from_world() * world_from_mesh,
+            eye_from_mesh: eye_from_world * world_from_mesh,
+            normal_from_mesh: (cofactors * scale).as_mat3(),
+            handedness: sign,
+            least_w: match view.camera().projection {
+                Projection::Perspective { .. } => view.camera().near,
+                Projection::Orthographic { .. } => 1.0,
+            },
+            most_change,
+        }
+    }
+}
