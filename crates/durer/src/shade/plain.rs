@@ -58,22 +58,11 @@ pub fn shade_points<S: Simd>(
     lights: &PreparedLights,
     shading: Shading,
 ) -> [[f32; 16]; 3] {
-    let color = shade_lanes(points, material, lights, shading);
+    let color = shade_frame(&points.frame(), points.position, material, lights, shading);
     [color.x.into(), color.y.into(), color.z.into()]
 }
 
-/// [`shade_points`], to become part of the loop that calls it.
-#[inline(always)]
-pub(crate) fn shade_lanes<L: Lane>(
-    points: &Points<L>,
-    material: &PreparedMaterial<'_>,
-    lights: &PreparedLights,
-    shading: Shading,
-) -> Vec3Lane<L> {
-    shade_frame(&points.frame(), points.position, material, lights, shading)
-}
-
-/// The second half of [`shade_lanes`]: what comes after [`Points::frame`].
+/// The second half of [`shade_points`], which comes after [`Points::frame`], to become part of the loop that calls it.
 #[inline(always)]
 pub(crate) fn shade_frame<L: Lane>(
     frame: &Frame<L>,

@@ -98,9 +98,25 @@ fn bits(colors: &[[f32; 16]; 4], items: &[u32; 16]) -> Bits {
     shown.map(|i| [0, 1, 2].map(|k| colors[k][i].to_bits())).collect()
 }
 
-/// In every way, what each pixel of patches shows.
-fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) {
-    let mut batch = Batch::default();
+/// Whether an item may be lit at a pixel: normals of settled triangles are only good where the triangle is.
+fn may_be_lit(lit: &mut Lit<'_>, item: u32, [x, y]: [i32; 2]) -> bool {
+    let t = lit.triangle(item);
+    let ([constant, dx, dy], [x, y]) = t.edge_functions(x, y);
+    !t.normals.settled || (0..3).all(|i| dx[i] * x + dy[i] * y + constant[i] >= -0.1)
+}
+
+/// The pixel in the middle of an item.
+fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
+    let [a, b, c] = lit.triangle(item).positions();
+    let view = lit.shared.view;
+    let at = (a + b + c).as_dvec3() / 3.0 + view.camera().eye;
+    let at = view.screen_from_world() * at.extend(1.0);
+    [at.x / at.w, at.y / at.w].map(|v| v as i32)
+}
+
+/// In every way, what each pixel of patches shows; gives how many of those pixels are settled.
+fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
+    let (mut batch, mut settled) = (Batch::default(), 0);
     let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);
     for k in 0..64 {
         // As many triangles as a patch may show, of one run or of both.
@@ -114,10 +130,19 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) {
             }
             *to = if numbers.below(9) == 0 { NO_ITEM } else { item };
         }
-        items[3] = item;
-        let at = [numbers.below(90) as i32, numbers.below(60) as i32];
-        let shown = u32x16::from_slice(simd, &items);
+        let [x, y] = middle(lit, item);
+        let at = [x - numbers.below(8) as i32, y - numbers.below(2) as i32];
         for patch in [Patch::row(at), Patch::block(at)] {
+            let mut items = items;
+            for (i, item) in items.iter_mut().enumerate() {
+                if *item != NO_ITEM && !may_be_lit(lit, *item, patch.pixel(i)) {
+                    *item = NO_ITEM;
+                }
+            }
+            if items == [NO_ITEM; 16] {
+                continue;
+            }
+            let shown = u32x16::from_slice(simd, &items);
             let mut together = [[0.0; 16]; 4];
             Lit::colors_x16(simd, lit, shown, patch, &mut together);
             let mut one_by_one = [[0.0; 16]; 4];
@@ -128,7 +153,10 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) {
                     channel[i] = value;
                 }
                 let code = [0, 1, 2].map(|k| encode_srgb8(color[k]));
-                expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
+                settled += usize::from(lit.triangle(items[i]).normals.settled);
+                if patch == Patch::block(at) {
+                    expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
+                }
                 // The whole patch of its triangle.
                 let of_one = lit.colors_of_one_x16(simd, items[i], patch).expect("plain");
                 let of_one = [of_one[0], of_one[1], of_one[2], [1.0; 16]];
@@ -147,11 +175,14 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) {
                 let color = [0, 1, 2].map(|k| queued[k][last].to_bits());
                 assert_eq!(color, [0, 1, 2].map(|k| one_by_one[k][i].to_bits()));
             }
+            if patch == Patch::block(at) {
+                batch.light(simd, lit, shown, patch, [16 * k, 16 * k + 8], &mut codes);
+            }
         }
-        batch.light(simd, lit, shown, Patch::block(at), [16 * k, 16 * k + 8], &mut codes);
     }
     Batch::flush(simd, &mut batch, lit, &mut codes);
     assert_eq!(codes, expected);
+    settled
 }
 
 #[test]
@@ -168,7 +199,7 @@ fn pixels_are_lit_alike_alone_and_together() {
         let camera = Camera { eye: EYE, target, up, projection, near: 0.1, far: 10.0 };
         let view = View::new(camera, 96, 64).expect("view");
         for lights in [PreparedLights::auto(&camera), PreparedLights::new(&[lamp], &camera)] {
-            for level in levels() {
+            for (level, reach) in levels().into_iter().flat_map(|l| [(l, 0), (l, 128)]) {
                 let lighting = Lighting {
                     scene: &scene,
                     view: &view,
@@ -176,11 +207,12 @@ fn pixels_are_lit_alike_alone_and_together() {
                     materials: &materials,
                     lights: &lights,
                     shading: None,
-                    reach: 128,
+                    reach,
                     level,
                 };
                 let (mut lit, mut numbers) = (Lit::new(lighting), Numbers(11));
-                dispatch!(level, simd => light_all(simd, &mut lit, &mut numbers));
+                let settled = dispatch!(level, simd => light_all(simd, &mut lit, &mut numbers));
+                assert!(settled > 100, "{settled}");
             }
         }
     }

@@ -4,6 +4,8 @@
 //! Most pixels ask for normals alone; then a [`NormalPlane`] is all that is made of a triangle.
 
 mod prepare;
+#[cfg(test)]
+mod tests;
 
 use crate::math::{DMat3, DMat4, Mat3, Vec3};
 use crate::raster::fixed::SUBPIXELS;

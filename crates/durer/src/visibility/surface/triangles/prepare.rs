@@ -323,13 +323,18 @@ fn gentle<S: Simd>(simd: S, t: &RunTransform, [_, dx, dy]: &[Vectors<S>; 3]) -> 
 /// longest: then sums with weights of [`gentle`] triangles are on its side too, by three tenths.
 #[inline(always)]
 fn agreeing<S: Simd>(simd: S, front: Vectors<S>, &[a, b, c]: &[Vectors<S>; 3]) -> mask32x8<S> {
-    let least = dot(front, a).min(dot(front, b)).min(dot(front, c));
     let longest = dot(a, a).max(dot(b, b)).max(dot(c, c));
     let [shortest, most] = LENGTHS2;
-    let positive = simd.simd_gt_f32x8(least, simd.splat_f32x8(0.0));
-    let wide = simd.simd_gt_f32x8(least * least, longest * 0.49);
-    let long = simd.simd_gt_f32x8(least * least, simd.splat_f32x8(shortest));
-    positive & wide & long & simd.simd_lt_f32x8(longest, simd.splat_f32x8(most))
+    let mut agreeing = simd.simd_lt_f32x8(longest, simd.splat_f32x8(most));
+    // Each by itself, for of a maximum with NaN it is not known what it is.
+    for normal in [a, b, c] {
+        let product = dot(front, normal);
+        agreeing &= simd.simd_gt_f32x8(product, simd.splat_f32x8(0.0));
+        agreeing &= simd.simd_gt_f32x8(product * product, longest * 0.49);
+        agreeing &= simd.simd_gt_f32x8(product * product, simd.splat_f32x8(shortest));
+        agreeing &= simd.simd_lt_f32x8(dot(normal, normal), simd.splat_f32x8(most));
+    }
+    agreeing
 }
 
 /// Unit normals of the faces' fronts in single precision, world axes; zero where there is none.
