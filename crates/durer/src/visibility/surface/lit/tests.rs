@@ -52,7 +52,10 @@ fn scene() -> Scene {
             let normal = (b - a).cross(c - a).normalize_or_zero();
             for corner in [a, b, c] {
                 mesh.positions.push(corner);
-                let scale = [1.0, 0.3, 1.5, 1e-12][numbers.below(4) as usize];
+                let scale = match i % 8 {
+                    1 | 2 | 5 => 1.5,
+                    _ => [1.0, 0.3, 1.5, 1e-12][numbers.below(4) as usize],
+                };
                 mesh.normals.push(match i % 8 {
                     3 => Vec3::ZERO,
                     6 | 7 => numbers.vector(),

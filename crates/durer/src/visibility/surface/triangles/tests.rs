@@ -86,17 +86,20 @@ fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
                     continue;
                 };
                 settled += 1;
+                let corner = |i: usize, axis: usize| corners[i][axis].floor();
+                let [low, high] = [f64::min, f64::max].map(|f| {
+                    [0, 1].map(|axis| f(f(corner(0, axis), corner(1, axis)), corner(2, axis)))
+                });
                 for _ in 0..20 {
-                    let weights = [0; 3].map(|_| f64::from(numbers.next()));
-                    let sum: f64 = weights.iter().sum();
-                    let at = [0, 1].map(|axis| {
-                        (0..3).map(|i| corners[i][axis] * weights[i]).sum::<f64>() / sum
+                    let pixel = [0, 1].map(|axis| {
+                        let range = high[axis] - low[axis] + 1.0;
+                        (low[axis] + (range * f64::from(numbers.next())).floor()) as i32
                     });
-                    let pixel = at.map(|v| v.floor() as i32);
                     let center = pixel.map(|v| f64::from(v) + 0.5);
                     // Vertices are rounded before samples are found in triangles.
                     let most = f64::from(reach) / 256.0 + 0.5 / 256.0;
-                    if (0..2).any(|axis| (at[axis] - center[axis]).abs() > most) {
+                    let at = center.map(|v| v + (f64::from(numbers.next()) * 2.0 - 1.0) * most);
+                    if !is_inside(corners, at) {
                         continue;
                     }
                     samples += 1;
@@ -112,7 +115,8 @@ fn settled_normals_are_those_of_the_corners_and_on_the_side_that_is_seen() {
             }
         }
     }
-    assert!(settled > 3_000 && samples > 5_000 && centers > 3_000, "{settled} {samples} {centers}");
+    assert!(settled > 2_000, "{settled}");
+    assert!(samples > 10_000 && centers > 8_000 && centers < samples, "{samples} {centers}");
 }
 
 #[test]
