@@ -22,6 +22,12 @@ impl Gathered {
         self.0[lane % 16] = [v.x, v.y, v.z, 0.0];
     }
 
+    /// Sets the vector of a point to what it is elsewhere.
+    #[inline(always)]
+    pub fn copy(&mut self, lane: usize, from: &Self) {
+        self.0[lane % 16] = from.0[lane % 16];
+    }
+
     /// The vectors side by side.
     #[inline(always)]
     pub fn vectors<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {

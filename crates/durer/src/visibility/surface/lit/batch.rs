@@ -52,15 +52,19 @@ impl Batch {
         let there = shown.simd_ne(u32x16::splat(simd, NO_ITEM)).to_bitmask();
         let info = lit.run_info(items[there.trailing_zeros() as usize % 16]);
         let mine = (shown - info.first_item).simd_lt(u32x16::splat(simd, info.count));
-        let one_run = info.plain && mine.to_bitmask() == there;
-        let normal = one_run
-            .then(|| lit.settled_normals(simd, info.run, (shown, &items), there, patch))
-            .flatten();
-        let Some(normal) = normal else {
+        if !info.plain || lit.with_positions() || mine.to_bitmask() != there {
             let mut colors = [[0.0; 16]; 4];
             Lit::colors_x16(simd, lit, shown, patch, &mut colors);
             return put(simd, opaque(simd, &colors), shown, places, codes);
-        };
+        }
+        let points = lit.points(simd, info.run, (shown, &items), there, patch);
+        if let Faces::Seen(_) = points.faces {
+            let Points { position, .. } = points;
+            let (material, lights) = (info.material, lit.shared.lights);
+            let color = shade_frame(&points.frame(), position, material, lights, info.shading);
+            return put(simd, [color.x, color.y, color.z], shown, places, codes);
+        }
+        let normal = points.normal;
         if self.waiting.len() == MOST || self.first_item != info.first_item {
             Self::flush(simd, self, lit, codes);
         }

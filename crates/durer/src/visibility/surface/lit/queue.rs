@@ -1,8 +1,7 @@
 //! Items at pixels from anywhere, that are lit when there are enough of them.
 
 use super::Lit;
-use crate::shade::{Faces, Points, shade_points};
-use crate::visibility::surface::triangles::Part;
+use crate::shade::shade_points;
 use fearless_simd::Simd;
 
 /// Whether an item has been queued.
@@ -55,16 +54,9 @@ impl Lit<'_> {
         let items = &queue.items[..queue.count.min(QUEUE)];
         items.iter().for_each(|&item| self.expect(item));
         self.make_ready();
-        let (run, there, pixels) = (info.run, (1 << items.len()) - 1, &queue.pixels);
-        let settled = match self.part {
-            Part::All => None,
-            Part::Normals => self.settled_by_pixel(simd, run, &queue.items, there, pixels),
-        };
+        let (there, pixels) = ((1 << items.len()) - 1, &queue.pixels);
         let view = self.sight.towards_eye_of(simd, pixels);
-        let points = match settled {
-            Some(normal) => Points { position: view, view, normal, faces: Faces::Settled },
-            None => self.points_by_pixel(simd, run, &queue.items, there, (pixels, view)),
-        };
+        let points = self.points_by_pixel(simd, info.run, &queue.items, there, (pixels, view));
         shade_points(simd, &points, info.material, self.shared.lights, info.shading)
     }
 }

@@ -101,17 +101,8 @@ impl<'a> Lit<'a> {
             return None;
         }
         let view = self.sight.towards_eye_x16(simd, patch);
-        let points = match self.settled_plane(item, info.run) {
-            Some(normals) => {
-                let [x, y, z] = normals.of_patch(simd, patch);
-                let normal = Vec3Lane::new(x, y, z);
-                Points { position: view, view, normal, faces: Faces::Settled }
-            }
-            None => {
-                let shown = (u32x16::splat(simd, item), &[item; 16]);
-                self.points_by_triangle(simd, info.run, shown, 0xffff, (patch, view))
-            }
-        };
+        let shown = (u32x16::splat(simd, item), &[item; 16]);
+        let points = self.points_by_triangle(simd, info.run, shown, 0xffff, (patch, view));
         let lights = self.shared.lights;
         Some(shade_points(simd, &points, info.material, lights, info.shading))
     }
@@ -242,7 +233,7 @@ impl<'a> Lit<'a> {
 
     /// Whether lights ask where points lie.
     #[inline(always)]
-    fn with_positions(&self) -> bool {
+    pub(super) fn with_positions(&self) -> bool {
         self.with_shadows() || !self.shared.lights.points.is_empty()
     }
 
@@ -254,7 +245,7 @@ impl<'a> Lit<'a> {
 
     /// The points that the pixels of a set show, all of one run.
     #[inline(always)]
-    fn points<S: Simd>(
+    pub(super) fn points<S: Simd>(
         &mut self,
         simd: S,
         run: usize,
@@ -263,71 +254,11 @@ impl<'a> Lit<'a> {
         patch: Patch,
     ) -> Points<f32x16<S>> {
         let view = self.sight.towards_eye_x16(simd, patch);
-        if let Some(normal) = self.settled_normals(simd, run, shown, there, patch) {
-            Points { position: view, view, normal, faces: Faces::Settled }
-        } else if patch.shows_few(simd, shown.0) {
+        if patch.shows_few(simd, shown.0) {
             self.points_by_triangle(simd, run, shown, there, (patch, view))
         } else {
             self.points_by_pixel(simd, run, shown.1, there, (&patch.pixels(), view))
         }
-    }
-
-    /// The normals, where all are settled and nobody asks for more.
-    #[inline(always)]
-    pub(super) fn settled_normals<S: Simd>(
-        &mut self,
-        simd: S,
-        run: usize,
-        (shown, items): (u32x16<S>, &[u32; 16]),
-        there: u64,
-        patch: Patch,
-    ) -> Option<Vec3Lane<f32x16<S>>> {
-        if self.part == Part::All {
-            return None;
-        }
-        if !patch.shows_few(simd, shown) {
-            return self.settled_by_pixel(simd, run, items, there, &patch.pixels());
-        }
-        let mut normal = [f32x16::splat(simd, 0.0); 3];
-        let mut left = there;
-        while left != 0 {
-            let item = items[left.trailing_zeros() as usize % 16];
-            let same = shown.simd_eq(u32x16::splat(simd, item));
-            left &= !same.to_bitmask();
-            let normals = self.triangles.normals(item, run);
-            if !normals.settled {
-                return None;
-            }
-            let of_item = normals.of_patch(simd, patch);
-            for (to, from) in normal.iter_mut().zip(of_item) {
-                *to = same.select(from, *to);
-            }
-        }
-        let [x, y, z] = normal;
-        Some(Vec3Lane::new(x, y, z))
-    }
-
-    /// The same of any pixels, each gathered from its triangle.
-    #[inline(always)]
-    pub(super) fn settled_by_pixel<S: Simd>(
-        &mut self,
-        simd: S,
-        run: usize,
-        items: &[u32; 16],
-        mut left: u64,
-        pixels: &[[i32; 2]; 16],
-    ) -> Option<Vec3Lane<f32x16<S>>> {
-        let mut gathered = Gathered::default();
-        while left != 0 {
-            let i = left.trailing_zeros() as usize % 16;
-            left &= left - 1;
-            let normals = self.triangles.normals(items[i], run);
-            if !normals.settled {
-                return None;
-            }
-            gathered.set(i, normals.at_x4(simd, pixels[i]));
-        }
-        Some(gathered.vectors(simd))
     }
 
     /// The points: each gathered from its triangle.
@@ -341,23 +272,40 @@ impl<'a> Lit<'a> {
         (pixels, view): (&[[i32; 2]; 16], Vec3Lane<f32x16<S>>),
     ) -> Points<f32x16<S>> {
         let (mut normals, mut positions) = (Gathered::default(), Gathered::default());
-        let mut faces = Gathered::default();
-        let with_positions = self.with_positions();
-        let (mut settled, mut left) = (!self.with_shadows(), there);
+        let (with_positions, with_shadows) = (self.with_positions(), self.with_shadows());
+        let (mut faces, mut unsettled, mut left) = (Gathered::default(), 0, there);
         while left != 0 {
             let i = left.trailing_zeros() as usize % 16;
             left &= left - 1;
+            if let Some(plane) = self.settled_plane(items[i], run) {
+                normals.set(i, plane.at_x4(simd, pixels[i]));
+                continue;
+            }
             let t = self.triangles.get(items[i], run);
-            settled &= t.normals.settled;
+            if with_shadows || !t.normals.settled {
+                unsettled |= 1 << i;
+            }
             normals.set(i, t.normal_x4(simd, pixels[i]));
             faces.set_vector(i, t.seen_face_normal);
             if with_positions {
                 positions.set(i, t.position(simd, pixels[i]));
             }
         }
+        let normal = normals.vectors(simd);
         let position = if with_positions { positions.vectors(simd) } else { view };
-        let faces = if settled { Faces::Settled } else { Faces::Seen(faces.vectors(simd)) };
-        Points { position, view, normal: normals.vectors(simd), faces }
+        let faces = if unsettled == 0 {
+            Faces::Settled
+        } else {
+            // Settled normals are on the side that they show themselves.
+            let mut left = there & !unsettled;
+            while left != 0 {
+                let i = left.trailing_zeros() as usize % 16;
+                left &= left - 1;
+                faces.copy(i, &normals);
+            }
+            Faces::Seen(faces.vectors(simd))
+        };
+        Points { position, view, normal, faces }
     }
 
     /// The points: of each triangle at all pixels, of which those that show it are taken.
@@ -370,36 +318,45 @@ impl<'a> Lit<'a> {
         there: u64,
         (patch, view): (Patch, Vec3Lane<f32x16<S>>),
     ) -> Points<f32x16<S>> {
-        let with_positions = self.with_positions();
+        let (with_positions, with_shadows) = (self.with_positions(), self.with_shadows());
         let (mut normal, mut position) = ([view.x; 3], [view.x; 3]);
-        let (mut settled, mut left) = (!self.with_shadows(), there);
+        let (mut unsettled, mut left) = (0, there);
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 16];
             let same = shown.simd_eq(u32x16::splat(simd, item));
-            left &= !same.to_bitmask();
-            let t = self.triangles.get(item, run);
-            settled &= t.normals.settled;
-            let of_item = t.normals_x16(simd, patch);
+            let bits = same.to_bitmask();
+            left &= !bits;
+            let of_item = match self.settled_plane(item, run) {
+                Some(plane) => plane.of_patch(simd, patch),
+                None => {
+                    let t = self.triangles.get(item, run);
+                    if with_shadows || !t.normals.settled {
+                        unsettled |= bits & there;
+                    }
+                    if with_positions {
+                        for (to, from) in position.iter_mut().zip(t.positions_x16(simd, patch)) {
+                            *to = same.select(from, *to);
+                        }
+                    }
+                    t.normals_x16(simd, patch)
+                }
+            };
             for (to, from) in normal.iter_mut().zip(of_item) {
                 *to = same.select(from, *to);
             }
-            if with_positions {
-                for (to, from) in position.iter_mut().zip(t.positions_x16(simd, patch)) {
-                    *to = same.select(from, *to);
-                }
-            }
         }
-        let faces = if settled {
-            Faces::Settled
-        } else {
-            Faces::Seen(self.face_normals(simd, run, (shown, items), there))
-        };
         let ([nx, ny, nz], [px, py, pz]) = (normal, position);
         let (normal, position) = (Vec3Lane::new(nx, ny, nz), Vec3Lane::new(px, py, pz));
+        let faces = if unsettled == 0 {
+            Faces::Settled
+        } else {
+            // Settled normals are on the side that they show themselves.
+            Faces::Seen(self.face_normals(simd, run, (shown, items), unsettled, normal))
+        };
         Points { position, view, normal, faces }
     }
 
-    /// The unit normals of the sides of faces that the pixels of a set show.
+    /// The unit normals of the sides of faces that the pixels of a set show, and other vectors elsewhere.
     #[inline(always)]
     fn face_normals<S: Simd>(
         &mut self,
@@ -407,8 +364,9 @@ impl<'a> Lit<'a> {
         run: usize,
         (shown, items): (u32x16<S>, &[u32; 16]),
         mut left: u64,
+        elsewhere: Vec3Lane<f32x16<S>>,
     ) -> Vec3Lane<f32x16<S>> {
-        let mut normal = [f32x16::splat(simd, 0.0); 3];
+        let mut normal = [elsewhere.x, elsewhere.y, elsewhere.z];
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 16];
             let same = shown.simd_eq(u32x16::splat(simd, item));
