@@ -88,13 +88,7 @@ impl Euc {
     }
 
     fn draw(&mut self, frame: usize) {
-        let Place { center, distance } = &self.place;
-        let to_center = Vec3::from(center.map(|c| -c as f32));
-        // The camera turns the other way round the mesh than the mesh before the camera.
-        let away = Vec3::new(0.0, 0.0, -*distance as f32);
-        let view_from_world = Mat4::<f32>::translation_3d(away)
-            * Mat4::<f32>::rotation_y(scene::angle(frame) as f32)
-            * Mat4::<f32>::translation_3d(to_center);
+        let view_from_world = self.place.view_from_world(frame);
         let (width, height) = (scene::WIDTH as f32, scene::HEIGHT as f32);
         let (near, far) = (self.place.near() as f32, self.place.far() as f32);
         let fov = scene::FOV_Y as f32;

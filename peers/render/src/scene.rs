@@ -1,6 +1,7 @@
 //! The scene that all in-process contenders draw: camera, light and colours of the llvmpipe harness.
 
 use crate::mesh::Mesh;
+use vek::{Mat4, Vec3};
 
 /// Width of a frame in pixels.
 pub const WIDTH: usize = 1920;
@@ -57,6 +58,16 @@ impl Place {
     /// The far plane's distance from the eye.
     pub fn far(&self) -> f64 {
         self.distance * 4.0
+    }
+
+    /// The mesh turned before the eye as it is in a frame.
+    pub fn view_from_world(&self, frame: usize) -> Mat4<f32> {
+        let to_center = Vec3::from(self.center.map(|c| -c as f32));
+        // The camera turns the other way round the mesh than the mesh before the camera.
+        let away = Vec3::new(0.0, 0.0, -self.distance as f32);
+        Mat4::<f32>::translation_3d(away)
+            * Mat4::<f32>::rotation_y(angle(frame) as f32)
+            * Mat4::<f32>::translation_3d(to_center)
     }
 }
 
