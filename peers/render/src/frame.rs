@@ -7,6 +7,7 @@ use crate::euc_peer::Euc;
 use crate::mesh::{self, Mesh};
 use crate::options::Options;
 use crate::picture::Picture;
+use crate::swiftshader::{self, SwiftShader};
 use crate::{Result, llvmpipe, table};
 use durer::pipeline::SurfaceMethod;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,10 @@ pub fn run(options: &Options) -> Result<()> {
     let temp = TempFolder::new()?;
     if llvmpipe::harness().is_none() {
         println!("llvmpipe: not measured, LLVMPIPE_BENCH is not set\n");
+    }
+    match swiftshader::library() {
+        Some(library) => println!("SwiftShader: {}\n", swiftshader::name(&library)?),
+        None => println!("SwiftShader: not measured, SWIFTSHADER is not set\n"),
     }
     table::head(&[
         "mesh",
@@ -61,6 +66,7 @@ enum Contender {
     Euc(Box<Euc>),
     /// The harness and its number of raster threads.
     Llvmpipe(PathBuf, u32),
+    SwiftShader(Box<SwiftShader>),
 }
 
 /// All who draw one mesh with so many samples.
@@ -99,6 +105,15 @@ impl<'a> Contest<'a> {
             let two = Contender::Llvmpipe(harness, 2);
             contenders.push(("llvmpipe, 2 threads", 1, two, Vec::new()));
         }
+        if let Some(library) = swiftshader::library() {
+            let swift = |threads| -> Result<Contender> {
+                let library = library.clone();
+                let swift = SwiftShader::new(library, mesh, samples, threads, folder)?;
+                Ok(Contender::SwiftShader(Box::new(swift)))
+            };
+            contenders.push(("SwiftShader, 1 thread", 0, swift(1)?, Vec::new()));
+            contenders.push(("SwiftShader, 2 threads", 1, swift(2)?, Vec::new()));
+        }
         Ok(Self { mesh: name, samples, contenders, bmesh, picture: folder.join("llvmpipe.png") })
     }
 
@@ -115,6 +130,7 @@ impl<'a> Contest<'a> {
                     *threads,
                     Some(&self.picture),
                 )?,
+                Contender::SwiftShader(swift) => swift.turn()?,
             });
         }
         Ok(())
@@ -145,6 +161,7 @@ impl<'a> Contest<'a> {
                 Contender::Durer(durer) => durer.picture(),
                 Contender::Euc(euc) => euc.picture(),
                 Contender::Llvmpipe(..) => llvmpipe::picture(&self.picture)?,
+                Contender::SwiftShader(swift) => swift.picture(),
             };
             if let Some(folder) = folder {
                 let who: String = name.chars().filter(char::is_ascii_alphanumeric).collect();

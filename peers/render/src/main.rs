@@ -15,7 +15,10 @@ mod options;
 mod picture;
 mod process;
 mod scene;
+mod shaders;
+mod swiftshader;
 mod table;
+mod vulkan;
 
 use std::process::ExitCode;
 
@@ -31,8 +34,8 @@ usage: durer-peers-render process [FILE…] [--rounds N] [--meshes DIR] [--png D
        durer-peers-render make DIR
 
 process   whole process, model file in, 1024 × 1024 PNG out: durer and f3d
-frame     1920 × 1080 frames in process: durer, euc, and llvmpipe where LLVMPIPE_BENCH names its harness;
-          MESH is sphere13k, sphere69k, sphere1m or an STL file
+frame     1920 × 1080 frames in process: durer, euc, llvmpipe where LLVMPIPE_BENCH names its harness,
+          SwiftShader where SWIFTSHADER names its library or Debian's chromium has put it; MESH is sphere13k, sphere69k, sphere1m or an STL file
 methods   durer's ways to find visible surfaces, 1024 × 1024, beside each other
 layers    100 full-screen quads, textured, in three orders: durer and llvmpipe, each with its threads in
           the calling process
