@@ -32,9 +32,15 @@ fn what_a_framebuffer_held_before_is_of_no_matter() {
     }
 }
 
+/// A sphere with faces smaller than a pixel.
+fn fine() -> Scene {
+    let meshes = vec![scenes::sphere(200, None)];
+    Scene { meshes, instances: vec![scenes::instance(0)], ..Scene::default() }
+}
+
 #[test]
 fn pictures_have_the_same_bytes_at_every_level_and_number_of_threads() {
-    for (name, scene) in scenes::all() {
+    for (name, scene) in scenes::all().into_iter().chain([("fine", fine())]) {
         for (samples, shading) in [
             (Samples::One, None),
             (Samples::Four, Some(Shading::MetallicRoughness)),

@@ -1,8 +1,8 @@
 //! The production path against a z-buffer of a dozen lines over the classical rasterizer.
 
 use crate::scenes::{self, Numbers};
-use durer::math::{DVec3, Vec3};
-use durer::pipeline::{Cull, RenderOptions, render};
+use durer::math::{DMat4, DVec3, Vec3};
+use durer::pipeline::{Cull, RenderOptions, Samples, render};
 use durer::raster::triangle::{Options, SnappedTriangle, TriangleRasterizer};
 use durer::scene::{Camera, Mesh, Projection, Scene};
 use durer::target::NO_ITEM;
@@ -47,19 +47,50 @@ fn items_and_depths_are_those_of_the_definition() {
         let (width, height) = (size(&mut numbers), size(&mut numbers));
         let mut options = scenes::options(&scene, width, height);
         (options.item, options.depth) = (true, true);
-        let (found, _) = render(&scene, &options).expect("picture");
-        let view = View::new(options.camera, width, height).expect("view");
-        let (items, depths) = by_the_book(&scene, &view);
-        assert_eq!(found.item.expect("items").data(), items, "seed {seed} {width}x{height}");
-        assert_eq!(found.depth.expect("depths").data(), depths, "seed {seed} {width}x{height}");
+        agrees_with_the_book(&scene, &options, &format!("seed {seed} {width}x{height}"));
     }
 }
 
-/// Triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel.
-fn on_the_grid(seed: u64, size: f64) -> (Scene, Camera) {
+fn agrees_with_the_book(scene: &Scene, options: &RenderOptions, what: &str) {
+    let (found, _) = render(scene, options).expect("picture");
+    let view = View::new(options.camera, options.width, options.height).expect("view");
+    let (items, depths) = by_the_book(scene, &view);
+    assert_eq!(found.item.expect("items").data(), items, "{what}");
+    assert_eq!(found.depth.expect("depths").data(), depths, "{what}");
+}
+
+/// Triangles of a few pixels and less, among larger ones and on the picture's border, in two instances of which one is
+/// mirrored.
+#[test]
+fn items_and_depths_of_small_triangles_are_those_of_the_definition() {
+    for seed in 0..40 {
+        let mut numbers = Numbers(seed + 100);
+        let mut scene = scenes::soup(40, seed);
+        let positions = &mut scene.meshes[0].positions;
+        for _ in 0..6000 {
+            let (center, size) = (numbers.point(1.2), 0.01 + 0.04 * numbers.next());
+            positions.extend([0; 3].map(|_| center + numbers.point(size)));
+        }
+        scene.instances.push(scenes::instance(0));
+        scene.instances[1].world_from_mesh = DMat4::from_scale(DVec3::new(-0.9, 0.9, 0.9));
+        let width = 40 + (numbers.next() * 120.0) as u32;
+        let mut options = scenes::options(&scene, width, 97);
+        (options.item, options.depth, options.samples) = (true, true, Samples::One);
+        agrees_with_the_book(&scene, &options, &format!("seed {seed}"));
+    }
+}
+
+/// Triangles whose corners lie on pixel centres and corners, seen so that a unit is a pixel; they reach over as many
+/// pixels as `reach`.
+fn on_the_grid(seed: u64, size: f64, reach: f64) -> (Scene, Camera) {
     let mut numbers = Numbers(seed);
-    let mut at = || ((numbers.next() * 2.0 * size as f32).floor() * 0.5) - 0.5 * size as f32;
-    let positions = (0..120).map(|i| Vec3::new(at(), at(), -((i / 3) as f32) * 0.01)).collect();
+    let mut at = |extent: f64| (numbers.next() * 2.0 * extent as f32).floor() * 0.5;
+    let (middle, room) = (0.5 * size as f32, size - reach);
+    let mut positions = Vec::new();
+    for i in 0..40 {
+        let (x, y, z) = (at(room) - middle, at(room) - middle, -(i as f32) * 0.01);
+        positions.extend([0; 3].map(|_| Vec3::new(x + at(reach), y + at(reach), z)));
+    }
     let mesh = Mesh { positions, ..Mesh::default() };
     let scene =
         Scene { meshes: vec![mesh], instances: vec![scenes::instance(0)], ..Scene::default() };
@@ -77,12 +108,14 @@ fn on_the_grid(seed: u64, size: f64) -> (Scene, Camera) {
 #[test]
 fn pixels_on_edges_belong_to_the_top_left_side() {
     for seed in 0..60 {
-        let (scene, camera) = on_the_grid(seed, 24.0);
-        let mut options = RenderOptions::new(camera);
-        (options.width, options.height, options.item) = (24, 24, true);
-        let (found, _) = render(&scene, &options).expect("picture");
-        let view = View::new(camera, 24, 24).expect("view");
-        let (items, _) = by_the_book(&scene, &view);
-        assert_eq!(found.item.expect("items").data(), items, "seed {seed}");
+        for reach in [3.0, 4.5, 24.0] {
+            let (scene, camera) = on_the_grid(seed, 24.0, reach);
+            for samples in [Samples::One, Samples::Four] {
+                let mut options = RenderOptions::new(camera);
+                (options.width, options.height, options.samples) = (24, 24, samples);
+                (options.item, options.depth) = (true, true);
+                agrees_with_the_book(&scene, &options, &format!("seed {seed} {reach}"));
+            }
+        }
     }
 }

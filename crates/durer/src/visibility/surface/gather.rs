@@ -3,7 +3,7 @@
 use crate::math::Vec3;
 use crate::shade::lane::Vec3Lane;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x8};
+use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x8, i32x8};
 
 /// Vectors at up to sixteen points from anywhere; those not set are 0.
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,19 +31,19 @@ impl Gathered {
     /// The vectors side by side.
     #[inline(always)]
     pub fn vectors<S: Simd>(&self, simd: S) -> Vec3Lane<f32x16<S>> {
-        let [x, y, z, _] = columns(simd, &self.0);
+        let (first, last) = self.0.as_flattened().split_at(32);
+        let [x, y, z, _] = columns(simd, first, last);
         Vec3Lane::new(x, y, z)
     }
 }
 
-/// Four numbers of each of sixteen, apart.
+/// Four numbers of each of sixteen, which are given one after the other in two halves, apart.
 #[inline(always)]
-fn columns<S: Simd>(simd: S, rows: &[[f32; 4]; 16]) -> [f32x16<S>; 4] {
-    let rows = rows.as_flattened();
-    let a = f32x16::from_slice(simd, &rows[..16]);
-    let b = f32x16::from_slice(simd, &rows[16..32]);
-    let c = f32x16::from_slice(simd, &rows[32..48]);
-    let d = f32x16::from_slice(simd, &rows[48..]);
+pub fn columns<S: Simd>(simd: S, first: &[f32], last: &[f32]) -> [f32x16<S>; 4] {
+    let a = f32x16::from_slice(simd, &first[..16]);
+    let b = f32x16::from_slice(simd, &first[16..32]);
+    let c = f32x16::from_slice(simd, &last[..16]);
+    let d = f32x16::from_slice(simd, &last[16..32]);
     let (even_ab, even_cd) = (simd.unzip_low_f32x16(a, b), simd.unzip_low_f32x16(c, d));
     let (odd_ab, odd_cd) = (simd.unzip_high_f32x16(a, b), simd.unzip_high_f32x16(c, d));
     let first = simd.unzip_low_f32x16(even_ab, even_cd);
@@ -79,4 +79,15 @@ pub fn widened<S: Simd>(simd: S, v: f32x8<S>) -> f64x8<S> {
 pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
     let (a, b) = simd.split_f64x8(v);
     simd.narrow_f64x4(a, b)
+}
+
+/// Integers of at most 31 bits as they are.
+#[inline(always)]
+pub fn integers_widened<S: Simd>(simd: S, v: i32x8<S>) -> f64x8<S> {
+    // Added to the bits of 1.5 · 2⁵², an integer is added to the number.
+    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    let (low, high) = simd.widen_i32x8(v);
+    let bits = MAGIC.to_bits().cast_signed();
+    let (low, high) = (low + bits, high + bits);
+    simd.combine_f64x4(low.bitcast(), high.bitcast()) - MAGIC
 }

@@ -1,7 +1,7 @@
 //! Patches that wait until there are enough of them to be lit in one loop, in which nothing waits for anything but
 //! its own patch.
 
-use super::{Lit, opaque};
+use super::{KnownNormals, Lit, opaque};
 use crate::shade::color::encode_opaque_x16;
 use crate::shade::lane::Vec3Lane;
 use crate::shade::{Faces, Frame, Points, shade_frame};
@@ -43,7 +43,7 @@ impl Batch {
         &mut self,
         simd: S,
         lit: &mut Lit<'_>,
-        shown: u32x16<S>,
+        (shown, known): (u32x16<S>, &KnownNormals),
         patch: Patch,
         places: [usize; 2],
         codes: &mut [u32],
@@ -57,7 +57,10 @@ impl Batch {
             Lit::colors_x16(simd, lit, shown, patch, &mut colors);
             return put(simd, opaque(simd, &colors), shown, places, codes);
         }
-        let points = lit.points(simd, info.run, (shown, &items), there, patch);
+        let points = match known.of_patch(simd, places, shown) {
+            Some(known) => lit.points_known(simd, info.run, (shown, &items), there, (patch, known)),
+            None => lit.points(simd, info.run, (shown, &items), there, patch),
+        };
         if let Faces::Seen(_) = points.faces {
             let Points { position, .. } = points;
             let (material, lights) = (info.material, lit.shared.lights);

@@ -1,12 +1,14 @@
 //! Lighting visible items: one pixel with everything a material can have; in [`sixteen`] several at a time.
 
 mod batch;
+mod known;
 mod queue;
 mod sixteen;
 #[cfg(test)]
 mod tests;
 
 pub use batch::Batch;
+pub use known::KnownNormals;
 pub use queue::{QUEUE, Queue, Queued};
 pub use sixteen::opaque;
 
@@ -41,7 +43,50 @@ pub struct Lighting<'a> {
     pub level: Level,
 }
 
-impl Lighting<'_> {
+impl<'a> Lighting<'a> {
+    /// What lighting several pixels of plain materials asks of their triangles.
+    fn part(&self) -> Part {
+        // Lights ask where points lie, or shadows which way their faces look.
+        let more = !self.lights.shadows.is_empty() || !self.lights.points.is_empty();
+        if more { Part::All } else { Part::Normals }
+    }
+
+    /// Whether of triangles of a run nothing but normals is asked for, where these are settled.
+    pub fn asks_for_normals(&self, run: usize) -> bool {
+        self.part() == Part::Normals && self.run_info(run).plain
+    }
+
+    fn run_info(&self, index: usize) -> RunInfo<'a> {
+        let run = &self.runs[index];
+        let mesh = &self.scene.meshes[run.mesh];
+        let material = self.materials.get(run.material);
+        let without_sides = mesh.topology != Topology::Triangles && mesh.normals.is_empty();
+        let shading = match self.shading {
+            _ if without_sides => Shading::Unlit,
+            Some(shading) => shading,
+            None => material.shading(),
+        };
+        let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
+        let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
+        let together = !plain && material.is_lit_together(shading);
+        let looked_up = material
+            .looked_up_together(shading)
+            .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
+            .and_then(|set| mesh.tex_coords.get(set))
+            .map(|coords| LookedUp { coords, changing: material.has_levels() });
+        RunInfo {
+            run: index,
+            first_item: run.first_item,
+            count: run.range.len() as u32,
+            mesh,
+            material,
+            shading,
+            plain,
+            together,
+            looked_up,
+        }
+    }
+
     /// A direction of a run's mesh along world axes.
     fn world_axes(&self, run: usize, direction: Vec3) -> Vec3 {
         let world_from_mesh = self.scene.instances[self.runs[run].instance].world_from_mesh;
@@ -120,9 +165,7 @@ impl<'a> Lit<'a> {
         let (parallel_view, sight) = (parallel_view(shared.view), Sight::new(shared.view));
         let Lighting { scene, view, runs, reach, level, .. } = shared;
         let triangles = Triangles::new(scene, view, runs, level, (kept, reach));
-        // Lights ask where points lie, or shadows which way their faces look.
-        let more = !shared.lights.shadows.is_empty() || !shared.lights.points.is_empty();
-        let part = if more { Part::All } else { Part::Normals };
+        let part = shared.part();
         Self { shared, triangles, part, latest: None, parallel_view, sight, reflected: None }
     }
 
@@ -137,36 +180,7 @@ impl<'a> Lit<'a> {
 
     #[cold]
     fn find_run_info(&mut self, item: u32) -> RunInfo<'a> {
-        let shared = self.shared;
-        let index = run_of(shared.runs, item);
-        let run = &shared.runs[index];
-        let mesh = &shared.scene.meshes[run.mesh];
-        let material = shared.materials.get(run.material);
-        let without_sides = mesh.topology != Topology::Triangles && mesh.normals.is_empty();
-        let shading = match shared.shading {
-            _ if without_sides => Shading::Unlit,
-            Some(shading) => shading,
-            None => material.shading(),
-        };
-        let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
-        let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
-        let together = !plain && material.is_lit_together(shading);
-        let looked_up = material
-            .looked_up_together(shading)
-            .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
-            .and_then(|set| mesh.tex_coords.get(set))
-            .map(|coords| LookedUp { coords, changing: material.has_levels() });
-        let info = RunInfo {
-            run: index,
-            first_item: run.first_item,
-            count: run.range.len() as u32,
-            mesh,
-            material,
-            shading,
-            plain,
-            together,
-            looked_up,
-        };
+        let info = self.shared.run_info(run_of(self.shared.runs, item));
         self.latest = Some(info);
         info
     }

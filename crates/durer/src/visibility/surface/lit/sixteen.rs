@@ -13,7 +13,7 @@ use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
 use crate::visibility::surface::triangles::Part;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 use fearless_simd_macros::simd;
 
 /// Red, green and blue.
@@ -21,6 +21,17 @@ use fearless_simd_macros::simd;
 pub fn opaque<S: Simd>(simd: S, [r, g, b, _]: &[[f32; 16]; 4]) -> [f32x16<S>; 3] {
     let (r, g) = (f32x16::from_slice(simd, r), f32x16::from_slice(simd, g));
     [r, g, f32x16::from_slice(simd, b)]
+}
+
+/// One vector where a mask is set, the other elsewhere.
+#[inline(always)]
+fn chosen<S: Simd>(
+    mask: mask32x16<S>,
+    set: Vec3Lane<f32x16<S>>,
+    other: Vec3Lane<f32x16<S>>,
+) -> Vec3Lane<f32x16<S>> {
+    let (x, y) = (mask.select(set.x, other.x), mask.select(set.y, other.y));
+    Vec3Lane::new(x, y, mask.select(set.z, other.z))
 }
 
 impl<'a> Lit<'a> {
@@ -259,6 +270,30 @@ impl<'a> Lit<'a> {
         } else {
             self.points_by_pixel(simd, run, shown.1, there, (&patch.pixels(), view))
         }
+    }
+
+    /// [`Self::points`] where some of the normals are known; of these, positions are not asked for.
+    #[inline(always)]
+    pub(super) fn points_known<S: Simd>(
+        &mut self,
+        simd: S,
+        run: usize,
+        shown: (u32x16<S>, &[u32; 16]),
+        there: u64,
+        (patch, (known, normal)): (Patch, (mask32x16<S>, Vec3Lane<f32x16<S>>)),
+    ) -> Points<f32x16<S>> {
+        let others = there & !known.to_bitmask();
+        if others == 0 {
+            let view = self.sight.towards_eye_x16(simd, patch);
+            return Points { position: view, view, normal, faces: Faces::Settled };
+        }
+        let mut points = self.points(simd, run, shown, others, patch);
+        points.normal = chosen(known, normal, points.normal);
+        if let Faces::Seen(faces) = &mut points.faces {
+            // Settled normals are on the side that they show themselves.
+            *faces = chosen(known, normal, *faces);
+        }
+        points
     }
 
     /// The points: each gathered from its triangle.

@@ -121,6 +121,7 @@ fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
 fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut settled) = (Batch::default(), 0);
     let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);
+    let mut known = KnownNormals::new(16 * 64);
     for k in 0..64 {
         // As many triangles as a patch may show, of one run or of both.
         let (kinds, runs) = (1 + numbers.below(12), 1 + numbers.below(2));
@@ -159,6 +160,17 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                 settled += usize::from(lit.triangle(items[i]).normals.settled);
                 if patch == Patch::block(at) {
                     expected[16 * k + i] = u32::from_le_bytes([code[0], code[1], code[2], 255]);
+                    let normals = lit.triangle(items[i]).normals;
+                    // Of some the normals are known, of others that they are not, or those of another.
+                    let normal = match numbers.below(3) {
+                        0 => [f32::NAN; 3],
+                        _ => normals.at([x, y]).to_array(),
+                    };
+                    match numbers.below(4) {
+                        0 => known.set(16 * k + i, items[i] + 1, normal),
+                        _ if normals.settled => known.set(16 * k + i, items[i], normal),
+                        _ => {}
+                    }
                 }
                 // The whole patch of its triangle.
                 let of_one = lit.colors_of_one_x16(simd, items[i], patch).expect("plain");
@@ -179,6 +191,7 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                 assert_eq!(color, [0, 1, 2].map(|k| one_by_one[k][i].to_bits()));
             }
             if patch == Patch::block(at) {
+                let shown = (shown, &known);
                 batch.light(simd, lit, shown, patch, [16 * k, 16 * k + 8], &mut codes);
             }
         }

@@ -1,11 +1,12 @@
 //! Set-up of eight triangles side by side: which are seen, and the planes of their depths.
 
-use super::vertex::{Hidden, ScreenVertex, code};
+use super::sampled::{Sampled, Span, cover};
+use super::vertex::{Behind, ScreenVertex, code};
 use super::{Filter, ScreenTriangle};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
-use crate::visibility::surface::gather::{narrowed, transpose, widened};
+use crate::visibility::surface::gather::{integers_widened, narrowed, transpose, widened};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8, u32x8};
+use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
 
 /// Triangles that are set up at a time.
 pub const EIGHT: usize = 8;
@@ -16,8 +17,12 @@ pub struct Rules {
     pub filter: Filter,
     /// The screen in pixels.
     pub size: [u32; 2],
-    /// The sign of the area of those that are left out.
-    pub hidden: Option<Hidden>,
+    /// The sign that the area of those has that are seen from behind.
+    pub behind: Behind,
+    /// Whether these are left out.
+    pub cull_back: bool,
+    /// Whether small ones are sampled at once, at the centres of pixels, where alone samples are then.
+    pub sampled: bool,
 }
 
 /// Eight triangles after set-up. Bit i of a mask is triangle i's.
@@ -30,11 +35,13 @@ pub struct Eight {
     pub uncut: u64,
     /// Those of the others that may be seen.
     pub seen: u64,
+    /// Those that are seen and were sampled at once; the others may be asked for by [`Self::triangle`].
+    pub sampled: Sampled,
     rows: [[[u32; EIGHT]; EIGHT]; 2],
 }
 
 impl Eight {
-    /// Triangle `i`, which is among those seen.
+    /// Triangle `i`, which is among those seen and not sampled.
     #[inline(always)]
     pub fn triangle(&self, i: usize, item: u32) -> ScreenTriangle {
         let [first, second] = &self.rows;
@@ -55,25 +62,18 @@ impl Eight {
 
 /// One corner of eight triangles.
 #[derive(Clone, Copy)]
-struct Corner<S: Simd> {
-    x: i32x8<S>,
-    y: i32x8<S>,
-    rest_x: f32x8<S>,
-    rest_y: f32x8<S>,
-    depth: f32x8<S>,
+pub struct Corner<S: Simd> {
+    pub x: i32x8<S>,
+    pub y: i32x8<S>,
     code: u32x8<S>,
+    depth: f32x8<S>,
 }
 
 impl<S: Simd> Corner<S> {
     #[inline(always)]
-    fn new(simd: S, of: [&ScreenVertex; EIGHT]) -> Self {
-        let mut rows = [simd.splat_f32x8(0.0); EIGHT];
-        for (row, vertex) in rows.iter_mut().zip(of) {
-            *row = u32x8::from_slice(simd, &vertex.0).bitcast();
-        }
-        let [x, y, rest_x, rest_y, depth, code, ..] = transpose(simd, rows);
-        let (x, y, code) = (x.bitcast(), y.bitcast(), code.bitcast());
-        Self { x, y, rest_x, rest_y, depth, code }
+    fn new(simd: S, of: &[&ScreenVertex; EIGHT]) -> Self {
+        let [x, y, code, depth] = four_columns(simd, of, 0);
+        Self { x: x.bitcast(), y: y.bitcast(), code: code.bitcast(), depth }
     }
 
     /// This corner where `mask` is set, the other elsewhere.
@@ -82,15 +82,35 @@ impl<S: Simd> Corner<S> {
         Self {
             x: mask.select(self.x, other.x),
             y: mask.select(self.y, other.y),
-            rest_x: mask.select(self.rest_x, other.rest_x),
-            rest_y: mask.select(self.rest_y, other.rest_y),
-            depth: mask.select(self.depth, other.depth),
             code: self.code,
+            depth: mask.select(self.depth, other.depth),
         }
     }
 }
 
-/// Back-face and area test, bounding box test, depth plane.
+/// What snapping took away from x and y of one corner of eight triangles, in grid steps.
+#[inline(always)]
+fn rest<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT]) -> [f32x8<S>; 2] {
+    let [x, y, ..] = four_columns(simd, of, 4);
+    [x, y]
+}
+
+/// Four numbers of eight vertices, from the given one on, apart.
+#[inline(always)]
+fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [f32x8<S>; 4] {
+    let four = |i: usize| u32x4::from_slice(simd, &of[i].0[from..from + 4]).bitcast::<f32x4<S>>();
+    let two = |i: usize| simd.combine_f32x4(four(i), four(i + 1));
+    let (a, b, c, d) = (two(0), two(2), two(4), two(6));
+    let (even_ab, even_cd) = (simd.unzip_low_f32x8(a, b), simd.unzip_low_f32x8(c, d));
+    let (odd_ab, odd_cd) = (simd.unzip_high_f32x8(a, b), simd.unzip_high_f32x8(c, d));
+    let first = simd.unzip_low_f32x8(even_ab, even_cd);
+    let third = simd.unzip_high_f32x8(even_ab, even_cd);
+    let second = simd.unzip_low_f32x8(odd_ab, odd_cd);
+    [first, second, third, simd.unzip_high_f32x8(odd_ab, odd_cd)]
+}
+
+/// Back-face and area test, bounding box test, depth plane; of small triangles, where that is asked for, which pixels they
+/// cover.
 #[inline(always)]
 pub fn set_up<S: Simd>(
     simd: S,
@@ -98,8 +118,8 @@ pub fn set_up<S: Simd>(
     corners: [[&ScreenVertex; EIGHT]; 3],
     eight: &mut Eight,
 ) {
-    let [a, b, c] = corners;
-    let (a, b, c) = (Corner::new(simd, a), Corner::new(simd, b), Corner::new(simd, c));
+    let [of_a, of_b, of_c] = &corners;
+    let (a, b, c) = (Corner::new(simd, of_a), Corner::new(simd, of_b), Corner::new(simd, of_c));
     let (all, any) = (a.code & b.code & c.code, a.code | b.code | c.code);
     let non_finite = with_bits(simd, any, code::NON_FINITE);
     let outside = with_bits(simd, all, code::OUTSIDE);
@@ -107,29 +127,64 @@ pub fn set_up<S: Simd>(
     (eight.non_finite, eight.uncut) = (non_finite, uncut);
 
     // Twice the area in grid units: products of less than 2²⁷ each, so without rounding.
-    let (right, down) = (to_f64(simd, b.x - a.x), to_f64(simd, b.y - a.y));
-    let area = right * to_f64(simd, c.y - a.y) - to_f64(simd, c.x - a.x) * down;
+    let right = integers_widened(simd, b.x - a.x);
+    let down = integers_widened(simd, b.y - a.y);
+    let area = right * integers_widened(simd, c.y - a.y);
+    let area = area - integers_widened(simd, c.x - a.x) * down;
     let zero = simd.splat_f64x8(0.0);
-    let turned_away = match rules.hidden {
-        None => area.simd_eq(zero),
-        Some(Hidden::Positive) => area.simd_ge(zero),
-        Some(Hidden::Negative) => area.simd_le(zero),
+    let turned_away = match (rules.cull_back, rules.behind) {
+        (false, _) => area.simd_eq(zero),
+        (true, Behind::Positive) => area.simd_ge(zero),
+        (true, Behind::Negative) => area.simd_le(zero),
     };
     let ([width, height], reach) = (rules.size, rules.filter.sample_reach);
-    let misses = misses_all_samples(simd, [a.x, b.x, c.x], reach, width)
-        | misses_all_samples(simd, [a.y, b.y, c.y], reach, height);
+    let columns = Span::new([a.x, b.x, c.x], reach);
+    let rows = Span::new([a.y, b.y, c.y], reach);
+    let misses = columns.misses(simd, width) | rows.misses(simd, height);
     eight.seen = !(non_finite | outside | uncut | turned_away.to_bitmask() | misses) & 0xff;
+    eight.sampled.which = 0;
     if eight.seen == 0 {
         return;
     }
 
     let negative = narrowed(simd, area).simd_lt(simd.splat_f32x8(0.0));
     let (b, c) = (c.where_set(negative, b), b.where_set(negative, c));
-    let [depth, depth_dx, depth_dy] = depth_planes(simd, [a, b, c], area.abs());
+    if rules.sampled {
+        let small = (columns.is_small() & rows.is_small()).to_bitmask() & eight.seen;
+        if small != 0 {
+            cover(simd, [a, b, c], [columns.first, rows.first], rules.size, &mut eight.sampled);
+            eight.sampled.which &= small;
+            eight.seen &= !small | eight.sampled.which;
+            if eight.seen == 0 {
+                return;
+            }
+        }
+    }
+    let rest = [rest(simd, of_a), rest(simd, of_b), rest(simd, of_c)];
+    let rest = [0, 1].map(|axis| {
+        let [a, b, c] = rest.map(|rest| rest[axis]);
+        [a, negative.select(c, b), negative.select(b, c)].map(|rest| widened(simd, rest))
+    });
+    let [depth, depth_dx, depth_dy] = depth_planes(simd, [a, b, c], rest, area.abs());
     let nothing = simd.splat_f32x8(0.0);
     // Adding 0 makes a 0 of −0, whose bits are another order.
     let depth_min = a.depth.min(b.depth).min(c.depth).max(nothing) + nothing;
     let depth_max = a.depth.max(b.depth).max(c.depth).max(nothing) + nothing;
+    if eight.sampled.which != 0 {
+        let negative = negative.to_bitmask();
+        eight.sampled.from_behind =
+            if rules.behind == Behind::Negative { negative } else { !negative };
+        for (to, v) in eight.sampled.origin.iter_mut().zip([a.x, a.y]) {
+            (v >> SUBPIXEL_BITS).store_slice(to);
+        }
+        let numbers = [depth, depth_dx, depth_dy, depth_min, depth_max];
+        for (to, number) in eight.sampled.depth.iter_mut().zip(numbers) {
+            number.store_slice(to);
+        }
+        if eight.sampled.which == eight.seen {
+            return;
+        }
+    }
     let (x0, x1, x2) = (a.x.bitcast(), b.x.bitcast(), c.x.bitcast());
     let (y0, y1, y2) = (a.y.bitcast(), b.y.bitcast(), c.y.bitcast());
     let first = transpose(simd, [x0, x1, x2, y0, y1, y2, depth, depth_dx]);
@@ -154,35 +209,25 @@ fn with_bits<S: Simd>(simd: S, codes: u32x8<S>, bits: u32) -> u64 {
     (codes & bits).simd_ne(u32x8::splat(simd, 0)).to_bitmask()
 }
 
-/// Whether no sample of a pixel on the screen lies between three coordinates, as bits.
-#[inline(always)]
-fn misses_all_samples<S: Simd>(simd: S, v: [i32x8<S>; 3], reach: i32, pixels: u32) -> u64 {
-    let (low, high) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
-    // The first pixel with its centre at least there, as `first_center` has it.
-    let first = (low + (HALF_PIXEL - 1 - reach)) >> SUBPIXEL_BITS;
-    let end = (high + (HALF_PIXEL + reach)) >> SUBPIXEL_BITS;
-    let pixels = i32::try_from(pixels).unwrap_or(i32::MAX);
-    let nowhere = first.simd_ge(end) | end.simd_le(i32x8::splat(simd, 0));
-    (nowhere | first.simd_ge(i32x8::splat(simd, pixels))).to_bitmask()
-}
-
 /// The planes of depth through three vertices: the value at the centre of the pixel that holds the
 /// first, and the change per pixel.
 #[inline(always)]
 fn depth_planes<S: Simd>(
     simd: S,
     [a, b, c]: [Corner<S>; 3],
+    [[mut rest_x, rest_x1, rest_x2], [mut rest_y, rest_y1, rest_y2]]: [[f64x8<S>; 3]; 2],
     snapped_area: f64x8<S>,
 ) -> [f32x8<S>; 3] {
     let zero = simd.splat_f64x8(0.0);
-    let (mut rest_x, mut rest_y) = (widened(simd, a.rest_x), widened(simd, a.rest_y));
-    let (snapped_x1, snapped_y1) = (to_f64(simd, b.x - a.x), to_f64(simd, b.y - a.y));
-    let (snapped_x2, snapped_y2) = (to_f64(simd, c.x - a.x), to_f64(simd, c.y - a.y));
+    let (snapped_x1, snapped_y1) =
+        (integers_widened(simd, b.x - a.x), integers_widened(simd, b.y - a.y));
+    let (snapped_x2, snapped_y2) =
+        (integers_widened(simd, c.x - a.x), integers_widened(simd, c.y - a.y));
     // Through the places before snapping, which are exact.
-    let mut x1 = snapped_x1 + (widened(simd, b.rest_x) - rest_x);
-    let mut y1 = snapped_y1 + (widened(simd, b.rest_y) - rest_y);
-    let mut x2 = snapped_x2 + (widened(simd, c.rest_x) - rest_x);
-    let mut y2 = snapped_y2 + (widened(simd, c.rest_y) - rest_y);
+    let mut x1 = snapped_x1 + (rest_x1 - rest_x);
+    let mut y1 = snapped_y1 + (rest_y1 - rest_y);
+    let mut x2 = snapped_x2 + (rest_x2 - rest_x);
+    let mut y2 = snapped_y2 + (rest_y2 - rest_y);
     let mut area = x1 * y2 - x2 * y1;
     // A sliver that only snapping gives its area: its plane is that of the snapped triangle.
     let sliver = area.simd_lt(snapped_area * 0.25);
@@ -205,16 +250,5 @@ fn depth_planes<S: Simd>(
 fn to_center<S: Simd>(simd: S, v: i32x8<S>, rest: f64x8<S>) -> f64x8<S> {
     const PIXELS: f64 = 1.0 / SUBPIXELS as f64;
     let in_pixel = v & i32x8::splat(simd, SUBPIXELS - 1);
-    (to_f64(simd, i32x8::splat(simd, HALF_PIXEL) - in_pixel) - rest) * PIXELS
-}
-
-/// Integers of at most 31 bits as they are.
-#[inline(always)]
-fn to_f64<S: Simd>(simd: S, v: i32x8<S>) -> f64x8<S> {
-    // Added to the bits of 1.5 · 2⁵², an integer is added to the number.
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
-    let (low, high) = simd.widen_i32x8(v);
-    let bits = MAGIC.to_bits().cast_signed();
-    let (low, high) = (low + bits, high + bits);
-    simd.combine_f64x4(low.bitcast(), high.bitcast()) - MAGIC
+    (integers_widened(simd, i32x8::splat(simd, HALF_PIXEL) - in_pixel) - rest) * PIXELS
 }

@@ -9,9 +9,14 @@
 
 mod eight;
 mod runs;
+mod sampled;
 mod vertex;
 
+pub(crate) use eight::EIGHT;
 pub use runs::{Coverage, Run, runs};
+pub use sampled::Sampled;
+pub(crate) use sampled::{PIXELS, depths, place_in_box};
+pub(crate) use vertex::ScreenVertex;
 
 use crate::clip::volume::{ClipVertex, clip_polygon, clip_segment};
 use crate::math::{DVec2, Vec3};
@@ -22,11 +27,11 @@ use crate::simd::Level;
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Cull;
-use eight::{EIGHT, Eight, Rules};
+use eight::{Eight, Rules};
 use fearless_simd::{Simd, dispatch};
 use fearless_simd_macros::simd;
 use std::ops::Range;
-use vertex::{Hidden, ScreenVertex, Transform};
+use vertex::{Behind, Transform};
 
 /// A triangle on the screen: snapped vertices and the plane of its depth.
 ///
@@ -134,6 +139,22 @@ pub struct Filter {
 pub trait Sink {
     /// Takes one.
     fn take(&mut self, triangle: ScreenTriangle);
+
+    /// Whether small triangles are to be sampled at once, at the centres of pixels, and go to [`Self::take_sampled`].
+    fn takes_sampled(&self) -> bool {
+        false
+    }
+
+    /// Takes what those of eight triangles cover whose bits are set in `which`. Of each `primitive` gives the item and
+    /// the vertices in the mesh.
+    fn take_sampled<S: Simd>(
+        &mut self,
+        _simd: S,
+        _sampled: &Sampled,
+        _which: u64,
+        _primitive: impl Fn(usize) -> (u32, [u32; 3]),
+    ) {
+    }
 }
 
 impl Sink for Vec<ScreenTriangle> {
@@ -167,6 +188,16 @@ impl<'a> Assembler<'a> {
     /// An assembler for the scene, which has passed [`Scene::check`].
     pub fn new(scene: &'a Scene, view: &'a View, filter: Filter, level: Level) -> Self {
         Self { scene, view, filter, level, vertices: Vec::new(), counts: Counts::default() }
+    }
+
+    /// The same with memory for vertices that was used before, and is given back by [`Self::into_memory`].
+    pub(crate) fn with_memory(self, vertices: Vec<ScreenVertex>) -> Self {
+        Self { vertices, ..self }
+    }
+
+    /// The memory for vertices.
+    pub(crate) fn into_memory(self) -> Vec<ScreenVertex> {
+        self.vertices
     }
 
     /// Hands the screen triangles of primitives `range` of a run to `sink`, in order. Lines become
@@ -269,7 +300,7 @@ impl<'a> Assembler<'a> {
         let projected: Vec<ScreenVertex> =
             polygon.iter().map(|v| ScreenVertex::new(transform.to_screen(v))).collect();
         let fan = (2..projected.len()).map(|i| [0, i - 1, i].map(|corner| projected[corner]));
-        self.few(fan, item, transform.hidden_side(), sink);
+        self.few(fan, item, Some(transform), sink);
     }
 
     /// Sets up the few triangles that one primitive has become.
@@ -277,10 +308,10 @@ impl<'a> Assembler<'a> {
         &mut self,
         triangles: impl Iterator<Item = [ScreenVertex; 3]>,
         item: u32,
-        hidden: Option<Hidden>,
+        transform: Option<&Transform>,
         sink: &mut impl Sink,
     ) {
-        let (rules, mut eight) = (self.rules(hidden), Eight::default());
+        let (rules, mut eight) = (self.rules(transform, false), Eight::default());
         let mut drawn = 0;
         for corners in triangles {
             let of = corners.each_ref().map(|v| [v; EIGHT]);
@@ -294,8 +325,12 @@ impl<'a> Assembler<'a> {
         self.counts.culled += 1 - drawn;
     }
 
-    fn rules(&self, hidden: Option<Hidden>) -> Rules {
-        Rules { filter: self.filter, size: [self.view.width(), self.view.height()], hidden }
+    /// What is without sides has no transform here.
+    fn rules(&self, transform: Option<&Transform>, sampled: bool) -> Rules {
+        let size = [self.view.width(), self.view.height()];
+        let behind = transform.map_or(Behind::Positive, Transform::behind);
+        let cull_back = transform.is_some_and(|transform| transform.cull_back);
+        Rules { filter: self.filter, size, behind, cull_back, sampled }
     }
 
     /// The strip around a line, or the square around a point (whose ends are the same).
@@ -360,7 +395,7 @@ fn assemble<S: Simd>(
     part: &Part<'_>,
     sink: &mut impl Sink,
 ) {
-    let rules = assembler.rules(part.transform.hidden_side());
+    let rules = assembler.rules(Some(part.transform), sink.takes_sampled());
     let mut eight = Eight::default();
     let count = part.triangles.len();
     for start in (0..count).step_by(EIGHT) {
@@ -373,8 +408,15 @@ fn assemble<S: Simd>(
         }
         eight::set_up(simd, &rules, corners, &mut eight);
         let there = 0xff >> EIGHT.saturating_sub(count - start);
-        let mut left = (eight.seen | eight.uncut) & there;
+        let sampled = eight.sampled.which & there;
+        let mut left = ((eight.seen & !sampled) | eight.uncut) & there;
         assembler.counts.add(&eight, there);
+        if sampled != 0 {
+            sink.take_sampled(simd, &eight.sampled, sampled, |lane| {
+                let i = (start + lane) as u32;
+                (part.first_item + i, part.mesh.triangle((part.triangles.start + i) as usize))
+            });
+        }
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;

@@ -25,11 +25,11 @@ pub mod code {
 }
 
 /// Where the code is in a [`ScreenVertex`].
-const CODE: usize = 5;
+const CODE: usize = 2;
 
 /// A vertex after division and snapping, as a row of numbers, so that eight of them are soon columns: x and y on
-/// the grid; what snapping took away from each, in grid steps, for the place is (x + rest, y + rest); the
-/// depth; the [`code`]; two zeros. x and y have no meaning where the code has NEAR or GUARD. Floats are bits.
+/// the grid; the [`code`]; the depth; what snapping took away from x and y, in grid steps, for the place is
+/// (x + rest, y + rest); two zeros. x and y have no meaning where the code has NEAR or GUARD. Floats are bits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ScreenVertex(pub [u32; 8]);
 
@@ -38,13 +38,13 @@ impl ScreenVertex {
         let (x, y) = (snap(pixels.x), snap(pixels.y));
         let rest = |p: f64, snapped: i32| (p * f64::from(SUBPIXELS) - f64::from(snapped)) as f32;
         let [rest_x, rest_y] = [rest(pixels.x, x), rest(pixels.y, y)].map(f32::to_bits);
-        Self([x.cast_unsigned(), y.cast_unsigned(), rest_x, rest_y, depth.to_bits(), 0, 0, 0])
+        Self([x.cast_unsigned(), y.cast_unsigned(), 0, depth.to_bits(), rest_x, rest_y, 0, 0])
     }
 }
 
 /// Which sign of the area on the screen, y down, means: seen from behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hidden {
+pub enum Behind {
     Positive,
     Negative,
 }
@@ -73,11 +73,10 @@ impl Transform {
         volume::Options { borders: Borders::NearOnly { guard_band }, ..Default::default() }
     }
 
-    /// The sign that the area of faces seen from behind has, where those are left out.
-    pub fn hidden_side(&self) -> Option<Hidden> {
+    /// The sign that the area of faces seen from behind has.
+    pub fn behind(&self) -> Behind {
         // Fronts are counter-clockwise with y up, so their area is negative with y down.
-        let behind = if self.mirrored { Hidden::Negative } else { Hidden::Positive };
-        self.cull_back.then_some(behind)
+        if self.mirrored { Behind::Negative } else { Behind::Positive }
     }
 
     /// x and y in pixels and the depth of a vertex with w > 0.
@@ -90,7 +89,6 @@ impl Transform {
 
     /// Transforms positions in order; `vertices` is replaced.
     pub fn vertices(&self, level: Level, positions: &[Vec3], vertices: &mut Vec<ScreenVertex>) {
-        vertices.clear();
         vertices.resize(positions.len(), ScreenVertex::default());
         dispatch!(level, simd => transform(simd, self, positions, vertices));
     }
@@ -150,7 +148,7 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     let (rest_x, rest_y) = (narrowed(simd, rest_x), narrowed(simd, rest_y));
     let (x, y) = (low_bits(simd, snapped_x), low_bits(simd, snapped_y));
     let depth = narrowed(simd, z);
-    let rows = transpose(simd, [x, y, rest_x, rest_y, depth, none, none, none]);
+    let rows = transpose(simd, [x, y, none, depth, rest_x, rest_y, none, none]);
     for (to, row) in to.iter_mut().zip(&rows) {
         row.bitcast::<u32x8<S>>().store_slice(&mut to.0);
     }

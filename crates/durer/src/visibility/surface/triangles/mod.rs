@@ -9,14 +9,16 @@ mod tests;
 
 use crate::math::{DMat3, DMat4, Mat3, Vec3};
 use crate::raster::fixed::SUBPIXELS;
-use crate::scene::{Projection, Scene, Topology};
+use crate::scene::{Mesh, Projection, Scene, Topology};
 use crate::simd::Level;
 use crate::view::View;
 use crate::visibility::surface::attributes::VisibleTriangle;
 use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::setup::Run;
-use fearless_simd::dispatch;
-use prepare::{prepare, prepare_normals};
+use fearless_simd::{Simd, dispatch};
+use prepare::{normal_planes, prepare, prepare_normals};
+
+pub use prepare::NormalPlanes;
 
 /// What all triangles of a run share.
 #[derive(Debug, Clone, Copy)]
@@ -93,8 +95,7 @@ impl<'a> Triangles<'a> {
         level: Level,
         (kept, reach): (usize, i32),
     ) -> Self {
-        // Vertices were rounded to 1/256 pixel before samples were found in their triangles.
-        let most_change = LEAST_WEIGHT * SUBPIXELS as f32 / (reach + 1) as f32;
+        let most_change = most_change(reach);
         let normals = vec![NormalPlane::default(); kept].into_boxed_slice();
         let kept = vec![VisibleTriangle::default(); kept].into_boxed_slice();
         Self {
@@ -206,6 +207,33 @@ impl<'a> Triangles<'a> {
                 self.normals[place(item, &self.normals)] = of_item;
             }
         }
+    }
+}
+
+/// By how much edge functions may change from one pixel to the next for a triangle to be settled, where samples are up
+/// to `reach`/256 pixels from pixels' centres: vertices were rounded to 1/256 pixel before samples were found.
+fn most_change(reach: i32) -> f32 {
+    LEAST_WEIGHT * SUBPIXELS as f32 / (reach + 1) as f32
+}
+
+/// Normals of triangles of one run that nobody has asked for by their items yet.
+pub struct RunNormals<'a> {
+    mesh: &'a Mesh,
+    transform: RunTransform,
+}
+
+impl<'a> RunNormals<'a> {
+    /// Of a run; samples are up to `reach`/256 pixels from pixels' centres.
+    pub fn new(scene: &'a Scene, view: &View, runs: &[Run], (index, reach): (usize, i32)) -> Self {
+        let (run, most_change) = (&runs[index], most_change(reach));
+        let transform = RunTransform::new(index, run, scene, view, most_change);
+        Self { mesh: &scene.meshes[run.mesh], transform }
+    }
+
+    /// Of eight triangles, by their vertices in the mesh.
+    #[inline(always)]
+    pub fn planes<S: Simd>(&self, simd: S, corners: &[[u32; 3]; 8]) -> NormalPlanes<S> {
+        normal_planes(simd, &self.transform, self.mesh, corners)
     }
 }
 

@@ -4,10 +4,10 @@ use super::{RunTransform, place};
 use crate::math::{DMat4, Vec3};
 use crate::scene::{Mesh, Topology};
 use crate::visibility::surface::attributes::VisibleTriangle;
-use crate::visibility::surface::gather::{narrowed, transpose, widened};
+use crate::visibility::surface::gather::{integers_widened, narrowed, transpose, widened};
 use crate::visibility::surface::normal_plane::NormalPlane;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x8, mask32x8};
+use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8};
 use fearless_simd_macros::simd;
 
 /// Of eight vectors, by axis.
@@ -28,14 +28,24 @@ pub(super) fn prepare_normals<S: Simd>(
     (items, corners): (&[u32; 8], &[[u32; 3]; 8]),
     kept: &mut [NormalPlane],
 ) -> bool {
-    let (at, normals) = read(mesh, corners);
-    let normals = fronts(simd, t, mesh, &normals);
-    let on_screen = OnScreen::new(simd, t, mesh, &all_widened(simd, &at), normals.as_ref());
-    let normals = on_screen.normals(simd);
+    let normals = normal_planes(simd, t, mesh, corners).by_primitive(simd);
     for (lane, &item) in items.iter().enumerate() {
         normals.store(simd, lane, item, &mut kept[place(item, kept)]);
     }
     normals.settled == 0xff
+}
+
+/// The normals of eight primitives of a mesh, by the vertices of each.
+#[inline(always)]
+pub(super) fn normal_planes<S: Simd>(
+    simd: S,
+    t: &RunTransform,
+    mesh: &Mesh,
+    corners: &[[u32; 3]; 8],
+) -> NormalPlanes<S> {
+    let (at, normals) = read(mesh, corners);
+    let normals = fronts(simd, t, mesh, &normals);
+    OnScreen::new(simd, t, mesh, &all_widened(simd, &at), normals.as_ref()).normal_planes(simd)
 }
 
 /// Makes eight primitives of a mesh ready to be interpolated, side by side.
@@ -50,7 +60,7 @@ pub(super) fn prepare<S: Simd>(
     let (at, normals) = read(mesh, corners);
     let (at, normals) = (all_widened(simd, &at), fronts(simd, t, mesh, &normals));
     let on_screen = OnScreen::new(simd, t, mesh, &at, normals.as_ref());
-    let planes = on_screen.normals(simd);
+    let planes = on_screen.normal_planes(simd).by_primitive(simd);
     let OnScreen { edges: [constant, dx, dy], sides, .. } = on_screen;
     let zero = simd.splat_f64x8(0.0);
     let mut eye = [[zero; 3]; 3];
@@ -157,7 +167,7 @@ fn seen<S: Simd>([x, y, z]: Vectors<S>, sides: f32x8<S>) -> Vectors<S> {
 /// Eight primitives on the screen.
 struct OnScreen<'n, S: Simd> {
     /// The pixels from whose centres edge functions are counted.
-    origins: [[f64; 8]; 2],
+    origins: [f64x8<S>; 2],
     /// Edge functions, positive inside, that sum up to the w of the farthest vertex over w: constants and changes
     /// along x and y, by edge.
     edges: [Vectors<S>; 3],
@@ -170,7 +180,16 @@ struct OnScreen<'n, S: Simd> {
     settled: mask32x8<S>,
 }
 
-/// The normals of eight primitives.
+/// The normals of eight primitives as linear functions of the place on the screen, as of [`NormalPlane`].
+pub struct NormalPlanes<S: Simd> {
+    origins: [f64x8<S>; 2],
+    /// Constants and changes along x and y.
+    planes: [Vectors<S>; 3],
+    /// Which are [settled](NormalPlane::settled).
+    pub settled: mask32x8<S>,
+}
+
+/// The same, primitive by primitive.
 struct Normals<S: Simd> {
     origins: [[f64; 8]; 2],
     /// Constants and changes along x, by primitive; changes along y.
@@ -256,13 +275,12 @@ impl<'n, S: Simd> OnScreen<'n, S> {
         } else {
             ([none; 3], simd.simd_gt_f32x8(none, none))
         };
-        let origins = [ox.into(), oy.into()];
-        Self { origins, edges, sides, front, normals, settled }
+        Self { origins: [ox, oy], edges, sides, front, normals, settled }
     }
 
     /// The normals as planes.
     #[inline(always)]
-    fn normals(&self, simd: S) -> Normals<S> {
+    fn normal_planes(&self, simd: S) -> NormalPlanes<S> {
         let none = simd.splat_f32x8(0.0);
         // Without normals at the corners they are the same everywhere.
         let mut planes = [seen(self.front, self.sides), [none; 3], [none; 3]];
@@ -276,12 +294,34 @@ impl<'n, S: Simd> OnScreen<'n, S> {
                 }
             }
         }
-        let [[a, b, c], [d, e, f], [g, h, i]] = planes;
+        NormalPlanes { origins: self.origins, planes, settled: self.settled }
+    }
+}
+
+impl<S: Simd> NormalPlanes<S> {
+    /// The normals at the centres of pixels, one of each primitive's: bit for bit those of [`NormalPlane::at`].
+    #[inline(always)]
+    pub fn at(&self, simd: S, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 3] {
+        let x = narrowed(simd, integers_widened(simd, x) - self.origins[0]);
+        let y = narrowed(simd, integers_widened(simd, y) - self.origins[1]);
+        let [constant, dx, dy] = &self.planes;
+        let mut normal = *constant;
+        for (i, to) in normal.iter_mut().enumerate() {
+            *to = dx[i] * x + dy[i] * y + constant[i];
+        }
+        normal
+    }
+
+    #[inline(always)]
+    fn by_primitive(&self, simd: S) -> Normals<S> {
+        let none = simd.splat_f32x8(0.0);
+        let [[a, b, c], [d, e, f], [g, h, i]] = self.planes;
         let rows = [
             transpose(simd, [a, b, c, none, d, e, f, none]),
             transpose(simd, [g, h, i, none, none, none, none, none]),
         ];
-        Normals { origins: self.origins, rows, settled: self.settled.to_bitmask() }
+        let origins = self.origins.map(Into::into);
+        Normals { origins, rows, settled: self.settled.to_bitmask() }
     }
 }
 

@@ -1,13 +1,15 @@
 //! Which triangles touch which tiles: lists per job, joined in the order of the jobs.
 
+use super::micropolygon::{Fragment, Fragments, MOST_TILES, Micropolygons};
 use super::tile::TILE;
 use crate::raster::fixed::SUBPIXEL_BITS;
-use crate::scene::Scene;
-use crate::simd::Level;
 use crate::view::View;
+use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{
-    Assembler, Counts, Coverage, Filter, Run, ScreenTriangle, Sink,
+    Assembler, Counts, Coverage, Filter, Run, Sampled, ScreenTriangle, ScreenVertex, Sink,
 };
+use crate::visibility::surface::triangles::RunNormals;
+use fearless_simd::Simd;
 use std::ops::Range;
 
 /// Triangles per job: enough to keep a thread busy for about a tenth of a millisecond.
@@ -50,61 +52,86 @@ pub struct Bins {
     /// What happened on the way.
     pub counts: Counts,
     triangles: Vec<ScreenTriangle>,
-    /// Tiles with something in them, ascending, and where their entries begin.
-    starts: Vec<(u32, u32)>,
-    entries: Vec<u32>,
+    /// Of each tile which triangles touch it, in item order.
+    touching: ByTile<u32>,
+    /// What small triangles have left that are not among the others.
+    fragments: ByTile<Fragment>,
+}
+
+/// What is needed to make [`Bins`], and is used again.
+#[derive(Default)]
+pub struct Scratch {
+    /// Tile and triangle.
+    touched: Vec<(u32, u32)>,
+    fragments: Fragments,
+    vertices: Vec<ScreenVertex>,
 }
 
 impl Bins {
     /// Sets up the triangles of a job and sorts them into tiles.
-    pub fn new(
-        job: &Job,
-        runs: &[Run],
-        scene: &Scene,
-        view: &View,
-        filter: Filter,
-        level: Level,
-    ) -> Self {
+    pub fn new(job: &Job, lighting: &Lighting<'_>, filter: Filter, scratch: &mut Scratch) -> Self {
+        let Lighting { scene, view, runs, level, .. } = *lighting;
+        let Scratch { touched, fragments, vertices } = scratch;
+        touched.clear();
         let mut assembler = Assembler::new(scene, view, filter, level);
+        assembler = assembler.with_memory(std::mem::take(vertices));
         let most = job.pieces.iter().map(|(_, range)| range.len()).sum();
         let screen = TileGrid::new(view.width(), view.height());
+        let at_centers = filter.sample_reach == 0 && screen.count() <= MOST_TILES;
         let mut sorter = Sorter {
             screen,
             reach: filter.sample_reach,
             triangles: Vec::with_capacity(most),
-            touched: Vec::with_capacity(most),
+            touched,
+            samples: at_centers && job.coverage == Coverage::Opaque,
+            micropolygons: Micropolygons::new(screen, fragments),
+            normals: None,
         };
         for (run, range) in &job.pieces {
+            let normals = sorter.samples && lighting.asks_for_normals(*run);
+            sorter.normals =
+                normals.then(|| RunNormals::new(scene, view, runs, (*run, lighting.reach)));
             assembler.primitives(&runs[*run], range.clone(), &mut sorter);
+            sorter.micropolygons.finish(level, sorter.normals.as_ref());
         }
-        let Sorter { triangles, touched, .. } = sorter;
-        let (starts, entries) = sort_by_tile(&touched, screen.count());
-        Self { coverage: job.coverage, counts: assembler.counts, triangles, starts, entries }
+        let (coverage, counts, triangles) = (job.coverage, assembler.counts, sorter.triangles);
+        *vertices = assembler.into_memory();
+        let touching = sort_by_tile(touched, screen.count());
+        let fragments = gather_by_tile(fragments);
+        Self { coverage, counts, triangles, touching, fragments }
     }
 
     /// The triangles that touch a tile, in item order.
     pub fn of_tile(&self, tile: u32) -> impl Iterator<Item = &ScreenTriangle> + '_ {
-        let entries = match self.starts.binary_search_by_key(&tile, |s| s.0) {
-            Ok(i) => {
-                let end = self.starts.get(i + 1).map_or(self.entries.len(), |s| s.1 as usize);
-                &self.entries[self.starts[i].1 as usize..end]
-            }
-            Err(_) => &[],
-        };
-        entries.iter().map(|&e| &self.triangles[e as usize])
+        self.touching.of(tile).iter().map(|&e| &self.triangles[e as usize])
+    }
+
+    /// What is in a tile of triangles that were sampled at once.
+    pub fn fragments_of_tile(&self, tile: u32) -> &[Fragment] {
+        self.fragments.of(tile)
+    }
+
+    /// Tiles with something in them.
+    fn tiles(&self) -> impl Iterator<Item = u32> + '_ {
+        self.touching.starts.iter().chain(&self.fragments.starts).map(|&(tile, _)| tile)
     }
 }
 
 /// Keeps triangles, and finds the tiles that they touch.
-struct Sorter {
+struct Sorter<'s> {
     screen: TileGrid,
     reach: i32,
     triangles: Vec<ScreenTriangle>,
     /// Tile and triangle.
-    touched: Vec<(u32, u32)>,
+    touched: &'s mut Vec<(u32, u32)>,
+    /// Whether small triangles are sampled at once.
+    samples: bool,
+    micropolygons: Micropolygons<'s>,
+    /// Of the run whose triangles come, where they are asked for.
+    normals: Option<RunNormals<'s>>,
 }
 
-impl Sink for Sorter {
+impl Sink for Sorter<'_> {
     #[inline(always)]
     fn take(&mut self, triangle: ScreenTriangle) {
         let index = self.triangles.len();
@@ -115,19 +142,55 @@ impl Sink for Sorter {
             touched.push((tile, index as u32));
         });
     }
+
+    #[inline(always)]
+    fn takes_sampled(&self) -> bool {
+        self.samples
+    }
+
+    #[inline(always)]
+    fn take_sampled<S: Simd>(
+        &mut self,
+        simd: S,
+        sampled: &Sampled,
+        which: u64,
+        primitive: impl Fn(usize) -> (u32, [u32; 3]),
+    ) {
+        self.micropolygons.add(simd, self.normals.as_ref(), (sampled, which), primitive);
+    }
 }
 
 /// Whether anything touches each tile of the screen.
 pub fn occupied(bins: &[Bins], view: &View) -> Vec<bool> {
     let mut occupied = vec![false; TileGrid::new(view.width(), view.height()).count() as usize];
-    for &(tile, _) in bins.iter().flat_map(|bins| &bins.starts) {
+    for tile in bins.iter().flat_map(Bins::tiles) {
         occupied[tile as usize] = true;
     }
     occupied
 }
 
+/// Things by the tiles that they are in.
+struct ByTile<T> {
+    /// Tiles with something in them, ascending, and where their entries begin.
+    starts: Vec<(u32, u32)>,
+    entries: Vec<T>,
+}
+
+impl<T> ByTile<T> {
+    /// What is in a tile.
+    fn of(&self, tile: u32) -> &[T] {
+        match self.starts.binary_search_by_key(&tile, |s| s.0) {
+            Ok(i) => {
+                let end = self.starts.get(i + 1).map_or(self.entries.len(), |s| s.1 as usize);
+                &self.entries[self.starts[i].1 as usize..end]
+            }
+            Err(_) => &[],
+        }
+    }
+}
+
 /// Sorts (tile, triangle) pairs by tile, keeping the order of the triangles.
-fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> (Vec<(u32, u32)>, Vec<u32>) {
+fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile<u32> {
     let mut next = vec![0u32; tiles as usize + 1];
     for (tile, _) in touched {
         next[*tile as usize + 1] += 1;
@@ -145,7 +208,17 @@ fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> (Vec<(u32, u32)>, Vec<u32
         entries[*slot as usize] = *triangle;
         *slot += 1;
     }
-    (starts, entries)
+    ByTile { starts, entries }
+}
+
+/// Puts fragments into one list.
+fn gather_by_tile(fragments: &mut Fragments) -> ByTile<Fragment> {
+    let (mut starts, mut entries) = (Vec::new(), Vec::with_capacity(fragments.count()));
+    fragments.drain(|tile, of_tile| {
+        starts.push((tile, entries.len() as u32));
+        entries.extend_from_slice(of_tile);
+    });
+    ByTile { starts, entries }
 }
 
 /// The screen divided into tiles, row by row.
@@ -164,7 +237,7 @@ impl TileGrid {
         Self { columns: tiles(width), rows: tiles(height) }
     }
 
-    fn count(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         (self.columns * self.rows) as u32
     }
 

@@ -98,8 +98,10 @@ mod tests {
     use super::*;
     use crate::math::{DMat4, DVec3, Vec3};
     use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
+    use crate::shade::{PreparedLights, PreparedMaterials};
     use crate::simd::Level;
     use crate::view::View;
+    use crate::visibility::surface::lit::Lighting;
     use crate::visibility::surface::setup::{Filter, runs};
     use crate::visibility::surface::{Cull, Samples};
     use fearless_simd::dispatch;
@@ -139,13 +141,24 @@ mod tests {
     fn what_a_wall_hides_is_skipped_and_the_picture_stays() {
         let (scene, view) = scene();
         let runs = runs(&scene).expect("runs");
+        let (materials, lights) =
+            (PreparedMaterials::new(&scene), PreparedLights::auto(view.camera()));
         for samples in [Samples::One, Samples::Four] {
             let level = Level::new();
             let filter = Filter { cull: Cull::None, sample_reach: 128 };
-            let bins: Vec<Bins> = jobs(&runs)
-                .iter()
-                .map(|job| Bins::new(job, &runs, &scene, &view, filter, level))
-                .collect();
+            let lighting = Lighting {
+                scene: &scene,
+                view: &view,
+                runs: &runs,
+                materials: &materials,
+                lights: &lights,
+                shading: None,
+                reach: samples.reach(),
+                level,
+            };
+            let (jobs, mut scratch) = (jobs(&runs), Default::default());
+            let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &mut scratch));
+            let bins: Vec<Bins> = bins.collect();
             let area = [[0, 0], [64, 64]];
             let mut order = FrontToBack::default();
             let (mut given, mut skipped) = (Vec::new(), 0);

@@ -12,6 +12,7 @@
 mod bins;
 mod blended;
 mod front_to_back;
+mod micropolygon;
 mod rasterize;
 mod resolve;
 mod tile;
@@ -25,7 +26,7 @@ use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
-use crate::visibility::surface::lit::{Batch, Lighting, Lit};
+use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Samples};
@@ -103,16 +104,6 @@ pub fn render(
     let runs = runs(scene)?;
     let reach = options.samples.reach();
     let filter = Filter { cull: options.cull, sample_reach: reach };
-    let bins = crate::parallel::map(jobs(&runs), |job| {
-        Bins::new(&job, &runs, scene, view, filter, options.level)
-    });
-    let mut report = Report::default();
-    for bin in &bins {
-        report.counts += bin.counts;
-    }
-    report.geometry_seconds = start.elapsed().as_secs_f64();
-
-    let start = std::time::Instant::now();
     let materials = PreparedMaterials::new(scene);
     let lighting = Lighting {
         scene,
@@ -124,6 +115,16 @@ pub fn render(
         reach,
         level: options.level,
     };
+    let prepared = start.elapsed().as_secs_f64();
+    let bins = crate::parallel::map_with(jobs(&runs), Default::default, |scratch, job| {
+        Bins::new(&job, &lighting, filter, scratch)
+    });
+    let mut report = Report::default();
+    for bin in &bins {
+        report.counts += bin.counts;
+    }
+    report.geometry_seconds = start.elapsed().as_secs_f64() - prepared;
+
     let triangle_count = scene.triangle_count() as u32;
     let occupied = bins::occupied(&bins, view);
     let frame = Frame { view, options, lighting, bins: &bins, occupied, triangle_count };
@@ -131,7 +132,7 @@ pub fn render(
     crate::parallel::map_with(bands(framebuffer), scratch, |scratch, band| {
         frame.render_band(band, scratch);
     });
-    report.raster_seconds = start.elapsed().as_secs_f64();
+    report.raster_seconds = start.elapsed().as_secs_f64() - report.geometry_seconds;
     Ok(report)
 }
 
@@ -196,6 +197,7 @@ struct Scratch<'a> {
     planes: Vec<SamplePlane>,
     /// One sample at the pixel's centre, for depth, item and normal: made where they are first asked for.
     center: Vec<SamplePlane>,
+    known: KnownNormals,
     blended: Blended,
     batch: Batch,
     mixed: Mixed,
@@ -210,6 +212,7 @@ impl<'a> Scratch<'a> {
         Self {
             planes: SamplePlane::of(offsets),
             center: Vec::new(),
+            known: KnownNormals::new(TILE_PIXELS),
             blended: Blended::new(offsets),
             batch: Batch::default(),
             mixed: Mixed::new(TILE_PIXELS),
@@ -259,19 +262,38 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// Draws what is in a tile of triangles that were sampled at once; gives whether there is anything.
+    fn draw_fragments(
+        &self,
+        planes: &mut [SamplePlane],
+        mut known: Option<&mut KnownNormals>,
+        index: u32,
+    ) -> bool {
+        let mut any = false;
+        // There are none where pixels have several samples.
+        if let [plane] = planes {
+            for fragment in self.bins.iter().flat_map(|bins| bins.fragments_of_tile(index)) {
+                fragment.draw(plane, known.as_deref_mut());
+                any = true;
+            }
+        }
+        any
+    }
+
     /// Rasterizes the tile's opaque triangles.
     fn rasterize_opaque(
         &self,
         order: &mut FrontToBack<'a>,
-        planes: &mut [SamplePlane],
+        (planes, known): (&mut [SamplePlane], &mut KnownNormals),
         area: [[i32; 2]; 2],
         index: u32,
     ) {
+        known.clear();
+        let mut drawn = self.draw_fragments(planes, Some(known), index);
         // Without the faces that look away little is hidden, and an order would not pay.
         if self.options.cull == Cull::Back {
             return self.rasterize(Coverage::Opaque, planes, area, index, None::<&mut AllPass>);
         }
-        let mut drawn = false;
         for part in order.parts(self.bins, index) {
             dispatch!(self.options.level, simd => {
                 if std::mem::take(&mut drawn) {
@@ -301,9 +323,9 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, blended, batch, mixed, codes, lit, order, .. } = scratch;
+        let Scratch { planes, known, blended, batch, mixed, codes, lit, order, .. } = scratch;
         planes.iter_mut().for_each(SamplePlane::clear);
-        self.rasterize_opaque(order, planes, area, index);
+        self.rasterize_opaque(order, (planes, known), area, index);
         let mut mask = MaskTest { lit, tile };
         self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
         blended.clear();
@@ -315,7 +337,7 @@ impl<'a> Frame<'a> {
         let background = background_rows(self.options.background, self.view.height());
         let area = Area { tile, size, background: &background };
         dispatch!(self.options.level, simd =>
-            resolve(simd, planes, blended, (batch, mixed), lit, &area, codes));
+            resolve(simd, (planes, known), blended, (batch, mixed), lit, &area, codes));
         for (y, row) in band.rows_of(tile[0], size) {
             let codes = &codes[(y * TILE) as usize..];
             for (to, code) in row.iter_mut().zip(codes) {
@@ -338,6 +360,7 @@ impl<'a> Frame<'a> {
             *center = SamplePlane::of(&[[0; 2]]);
         }
         center.iter_mut().for_each(SamplePlane::clear);
+        self.draw_fragments(center, None, index);
         for coverage in [Coverage::Opaque, Coverage::Blended] {
             self.rasterize(coverage, center, area, index, None::<&mut AllPass>);
         }

@@ -7,7 +7,7 @@ use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Batch, Lit};
+use crate::visibility::surface::lit::{Batch, KnownNormals, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
@@ -62,14 +62,14 @@ pub type Codes = [u32; TILE_PIXELS];
 /// Lights everything that is visible in a tile.
 pub fn resolve<S: Simd>(
     simd: S,
-    planes: &[SamplePlane],
+    (planes, known): (&[SamplePlane], &KnownNormals),
     blended: &Blended,
     (batch, mixed): (&mut Batch, &mut Mixed),
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     codes: &mut Codes,
 ) {
-    resolve_opaque(simd, planes, (batch, mixed), lit, area, codes);
+    resolve_opaque(simd, (planes, known), (batch, mixed), lit, area, codes);
     if blended.any() {
         resolve_blended(simd, planes, blended, lit, area, codes);
     }
@@ -79,7 +79,7 @@ pub fn resolve<S: Simd>(
 #[simd]
 fn resolve_opaque<S: Simd>(
     simd: S,
-    planes: &[SamplePlane],
+    (planes, known): (&[SamplePlane], &KnownNormals),
     (batch, mixed): (&mut Batch, &mut Mixed),
     lit: &mut Lit<'_>,
     area: &Area<'_>,
@@ -98,7 +98,7 @@ fn resolve_opaque<S: Simd>(
     // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
         let width = 8.min(area.size[0] - x) as usize;
-        expect_column(simd, planes, x, area.size[1], lit);
+        expect_column(simd, (planes, known), x, area.size[1], lit);
         for y in (0..area.size[1]).step_by(2) {
             let at = [area.tile[0] + x, area.tile[1] + y];
             let patch = Patch::block(at);
@@ -120,7 +120,7 @@ fn resolve_opaque<S: Simd>(
             codes[second..second + 8].fill(encoded[row + 1]);
             let whole = simd.combine_u32x8(above, below);
             if whole.simd_ne(u32x16::splat(simd, NO_ITEM)).any_true() {
-                batch.light(simd, lit, whole, patch, [first, second], codes);
+                batch.light(simd, lit, (whole, known), patch, [first, second], codes);
             }
             for i in 0..2.min(area.size[1] - y) as usize {
                 if differs[i] != [0; 8] {
@@ -140,12 +140,19 @@ fn resolve_opaque<S: Simd>(
 
 /// Makes what a column of eight pixels shows ready to be lit.
 #[inline(always)]
-fn expect_column<S: Simd>(simd: S, planes: &[SamplePlane], x: i32, height: i32, lit: &mut Lit<'_>) {
+fn expect_column<S: Simd>(
+    simd: S,
+    (planes, known): (&[SamplePlane], &KnownNormals),
+    x: i32,
+    height: i32,
+    lit: &mut Lit<'_>,
+) {
     let none = u32x8::splat(simd, NO_ITEM);
     for plane in planes {
         let mut rows_above = [none; 4];
         for y in 0..height {
-            let items = plane.items_of_eight((y * TILE + x) as usize);
+            let pixel = (y * TILE + x) as usize;
+            let items = plane.items_of_eight(pixel);
             for (eight, above) in items.as_chunks::<8>().0.iter().zip(&mut rows_above) {
                 let shown = u32x8::from_slice(simd, eight);
                 // Most that is beside the same or below it has been asked for.
@@ -154,6 +161,7 @@ fn expect_column<S: Simd>(simd: S, planes: &[SamplePlane], x: i32, height: i32, 
                 let above_right = simd.slide_u32x8::<1>(*above, none);
                 let mut new = shown.simd_ne(none) & shown.simd_ne(beside) & shown.simd_ne(*above);
                 new &= shown.simd_ne(above_left) & shown.simd_ne(above_right);
+                new &= !known.of_eight(simd, pixel, shown);
                 *above = shown;
                 let mut left = new.to_bitmask();
                 while left != 0 {

@@ -70,9 +70,6 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         .flat_map(|s| levels().into_iter().map(move |l| (s, l)))
     {
         let filter = Filter { cull: Cull::None, sample_reach: 128 };
-        let jobs = jobs(&runs);
-        let bins = jobs.iter().map(|job| Bins::new(job, &runs, &scene, &view, filter, level));
-        let bins: Vec<Bins> = bins.collect();
         let lighting = Lighting {
             scene: &scene,
             view: &view,
@@ -83,6 +80,9 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
             reach: samples.reach(),
             level,
         };
+        let (jobs, mut scratch) = (jobs(&runs), Default::default());
+        let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &mut scratch));
+        let bins: Vec<Bins> = bins.collect();
         let (mut lit, area) = (Lit::new(lighting), [[0, 0], [64, 64]]);
         let mut planes = SamplePlane::of(samples.offsets());
         for bins in bins.iter().filter(|b| b.coverage == Coverage::Opaque) {

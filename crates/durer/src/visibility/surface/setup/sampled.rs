@@ -1,0 +1,150 @@
+//! Triangles that are sampled while they are set up: of a mesh as fine as the pixels, nothing but a pixel or two
+//! is left of each, and to keep it as a triangle would cost more than to find these.
+//!
+//! Source: micropolygons, after R. L. Cook, L. Carpenter, E. Catmull, *The Reyes image rendering architecture*,
+//! SIGGRAPH 1987; here they are sampled by the same integers as other triangles, eight side by side. Cost: O(1) for
+//! each.
+
+use super::eight::{Corner, EIGHT};
+use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, i32x8, mask32x8, u32x8};
+
+/// Pixels on a side of the boxes of triangles that are sampled at once.
+const SIDE: i32 = 4;
+
+/// Pixels in such a box, row by row.
+pub const PIXELS: usize = (SIDE * SIDE) as usize;
+
+/// What the small ones of eight triangles cover, by pixel of their boxes.
+#[derive(Default)]
+pub struct Sampled {
+    /// Those that cover any pixel's centre on the screen, as bits.
+    pub which: u64,
+    /// Those whose backs are seen, as bits.
+    pub from_behind: u64,
+    /// Columns and rows of the upper left pixels of their boxes, by triangle.
+    pub first: [[i32; EIGHT]; 2],
+    /// Which pixels of its box each covers, as bits.
+    pub covered: [u32; EIGHT],
+    /// Columns and rows of the pixels that depths are counted from.
+    pub origin: [[i32; EIGHT]; 2],
+    /// The depths at the centres of these, their changes per pixel, the least and the largest.
+    pub depth: [[f32; EIGHT]; 5],
+}
+
+/// Along one axis the pixels of the screen whose samples may lie between the corners of eight triangles.
+#[derive(Clone, Copy)]
+pub struct Span<S: Simd> {
+    /// The first.
+    pub first: i32x8<S>,
+    /// After the last.
+    end: i32x8<S>,
+}
+
+impl<S: Simd> Span<S> {
+    /// Of three coordinates, where samples are up to `reach` from pixels' centres.
+    #[inline(always)]
+    pub fn new(v: [i32x8<S>; 3], reach: i32) -> Self {
+        let (low, high) = (v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2]));
+        // The first pixel with its centre at least there, as `first_center` has it.
+        let first = (low + (HALF_PIXEL - 1 - reach)) >> SUBPIXEL_BITS;
+        Self { first, end: (high + (HALF_PIXEL + reach)) >> SUBPIXEL_BITS }
+    }
+
+    /// Whether there are none on a screen of so many, as bits.
+    #[inline(always)]
+    pub fn misses(&self, simd: S, pixels: u32) -> u64 {
+        let pixels = i32::try_from(pixels).unwrap_or(i32::MAX);
+        let nowhere = self.first.simd_ge(self.end) | self.end.simd_le(i32x8::splat(simd, 0));
+        (nowhere | self.first.simd_ge(i32x8::splat(simd, pixels))).to_bitmask()
+    }
+
+    /// Whether there are at most [`SIDE`].
+    #[inline(always)]
+    pub fn is_small(&self) -> mask32x8<S> {
+        (self.end - self.first).simd_le(SIDE)
+    }
+}
+
+/// Column and row of a pixel of a box, counted from its first.
+#[inline(always)]
+pub fn place_in_box(pixel: usize) -> [i32; 2] {
+    [pixel as i32 % SIDE, pixel as i32 / SIDE]
+}
+
+/// Finds which pixels of their boxes triangles cover, whose corners go clockwise. Of those whose boxes are larger
+/// it finds nothing that means anything.
+#[inline(always)]
+pub fn cover<S: Simd>(
+    simd: S,
+    corners: [Corner<S>; 3],
+    first: [i32x8<S>; 2],
+    size: [u32; 2],
+    sampled: &mut Sampled,
+) {
+    let [x, y] = first.map(|v| (v << SUBPIXEL_BITS) + HALF_PIXEL);
+    let mut outside = [i32x8::splat(simd, 0); PIXELS];
+    for i in 0..3 {
+        let (from, to) = (&corners[i], &corners[(i + 1) % 3]);
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        // −1 where the edge is a top or left one, whose points belong to the triangle: dy < 0, or it is 0 and dx > 0. A
+        // small triangle's edges are shorter than 2¹¹.
+        let top_left = ((dy << 11u32) - dx) >> 31u32;
+        let mut row = dx * (y - from.y) - dy * (x - from.x) - (top_left + 1);
+        let (right, down) = (dy * -SUBPIXELS, dx * SUBPIXELS);
+        for pixels in outside.as_chunks_mut::<{ SIDE as usize }>().0 {
+            let mut at = row;
+            for pixel in pixels {
+                *pixel |= at;
+                at += right;
+            }
+            row += down;
+        }
+    }
+    let mut covered = i32x8::splat(simd, 0);
+    for (pixel, outside) in outside.into_iter().enumerate() {
+        covered |= !(outside >> 31u32) & (1 << pixel);
+    }
+    covered &= on_screen(simd, first, size);
+    let covered: u32x8<S> = covered.bitcast();
+    sampled.which = covered.simd_ne(u32x8::splat(simd, 0)).to_bitmask();
+    first[0].store_slice(&mut sampled.first[0]);
+    first[1].store_slice(&mut sampled.first[1]);
+    covered.store_slice(&mut sampled.covered);
+}
+
+/// Which pixels of boxes lie on the screen, as bits; others may be set too.
+#[inline(always)]
+fn on_screen<S: Simd>(simd: S, [x, y]: [i32x8<S>; 2], size: [u32; 2]) -> i32x8<S> {
+    let [width, height] = size.map(|v| i32::try_from(v).unwrap_or(i32::MAX));
+    let zero = i32x8::splat(simd, 0);
+    let beyond = x.min(y).simd_lt(zero) | x.simd_gt(width - SIDE) | y.simd_gt(height - SIDE);
+    if !beyond.any_true() {
+        return !zero;
+    }
+    let mut bits = zero;
+    for pixel in 0..PIXELS {
+        let [column, row] = place_in_box(pixel);
+        let (x, y) = (x + column, y + row);
+        let here = x.min(y).simd_ge(zero) & x.simd_lt(width) & y.simd_lt(height);
+        bits |= here.select(i32x8::splat(simd, 1 << pixel), zero);
+    }
+    bits
+}
+
+/// The depths at a pixel of each box, bit for bit as the rasterizer finds them.
+#[inline(always)]
+pub fn depths<S: Simd>(
+    simd: S,
+    [x, y]: [i32x8<S>; 2],
+    origin: &[[i32; EIGHT]; 2],
+    depth: &[[f32; EIGHT]; 5],
+) -> f32x8<S> {
+    let x = simd.cvt_f32_i32x8(x - i32x8::from_slice(simd, &origin[0]));
+    let y = simd.cvt_f32_i32x8(y - i32x8::from_slice(simd, &origin[1]));
+    let [depth, depth_dx, depth_dy, least, largest] = depth;
+    let (x, y) = (x * f32x8::from_slice(simd, depth_dx), y * f32x8::from_slice(simd, depth_dy));
+    let here = (x + y) + f32x8::from_slice(simd, depth);
+    here.max(f32x8::from_slice(simd, least)).min(f32x8::from_slice(simd, largest))
+}
