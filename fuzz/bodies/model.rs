@@ -37,12 +37,21 @@ fn check(model: durer_formats::Result<durer_formats::Model>) {
     }
 }
 
+/// From an open file comes the same as from its bytes, which can be drawn.
+fn check_gltf(bytes: &[u8], resources: &dyn Resources) {
+    let model = gltf::read(bytes, resources, &options());
+    let opened = gltf::read_file(Cursor::new(bytes), resources, &options());
+    // As text, where NaN is NaN.
+    assert_eq!(format!("{opened:?}"), format!("{model:?}"));
+    check(model);
+}
+
 /// glTF as text and as GLB; and a JSON text of the format's words with the rest as buffer.
 pub fn gltf(bytes: &[u8]) {
-    check(gltf::read(bytes, &Same(bytes), &options()));
+    check_gltf(bytes, &Same(bytes));
     let _ = ModelFormat::of_content(bytes);
     if let Ok((json, buffer)) = document(bytes) {
-        check(gltf::read(&glb(&json, buffer), &Same(buffer), &options()));
+        check_gltf(&glb(&json, buffer), &Same(buffer));
     }
 }
 
@@ -105,14 +114,14 @@ pub fn draco(bytes: &[u8]) {
         "extensionsUsed":["KHR_draco_mesh_compression"]}}"#,
         bytes.len()
     );
-    check(gltf::read(&glb(&json, bytes), &Same(&[]), &options()));
+    check_gltf(&glb(&json, bytes), &Same(&[]));
 }
 
 /// The bytes as a view compressed by meshoptimizer; the first few say how.
 pub fn meshopt(bytes: &[u8]) {
     let mut u = Unstructured::new(bytes);
     let Ok((json, data)) = meshopt_document(&mut u) else { return };
-    check(gltf::read(&glb(&json, data), &Same(&[]), &options()));
+    check_gltf(&glb(&json, data), &Same(&[]));
 }
 
 fn meshopt_document<'a>(u: &mut Unstructured<'a>) -> Result<(String, &'a [u8])> {

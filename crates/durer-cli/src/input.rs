@@ -4,7 +4,7 @@ use crate::args::ReadingArgs;
 use crate::failure::{Failure, in_words};
 use crate::resources::Folder;
 use durer_formats::{
-    Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, read_model, stl,
+    Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, gltf, read_model, stl,
 };
 use std::ffi::OsStr;
 use std::fs::File;
@@ -62,18 +62,23 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
 /// Reads a model from all of its bytes.
 fn read_whole(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
     let bytes = bytes(path, options.limits.decoded_bytes)?;
-    let folder = Folder::of(path);
-    let resources: &dyn Resources = match &folder {
-        Ok(folder) if !is_stream(path) => folder,
-        _ => &NoResources,
-    };
+    let resources: Box<dyn Resources> =
+        if is_stream(path) { Box::new(NoResources) } else { resources(path) };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_model(&bytes, &name, resources, options)
+    read_model(&bytes, &name, &*resources, options)
         .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
 }
 
-/// Reads a binary STL file without holding its bytes, which are more than the model's; `None` for
-/// anything else.
+/// What a model in a file may refer to.
+fn resources(path: &Path) -> Box<dyn Resources> {
+    match Folder::of(path) {
+        Ok(folder) => Box::new(folder),
+        Err(_) => Box::new(NoResources),
+    }
+}
+
+/// Reads a binary STL or glTF file without holding its bytes, which are as many as the model's or more;
+/// `None` for anything else.
 fn streamed(path: &Path, options: &ReadOptions) -> Option<Result<Model, Failure>> {
     // Of a pipe the bytes read here would be lost.
     let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
@@ -83,10 +88,14 @@ fn streamed(path: &Path, options: &ReadOptions) -> Option<Result<Model, Failure>
     let mut file = File::open(path).ok()?;
     let mut head = [0; stl::HEADER];
     file.read_exact(&mut head).ok()?;
-    stl::is_whole_binary(&head, length).then(|| {
+    let model = if stl::is_whole_binary(&head, length) {
         stl::read_binary_stream(&head, file, options)
-            .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
-    })
+    } else if gltf::is_binary(&head) {
+        gltf::read_file(file, &*resources(path), options)
+    } else {
+        return None;
+    };
+    Some(model.map_err(|e| Failure::Data(format!("{}: {e}", display_name(path)))))
 }
 
 /// All bytes of a file, or of standard input, refused above the limit.

@@ -95,3 +95,43 @@ fn a_run_takes_less_than_eight_times_its_file() {
         assert!(peak < most, "{name} of {} bytes: {peak}, not below {most}", file.len());
     }
 }
+
+/// A binary glTF file of many vertices and one triangle.
+fn glb(vertices: u32) -> Vec<u8> {
+    let (points, bytes) = (12 * vertices, 12 * vertices + 12);
+    let mut json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"buffers":[{{"byteLength":{bytes}}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"accessors":[
+        {{"bufferView":0,"componentType":5126,"count":{vertices},"type":"VEC3"}},
+        {{"bufferView":1,"componentType":5125,"count":3,"type":"SCALAR"}}],"bufferViews":[
+        {{"buffer":0,"byteLength":{points}}},{{"buffer":0,"byteOffset":{points},"byteLength":12}}]}}"#
+    );
+    json += &" ".repeat(json.len().wrapping_neg() % 4);
+    let mut file = b"glTF\x02\0\0\0".to_vec();
+    file.extend((28 + json.len() as u32 + bytes).to_le_bytes());
+    file.extend((json.len() as u32).to_le_bytes());
+    file.extend(b"JSON");
+    file.extend(json.bytes());
+    file.extend(bytes.to_le_bytes());
+    file.extend(b"BIN\0");
+    for i in 0..vertices {
+        let point = [i as f32, (i % 2) as f32, 0.0];
+        file.extend(point.iter().flat_map(|v| v.to_le_bytes()));
+    }
+    file.extend([0, 1, 2].iter().flat_map(|index: &u32| index.to_le_bytes()));
+    file
+}
+
+#[test]
+fn of_a_binary_gltf_file_only_what_is_made_of_it_is_held() {
+    let folder = Folder::new();
+    let file = glb(3_000_000);
+    folder.write("a.glb", &file);
+    let report = folder.must("render a.glb -o a.png --size 64x64 --threads 1 --json").json();
+    let Some(peak) = report["peak_memory_bytes"].as_u64() else {
+        println!("skipped: the system does not tell the peak of the memory");
+        return;
+    };
+    let most = OWN + 3 * file.len() as u64 / 2;
+    assert!(peak < most, "{} bytes: {peak}, not below {most}", file.len());
+}

@@ -1,6 +1,7 @@
 //! Accessors: typed arrays in buffer views, interleaved, sparse, normalized.
 
 use super::buffer::Source;
+use super::bytes::Bytes;
 use super::check::missing;
 use super::json::{Accessor, Root, Whole};
 use crate::{Error, Result};
@@ -208,15 +209,41 @@ fn check_sparse(root: &Root, accessor: &Accessor, whole: &Layout, at: &str) -> R
 }
 
 impl Source<'_> {
-    /// Elements without gaps, sparse values put in.
-    fn packed(&self, index: Whole, at: &str) -> Result<(Layout, Vec<u8>)> {
-        if index.index() >= self.root.accessors.len() {
-            return Err(missing("accessor", index, self.root.accessors.len(), at));
+    /// The layout of an accessor.
+    fn layout(&self, index: Whole, at: &str) -> Result<Layout> {
+        let count = self.root.accessors.len();
+        if index.index() >= count {
+            return Err(missing("accessor", index, count, at));
         }
-        let layout = Layout::of(self.root, index.index())?;
+        Layout::of(self.root, index.index())
+    }
+
+    /// Hands over an accessor's elements in order, in pieces, with the bytes from one element to the next.
+    fn elements(
+        &self,
+        index: Whole,
+        layout: &Layout,
+        at: &str,
+        mut take: impl FnMut(&[u8], usize),
+    ) -> Result<()> {
+        let accessor = &self.root.accessors[index.index()];
+        match accessor.buffer_view {
+            Some(view) if accessor.sparse.is_none() => {
+                let bytes = occupied(&self.view(view, at)?, layout, at)?;
+                bytes.pieces(layout.stride, |piece| take(piece, layout.stride))
+            }
+            _ => {
+                take(&self.packed(index, layout, at)?, layout.element());
+                Ok(())
+            }
+        }
+    }
+
+    /// Elements without gaps, sparse values put in.
+    fn packed(&self, index: Whole, layout: &Layout, at: &str) -> Result<Vec<u8>> {
         let accessor = &self.root.accessors[index.index()];
         let mut bytes = match accessor.buffer_view {
-            Some(view) => gather(self.view(view, at)?, &layout, at)?,
+            Some(view) => gather(&self.view(view, at)?, layout, at)?,
             None => {
                 // No data stand behind this count, so the limit alone bounds it.
                 let size = (layout.count as u64).saturating_mul(layout.element() as u64);
@@ -226,10 +253,10 @@ impl Source<'_> {
         };
         if let Some(sparse) = &accessor.sparse {
             let at = format!("accessors[{}]", index.0);
-            let [places, values] = sparse_layouts(self.root, accessor, &layout, &at)?;
+            let [places, values] = sparse_layouts(self.root, accessor, layout, &at)?;
             let view = |view: Option<Whole>| self.view(view.unwrap_or_default(), &at);
-            let places_bytes = gather(view(sparse.indices.buffer_view)?, &places, &at)?;
-            let values = gather(view(sparse.values.buffer_view)?, &values, &at)?;
+            let places_bytes = gather(&view(sparse.indices.buffer_view)?, &places, &at)?;
+            let values = gather(&view(sparse.values.buffer_view)?, &values, &at)?;
             let places = places_bytes
                 .chunks_exact(places.component.size())
                 .map(|b| places.component.unsigned(b));
@@ -243,7 +270,7 @@ impl Source<'_> {
                 element.copy_from_slice(value);
             }
         }
-        Ok((layout, bytes))
+        Ok(bytes)
     }
 
     /// Elements of N floats; integers are converted, normalized where the accessor says so.
@@ -251,22 +278,38 @@ impl Source<'_> {
     /// # Errors
     /// Where the accessor has another shape, or its data are not there.
     pub fn floats<const N: usize>(&self, index: Whole, at: &str) -> Result<Vec<[f32; N]>> {
-        let (layout, bytes) = self.packed(index, at)?;
+        self.vectors(index, at)
+    }
+
+    /// [`Self::floats`] as vectors.
+    ///
+    /// # Errors
+    /// As [`Self::floats`].
+    pub fn vectors<T: From<[f32; N]>, const N: usize>(
+        &self,
+        index: Whole,
+        at: &str,
+    ) -> Result<Vec<T>> {
+        let layout = self.layout(index, at)?;
         if layout.lanes != N {
             let message = format!("has {} numbers per element, {N} are needed", layout.lanes);
             return Err(Error::path(at, message));
         }
         let normalized = self.root.accessors[index.index()].normalized;
-        self.budget.bytes(layout.count as u64 * 4 * N as u64, at)?;
-        let size = layout.component.size();
-        Ok(bytes
-            .chunks_exact(size * N)
-            .map(|e| {
-                std::array::from_fn(|lane| {
-                    layout.component.float(&e[lane * size..][..size], normalized)
-                })
-            })
-            .collect())
+        self.budget.bytes((layout.count as u64).saturating_mul(4 * N as u64), at)?;
+        let (component, mut all) = (layout.component, Vec::new());
+        self.elements(index, &layout, at, |bytes, stride| {
+            all.reserve_exact(layout.count - all.len());
+            match component.size() {
+                1 => decode(bytes, stride, |b: [u8; 1]| component.float(&b, normalized), &mut all),
+                2 => decode(bytes, stride, |b: [u8; 2]| component.float(&b, normalized), &mut all),
+                _ if component == Component::F32 => {
+                    decode(bytes, stride, f32::from_le_bytes, &mut all);
+                }
+                _ => decode(bytes, stride, |b: [u8; 4]| component.float(&b, normalized), &mut all),
+            }
+        })?;
+        Ok(all)
     }
 
     /// Elements of N unsigned integers.
@@ -274,33 +317,55 @@ impl Source<'_> {
     /// # Errors
     /// As [`Self::floats`], and for signed or floating numbers.
     pub fn integers<const N: usize>(&self, index: Whole, at: &str) -> Result<Vec<[u32; N]>> {
-        let (layout, bytes) = self.packed(index, at)?;
+        let layout = self.layout(index, at)?;
         if layout.lanes != N
             || matches!(layout.component, Component::I8 | Component::I16 | Component::F32)
         {
             return Err(Error::path(at, format!("must have {N} unsigned integers per element")));
         }
-        self.budget.bytes(layout.count as u64 * 4 * N as u64, at)?;
-        let size = layout.component.size();
-        let number = |bytes: &[u8]| layout.component.unsigned(bytes).unwrap_or_default();
-        Ok(bytes
-            .chunks_exact(size * N)
-            .map(|e| std::array::from_fn(|lane| number(&e[lane * size..][..size])))
-            .collect())
+        self.budget.bytes((layout.count as u64).saturating_mul(4 * N as u64), at)?;
+        let mut all = Vec::new();
+        self.elements(index, &layout, at, |bytes, stride| {
+            all.reserve_exact(layout.count - all.len());
+            match layout.component.size() {
+                1 => decode(bytes, stride, |[a]: [u8; 1]| u32::from(a), &mut all),
+                2 => decode(bytes, stride, |b| u32::from(u16::from_le_bytes(b)), &mut all),
+                _ => decode(bytes, stride, u32::from_le_bytes, &mut all),
+            }
+        })?;
+        Ok(all)
     }
 }
 
-/// Elements one after the other, whatever lies between them.
-fn gather(view: &[u8], layout: &Layout, at: &str) -> Result<Vec<u8>> {
-    let (element, stride) = (layout.element(), layout.stride);
-    if layout.count == 0 {
-        return Ok(Vec::new());
+/// Adds elements of N numbers of SIZE bytes each, between which there may be others.
+fn decode<const SIZE: usize, const N: usize, V, T: From<[V; N]>>(
+    bytes: &[u8],
+    stride: usize,
+    number: impl Fn([u8; SIZE]) -> V,
+    to: &mut Vec<T>,
+) {
+    let element = |numbers: &[[u8; SIZE]; N]| T::from(numbers.map(&number));
+    if stride == SIZE * N {
+        to.extend(bytes.as_chunks::<SIZE>().0.as_chunks::<N>().0.iter().map(element));
+    } else {
+        let strides = bytes.chunks(stride);
+        to.extend(strides.filter_map(|b| b.as_chunks::<SIZE>().0.first_chunk().map(element)));
     }
-    let end = layout.end();
-    let bytes = usize::try_from(end).ok().and_then(|end| view.get(layout.offset..end));
-    let bytes = bytes.ok_or_else(|| Error::path(at, "its elements lie outside of their view"))?;
+}
+
+/// The bytes of a view from an accessor's first element to its last.
+fn occupied<'a>(view: &Bytes<'a>, layout: &Layout, at: &str) -> Result<Bytes<'a>> {
+    let offset = if layout.count == 0 { 0 } else { layout.offset as u64 };
+    let part = u64::try_from(layout.end()).ok().and_then(|end| view.part(offset..end));
+    part.ok_or_else(|| Error::path(at, "its elements lie outside of their view"))
+}
+
+/// Elements one after the other, whatever lies between them.
+fn gather(view: &Bytes<'_>, layout: &Layout, at: &str) -> Result<Vec<u8>> {
+    let (element, stride) = (layout.element(), layout.stride);
+    let bytes = occupied(view, layout, at)?.whole()?;
     if stride == element {
-        return Ok(bytes.to_vec());
+        return Ok(bytes.into_owned());
     }
     Ok(bytes.chunks(stride).flat_map(|e| &e[..element]).copied().collect())
 }

@@ -1,11 +1,11 @@
 //! Buffers and the views into them, with what their memory is charged to.
 
+use super::bytes::Bytes;
 use super::check::missing;
 use super::container::Container;
 use super::json::{BufferView, Root, Whole};
 use super::{meshopt, uri};
 use crate::{Error, Limits, Place, Resources, Result};
-use std::borrow::Cow;
 use std::cell::Cell;
 
 /// What has been taken of the limits so far.
@@ -54,19 +54,37 @@ fn take(used: &Cell<u64>, count: u64, limit: u64, what: &'static str, at: &str) 
     Ok(())
 }
 
-/// A file with its bytes at hand.
+/// The bytes of a buffer.
+#[derive(Debug)]
+enum Buffer<'a> {
+    /// Of a file of its own, or in the JSON.
+    Loaded(Vec<u8>),
+    /// The binary chunk.
+    Chunk(Bytes<'a>),
+}
+
+impl Buffer<'_> {
+    fn bytes(&self) -> Bytes<'_> {
+        match self {
+            Self::Loaded(bytes) => Bytes::Held(bytes),
+            Self::Chunk(bytes) => bytes.clone(),
+        }
+    }
+}
+
+/// A file with its buffers.
 #[derive(Debug)]
 pub struct Source<'a> {
     /// The JSON.
     pub root: &'a Root,
     /// What is left of the limits.
     pub budget: &'a Budget,
-    buffers: Vec<Option<Cow<'a, [u8]>>>,
+    buffers: Vec<Option<Buffer<'a>>>,
     unpacked: Vec<Option<Vec<u8>>>,
 }
 
 impl<'a> Source<'a> {
-    /// Loads all buffers and unpacks compressed views.
+    /// Loads all buffers but the binary chunk, and unpacks compressed views.
     ///
     /// # Errors
     /// Where a buffer cannot be had or is shorter than it says, or a view does not unpack.
@@ -89,12 +107,12 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// Where the view does not exist or its buffer has no data.
-    pub fn view(&self, index: Whole, at: &str) -> Result<&[u8]> {
+    pub fn view(&self, index: Whole, at: &str) -> Result<Bytes<'_>> {
         let i = index.index();
         let views = &self.root.buffer_views;
         let view = views.get(i).ok_or_else(|| missing("buffer view", index, views.len(), at))?;
         match self.unpacked.get(i) {
-            Some(Some(bytes)) => Ok(bytes),
+            Some(Some(bytes)) => Ok(Bytes::Held(bytes)),
             _ => self.slice(
                 view.buffer,
                 view.byte_offset,
@@ -110,14 +128,14 @@ impl<'a> Source<'a> {
         offset: Whole,
         length: Whole,
         at: &str,
-    ) -> Result<&[u8]> {
+    ) -> Result<Bytes<'_>> {
         let i = buffer.map_or(usize::MAX, Whole::index);
-        let bytes = self.buffers.get(i).ok_or_else(|| Error::path(at, "its buffer is missing"))?;
-        let bytes = bytes.as_deref().ok_or_else(|| {
+        let buffer = self.buffers.get(i).ok_or_else(|| Error::path(at, "its buffer is missing"))?;
+        let bytes = buffer.as_ref().map(Buffer::bytes).ok_or_else(|| {
             Error::path(format!("buffers[{i}]"), "it has neither a URI nor a binary chunk")
         })?;
         let end = offset.0.saturating_add(length.0);
-        bytes.get(offset.index()..usize::try_from(end).unwrap_or(usize::MAX)).ok_or_else(|| {
+        bytes.part(offset.0..end).ok_or_else(|| {
             Error::path(at, format!("ends at byte {end} of a buffer of {} bytes", bytes.len()))
         })
     }
@@ -133,6 +151,7 @@ impl<'a> Source<'a> {
             return Err(Error::path(at, message));
         }
         let data = self.slice(packing.buffer, packing.byte_offset, packing.byte_length, &at)?;
+        let data = data.whole()?;
         self.budget.bytes(size, &at)?;
         let packing = meshopt::Packing {
             count: packing.count.index(),
@@ -140,7 +159,7 @@ impl<'a> Source<'a> {
             mode: &packing.mode,
             filter: packing.filter.as_deref().unwrap_or("NONE"),
         };
-        let mut bytes = meshopt::decode(data, packing).map_err(|why| Error::path(at, why))?;
+        let mut bytes = meshopt::decode(&data, packing).map_err(|why| Error::path(at, why))?;
         bytes.truncate(length(view).index());
         Ok(Some(bytes))
     }
@@ -157,34 +176,31 @@ fn load_buffer<'a>(
     container: &Container<'a>,
     resources: &dyn Resources,
     budget: &Budget,
-) -> Result<Option<Cow<'a, [u8]>>> {
+) -> Result<Option<Buffer<'a>>> {
     let buffer = &root.buffers[index];
     let at = format!("buffers[{index}]");
     let fallback = buffer.extensions.meshopt.as_ref().is_some_and(|m| m.fallback);
-    let bytes: Cow<'a, [u8]> = match (&buffer.uri, container.bin) {
-        _ if fallback => return Ok(None),
-        (Some(uri), _) => {
-            let length = buffer.byte_length.unwrap_or_default().0;
-            budget.bytes(length, &at)?;
-            let at = format!("{at}.uri");
-            // Files may be longer than the part that is used.
-            let bytes =
-                uri::load(uri, &at, resources, budget.rest().decoded_bytes.saturating_add(length))?;
-            Cow::Owned(bytes)
-        }
-        (None, Some(bin)) if index == 0 => Cow::Borrowed(bin),
-        (None, _) => return Ok(None),
-    };
     let wanted = buffer.byte_length.unwrap_or_default();
-    if (bytes.len() as u64) < wanted.0 {
-        let message = format!("byteLength is {} but there are {} bytes", wanted.0, bytes.len());
-        return Err(Error::path(at, message));
-    }
-    Ok(Some(match bytes {
-        Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[..wanted.index()]),
-        Cow::Owned(mut bytes) => {
+    let too_few = |there: u64| {
+        Error::path(&at, format!("byteLength is {} but there are {there} bytes", wanted.0))
+    };
+    match (&buffer.uri, &container.bin) {
+        _ if fallback => Ok(None),
+        (Some(uri), _) => {
+            budget.bytes(wanted.0, &at)?;
+            // Files may be longer than the part that is used.
+            let most = budget.rest().decoded_bytes.saturating_add(wanted.0);
+            let mut bytes = uri::load(uri, &format!("{at}.uri"), resources, most)?;
+            if (bytes.len() as u64) < wanted.0 {
+                return Err(too_few(bytes.len() as u64));
+            }
             bytes.truncate(wanted.index());
-            Cow::Owned(bytes)
+            Ok(Some(Buffer::Loaded(bytes)))
         }
-    }))
+        (None, Some(bin)) if index == 0 => {
+            let bytes = bin.part(0..wanted.0).ok_or_else(|| too_few(bin.len()))?;
+            Ok(Some(Buffer::Chunk(bytes)))
+        }
+        (None, _) => Ok(None),
+    }
 }

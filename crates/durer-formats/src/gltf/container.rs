@@ -1,6 +1,8 @@
 //! The binary container: a header, a JSON chunk, a binary chunk (glTF 2.0, §4).
 
+use super::bytes::Bytes;
 use crate::{Error, Place, Result, Warning};
+use std::borrow::Cow;
 
 /// The first bytes of a binary glTF file.
 pub const MAGIC: &[u8; 4] = b"glTF";
@@ -10,46 +12,58 @@ const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
 /// Size of the header and of a chunk's header, in bytes.
 const HEADER: usize = 12;
-const CHUNK_HEADER: usize = 8;
+const CHUNK_HEADER: u64 = 8;
+/// Where the first chunk begins.
+const FIRST: u64 = HEADER as u64;
+
+/// What some editors write before a text; JSON does not allow it.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The parts of a file.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct Container<'a> {
-    /// The JSON text, without a byte order mark.
-    pub json: &'a [u8],
+    json: Cow<'a, [u8]>,
     /// The binary chunk, if there is one.
-    pub bin: Option<&'a [u8]>,
+    pub bin: Option<Bytes<'a>>,
     /// Whether the file is binary.
     pub binary: bool,
+}
+
+impl Container<'_> {
+    /// The JSON text, without a byte order mark.
+    pub fn json(&self) -> &[u8] {
+        self.json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&self.json)
+    }
 }
 
 /// Splits a file, text or binary, into its parts.
 ///
 /// # Errors
-/// A decode error at the byte where the container is broken.
-pub fn split<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Container<'a>> {
-    let mut container = if bytes.starts_with(MAGIC) {
-        split_binary(bytes, warnings)?
+/// A decode error at the byte where the container is broken; [`Error::Io`].
+pub fn split<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Container<'a>> {
+    let magic = file.part(0..MAGIC.len() as u64).map(|m| m.whole()).transpose()?;
+    let container = if magic.is_some_and(|m| *m == *MAGIC) {
+        split_binary(file, warnings)?
     } else {
-        Container { json: bytes, bin: None, binary: false }
+        Container { json: file.whole()?, bin: None, binary: false }
     };
-    if let Some(rest) = container.json.strip_prefix(b"\xef\xbb\xbf") {
-        container.json = rest;
+    if container.json.starts_with(BYTE_ORDER_MARK) {
         let message = "the JSON begins with a byte order mark; passed over".to_owned();
         warnings.push(Warning { place: Place::Whole, message });
     }
     Ok(container)
 }
 
-/// Little-endian 32-bit number at an offset.
-fn u32_at(bytes: &[u8], at: usize) -> Result<u32> {
-    let word = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
-    let message = || Error::byte(bytes.len() as u64, "the file ends in the middle of a header");
-    word.map(|w| u32::from_le_bytes(*w)).ok_or_else(message)
+/// Little-endian 32-bit number at an offset in a file that ends at `end`.
+fn u32_at(file: &Bytes<'_>, end: u64, at: u64) -> Result<u32> {
+    let message = || Error::byte(end, "the file ends in the middle of a header");
+    let word = file.part(at..at.saturating_add(4)).filter(|_| at.saturating_add(4) <= end);
+    let word = word.ok_or_else(message)?.whole()?;
+    word.first_chunk().map(|w| u32::from_le_bytes(*w)).ok_or_else(message)
 }
 
-fn split_binary<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Container<'a>> {
-    let version = u32_at(bytes, 4)?;
+fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Container<'a>> {
+    let version = u32_at(file, file.len(), 4)?;
     if version != 2 {
         return Err(Error::Unsupported {
             place: Place::Byte(4),
@@ -57,35 +71,34 @@ fn split_binary<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Cont
             hint: "only version 2 is read".to_owned(),
         });
     }
-    let length = u32_at(bytes, 8)? as usize;
-    if length > bytes.len() {
-        let message = format!("the header says {length} bytes, the file has {}", bytes.len());
+    let length = u64::from(u32_at(file, file.len(), 8)?);
+    if length > file.len() {
+        let message = format!("the header says {length} bytes, the file has {}", file.len());
         return Err(Error::byte(8, message));
     }
-    if length < HEADER + CHUNK_HEADER {
+    if length < FIRST + CHUNK_HEADER {
         return Err(Error::byte(8, format!("a length of {length} has no room for a chunk")));
     }
-    let mut warn = |at: usize, message: String| {
-        warnings.push(Warning { place: Place::Byte(at as u64), message });
+    let mut warn = |at: u64, message: String| {
+        warnings.push(Warning { place: Place::Byte(at), message });
     };
-    if length < bytes.len() {
-        warn(length, format!("{} bytes after the end are passed over", bytes.len() - length));
+    if length < file.len() {
+        warn(length, format!("{} bytes after the end are passed over", file.len() - length));
     }
-    let file = &bytes[..length];
-    let (json, end) = match chunk(file, HEADER)? {
-        (JSON, data, end) => (data, end),
+    let (json, end) = match chunk(file, length, FIRST)? {
+        (JSON, data, end) => (data.whole()?, end),
         (kind, ..) => {
             let message = format!("the first chunk must be JSON, this is of type 0x{kind:08x}");
-            return Err(Error::byte(HEADER as u64, message));
+            return Err(Error::byte(FIRST, message));
         }
     };
     let (mut at, mut bin) = (end, None);
-    while at < file.len() {
-        let (kind, data, end) = chunk(file, at)?;
+    while at < length {
+        let (kind, data, end) = chunk(file, length, at)?;
         match kind {
             BIN if bin.is_none() => bin = Some(data),
             BIN | JSON => {
-                return Err(Error::byte(at as u64, "a second chunk of a type that may stand once"));
+                return Err(Error::byte(at, "a second chunk of a type that may stand once"));
             }
             _ => warn(at, format!("a chunk of unknown type 0x{kind:08x} is passed over")),
         }
@@ -94,22 +107,38 @@ fn split_binary<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Cont
     Ok(Container { json, bin, binary: true })
 }
 
-/// Type, bytes and end of the chunk at an offset.
-fn chunk(file: &[u8], at: usize) -> Result<(u32, &[u8], usize)> {
-    let length = u32_at(file, at)? as usize;
-    let kind = u32_at(file, at + 4)?;
+/// Type, bytes and end of the chunk at an offset in a file that ends at `end`.
+fn chunk<'a>(file: &Bytes<'a>, end: u64, at: u64) -> Result<(u32, Bytes<'a>, u64)> {
+    let length = u64::from(u32_at(file, end, at)?);
+    let kind = u32_at(file, end, at + 4)?;
     let start = at + CHUNK_HEADER;
-    let end = start.saturating_add(length);
-    let data = file.get(start..end).ok_or_else(|| {
-        let left = file.len() - start;
-        Error::byte(at as u64, format!("a chunk of {length} bytes where {left} are left"))
+    let next = start + length;
+    let data = file.part(start..next).filter(|_| next <= end).ok_or_else(|| {
+        let left = end - start;
+        Error::byte(at, format!("a chunk of {length} bytes where {left} are left"))
     })?;
-    Ok((kind, data, end))
+    Ok((kind, data, next))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The parts of a file at hand, as slices of it.
+    struct Slices<'a> {
+        json: &'a [u8],
+        bin: Option<&'a [u8]>,
+    }
+
+    fn split<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Slices<'a>> {
+        let Container { json, bin, .. } = super::split(&Bytes::Held(bytes), warnings)?;
+        let slice = |part| match part {
+            Cow::Borrowed(slice) => slice,
+            Cow::Owned(_) => unreachable!("nothing is copied of what is at hand"),
+        };
+        let bin = bin.map(|bin| bin.whole().map(slice)).transpose()?;
+        Ok(Slices { json: slice(json), bin })
+    }
 
     /// A binary file of chunks, with a right header.
     fn file(chunks: &[(u32, &[u8])]) -> Vec<u8> {

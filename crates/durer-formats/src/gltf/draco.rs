@@ -36,7 +36,7 @@ impl Packed {
     /// Where the bitstream is broken, or its mesh is above the limits.
     pub fn read(source: &Source<'_>, draco: &Draco, at: &str) -> Result<Option<Self>> {
         let at = format!("{at}.extensions.KHR_draco_mesh_compression");
-        let bytes = source.view(draco.buffer_view.unwrap_or_default(), &at)?;
+        let bytes = source.view(draco.buffer_view.unwrap_or_default(), &at)?.whole()?;
         let rest = source.budget.rest();
         let limits = draco_core::DecodeLimits::default()
             .with_max_points(rest.primitives.saturating_mul(3))
@@ -44,7 +44,7 @@ impl Packed {
             .with_max_decoded_bytes(rest.decoded_bytes);
         let decode = || {
             let mut mesh = draco_core::Mesh::new();
-            let mut buffer = draco_core::DecoderBuffer::new(bytes).with_limits(limits);
+            let mut buffer = draco_core::DecoderBuffer::new(&bytes).with_limits(limits);
             draco_core::MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
         };
         let mesh = match std::panic::catch_unwind(decode) {

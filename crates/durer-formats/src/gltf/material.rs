@@ -9,6 +9,7 @@ use durer::scene::{
     AlphaMode, Filter, Image, Material, MipFilter, Sampler as SceneSampler, Scene, ShadingModel,
     Texture, TextureRef, Wrap,
 };
+use std::borrow::Cow;
 
 /// Emission is cut at this factor, so that light stays finite whatever a file says.
 const BRIGHTEST: f32 = 1e6;
@@ -99,16 +100,12 @@ fn decode_image(
     let uri = image.uri.as_deref().filter(|uri| !uri::is_data(uri));
     let name = image.name.as_deref().or(uri).map_or_else(|| at.to_owned(), str::to_owned);
     let limits = source.budget.rest();
-    let owned;
     let bytes = match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => {
-            owned = uri::load(uri, at, resources, limits.decoded_bytes)?;
-            &owned
-        }
-        (None, Some(view)) => source.view(view, at)?,
+        (Some(uri), _) => Cow::Owned(uri::load(uri, at, resources, limits.decoded_bytes)?),
+        (None, Some(view)) => source.view(view, at)?.whole()?,
         (None, None) => return Err(Error::path(at, "has neither a URI nor a buffer view")),
     };
-    let image = image::decode(bytes, &name, &limits)?;
+    let image = image::decode(&bytes, &name, &limits)?;
     source.budget.bytes(image.data.len() as u64 * 4, at)?;
     Ok(image)
 }

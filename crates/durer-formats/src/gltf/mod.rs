@@ -14,6 +14,7 @@
 mod accessor;
 mod animation;
 mod buffer;
+mod bytes;
 mod check;
 mod container;
 mod deform;
@@ -35,17 +36,25 @@ pub(crate) mod uri;
 use crate::{Error, Model, Place, ReadOptions, Resources, Result};
 use animation::Override;
 use buffer::{Budget, Source};
+use bytes::Bytes;
 use durer::math::DMat4;
 use durer::scene::{Instance, Mesh, Part, Scene, UpAxis};
 use json::{Node, Root, Whole};
 use primitive::Geometry;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::io::{Read, Seek, SeekFrom};
 
 /// Whether the bytes look like glTF: the mark of a binary file, or JSON with an `asset`.
 pub fn sniff(bytes: &[u8]) -> bool {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let holds = |key: &[u8]| text.windows(key.len()).any(|w| w == key);
-    bytes.starts_with(container::MAGIC) || (text.starts_with(b"{") && holds(b"\"asset\""))
+    is_binary(bytes) || (text.starts_with(b"{") && holds(b"\"asset\""))
+}
+
+/// Whether the bytes begin as a binary file does.
+pub fn is_binary(bytes: &[u8]) -> bool {
+    bytes.starts_with(container::MAGIC)
 }
 
 /// Reads a model, `.gltf` or `.glb`, posed as `options.pose` says.
@@ -70,11 +79,32 @@ pub fn sniff(bytes: &[u8]) -> bool {
 /// [`Error::Unsupported`] for a required extension or a version that is not known;
 /// [`Error::Resource`] for a buffer that cannot be had; [`Error::Limit`].
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
+    read_parts(&Bytes::Held(bytes), resources, options)
+}
+
+/// Reads a model from an open file, of which the binary chunk is never held as a whole, only what is made of it. The
+/// same model as [`read`] gives of the file's bytes.
+///
+/// # Errors
+/// As [`read`]; [`Error::Limit`] for a file of more bytes than may be decoded, [`Error::Io`] where it cannot be read.
+pub fn read_file(
+    mut file: impl Read + Seek,
+    resources: &dyn Resources,
+    options: &ReadOptions,
+) -> Result<Model> {
+    let (length, limit) = (file.seek(SeekFrom::End(0))?, options.limits.decoded_bytes);
+    if length > limit {
+        return Err(Error::Limit { place: Place::Whole, what: "size", value: length, limit });
+    }
+    read_parts(&Bytes::InFile(&RefCell::new(file), 0..length), resources, options)
+}
+
+fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let mut model = Model::default();
-    let container = container::split(bytes, &mut model.warnings)?;
+    let container = container::split(file, &mut model.warnings)?;
     let kind = if container.binary { "binary" } else { "text" };
     model.format = format!("glTF 2.0 {kind}");
-    let root = json::parse(container.json)?;
+    let root = json::parse(container.json())?;
     check_version(&root)?;
     extension::check(&root, &mut model)?;
     check::references(&root)?;

@@ -45,17 +45,17 @@ pub struct Influences {
 /// Where an accessor does not fit its use, or an index refers to no vertex.
 pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Option<Geometry>> {
     let attributes = Attributes::of(source, primitive, at)?;
-    let Some(positions) = attributes.floats::<3>("POSITION")? else { return Ok(None) };
-    let mut g = Geometry { positions: vectors(positions), ..Geometry::default() };
+    let Some(positions) = attributes.vectors("POSITION")? else { return Ok(None) };
+    let mut g = Geometry { positions, ..Geometry::default() };
     let count = g.positions.len();
     if u32::try_from(count).is_err() {
         return Err(Error::path(at, format!("{count} vertices are more than 32 bits can number")));
     }
-    g.normals = vectors(attributes.floats::<3>("NORMAL")?.unwrap_or_default());
-    g.tangents = vectors(attributes.floats::<4>("TANGENT")?.unwrap_or_default());
+    g.normals = attributes.vectors("NORMAL")?.unwrap_or_default();
+    g.tangents = attributes.vectors("TANGENT")?.unwrap_or_default();
     g.colors = attributes.colors()?;
-    while let Some(set) = attributes.floats::<2>(&format!("TEXCOORD_{}", g.tex_coords.len()))? {
-        g.tex_coords.push(vectors(set));
+    while let Some(set) = attributes.vectors(&format!("TEXCOORD_{}", g.tex_coords.len()))? {
+        g.tex_coords.push(set);
     }
     attributes.influences(&mut g)?;
     g.check_counts(at)?;
@@ -67,11 +67,6 @@ pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Opti
     g.join(mode, indices, source, at)?;
     normals::repair(&mut g);
     Ok(Some(g))
-}
-
-/// Arrays of floats as vectors.
-fn vectors<T: From<[f32; N]>, const N: usize>(values: Vec<[f32; N]>) -> Vec<T> {
-    values.into_iter().map(T::from).collect()
 }
 
 /// Where attributes come from: accessors, or a Draco mesh.
@@ -95,17 +90,17 @@ impl<'a> Attributes<'a> {
         self.primitive.attributes.get(name).copied()
     }
 
-    /// An attribute of N floats; `None` where the primitive has it not.
-    fn floats<const N: usize>(&self, name: &str) -> Result<Option<Vec<[f32; N]>>> {
+    /// An attribute of N floats each; `None` where the primitive has it not.
+    fn vectors<T: From<[f32; N]>, const N: usize>(&self, name: &str) -> Result<Option<Vec<T>>> {
         let Some(accessor) = self.accessor(name) else { return Ok(None) };
         let at = format!("{}.attributes.{name}", self.at);
         if let Some(packed) = self.packed_attribute(name) {
             let normalized = self.source.root.accessors.get(accessor.index());
-            return packed
-                .floats(normalized.is_some_and(|a| a.normalized), self.source, &at)
-                .map(Some);
+            let floats =
+                packed.floats(normalized.is_some_and(|a| a.normalized), self.source, &at)?;
+            return Ok(Some(floats.into_iter().map(T::from).collect()));
         }
-        self.source.floats(accessor, &at).map(Some)
+        self.source.vectors(accessor, &at).map(Some)
     }
 
     fn packed_attribute(&self, name: &str) -> Option<draco::Attribute<'_>> {
@@ -118,10 +113,10 @@ impl<'a> Attributes<'a> {
         let Some(accessor) = self.accessor("COLOR_0") else { return Ok(Vec::new()) };
         let shape = self.source.root.accessors.get(accessor.index()).map(|a| a.shape.as_str());
         if shape == Some("VEC4") {
-            return Ok(vectors(self.floats::<4>("COLOR_0")?.unwrap_or_default()));
+            return Ok(self.vectors("COLOR_0")?.unwrap_or_default());
         }
-        let rgb = self.floats::<3>("COLOR_0")?.unwrap_or_default();
-        Ok(rgb.into_iter().map(|rgb| Vec3::from(rgb).extend(1.0)).collect())
+        let rgb: Vec<Vec3> = self.vectors("COLOR_0")?.unwrap_or_default();
+        Ok(rgb.into_iter().map(|rgb| rgb.extend(1.0)).collect())
     }
 
     /// All sets of joints that have weights.
@@ -129,7 +124,7 @@ impl<'a> Attributes<'a> {
         for set in 0.. {
             let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
             let Some(accessor) = self.accessor(&joints) else { break };
-            let Some(weights) = self.floats::<4>(&weights)? else {
+            let Some(weights) = self.vectors(&weights)? else {
                 g.notes.push(format!("{joints} without {weights} is passed over"));
                 break;
             };
@@ -272,13 +267,15 @@ fn read_indices(
     let Some(accessor) = primitive.indices else { return Ok(None) };
     let at = format!("{at}.indices");
     let indices = source.integers::<1>(accessor, &at)?.into_flattened();
-    match indices.iter().position(|&i| i as usize >= vertices) {
-        Some(place) => {
-            let message = format!("index {place} is vertex {} of {vertices}", indices[place]);
-            Err(Error::path(at, message))
-        }
-        None => Ok(Some(indices)),
+    // All of them at once, for there is hardly ever one, and it is found sooner than the first.
+    let dangling = |i: u32| i >= vertices as u32;
+    if indices.iter().fold(false, |any, &i| any | dangling(i))
+        && let Some(place) = indices.iter().position(|&i| dangling(i))
+    {
+        let message = format!("index {place} is vertex {} of {vertices}", indices[place]);
+        return Err(Error::path(at, message));
     }
+    Ok(Some(indices))
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod drawing_marks;
 mod fuzz;
 mod geo;
 mod gltf;
+mod gltf_file;
 mod height_map;
 mod mesh_properties;
 mod shared;
