@@ -5,6 +5,7 @@ use super::json;
 use crate::{Place, Warning};
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{Camera, Light, LightKind, NamedCamera, Projection, Scene};
+use std::cell::LazyCell;
 use std::f64::consts::PI;
 
 /// Above this intensity a file is taken to speak in photometric units.
@@ -21,7 +22,9 @@ pub fn cameras(
     scene: &mut Scene,
     warnings: &mut Vec<Warning>,
 ) {
-    let sphere = scene.bounding_sphere();
+    // Found where a camera asks for it: that takes all vertices.
+    let sphere = LazyCell::new(|| scene.bounding_sphere());
+    let mut cameras: Vec<NamedCamera> = Vec::new();
     for &n in nodes {
         let node = &source.root.nodes[n];
         let Some(camera) = node.camera.and_then(|c| source.root.cameras.get(c.index())) else {
@@ -32,8 +35,8 @@ pub fn cameras(
         match found.and_then(|c| c.camera.check().map(|()| c).map_err(|e| e.to_string())) {
             Ok(mut found) => {
                 let name = camera.name.as_ref().or(node.name.as_ref()).filter(|n| !n.is_empty());
-                found.name = unique(name, &scene.cameras);
-                scene.cameras.push(found);
+                found.name = unique(name, &cameras);
+                cameras.push(found);
             }
             Err(why) => {
                 let place = Place::Path(format!("nodes[{n}].camera"));
@@ -41,6 +44,7 @@ pub fn cameras(
             }
         }
     }
+    scene.cameras = cameras;
 }
 
 /// The name, or `camera` and a number, with a number more where it is taken.
