@@ -1,6 +1,7 @@
 //! What all readers of models share.
 
 use crate::{Place, Warning};
+use durer::math::Vec3;
 use durer::scene::Scene;
 
 /// Finds what a file refers to: buffers, images, material libraries.
@@ -91,5 +92,44 @@ impl Model {
     /// Adds a warning.
     pub fn warn(&mut self, place: Place, message: impl Into<String>) {
         self.warnings.push(Warning { place, message: message.into() });
+    }
+}
+
+/// How many points have a coordinate that is NaN or infinite.
+pub(crate) fn count_infinite(points: &[Vec3]) -> usize {
+    // There is hardly ever one, and whether there is one among many is sooner known than for each.
+    let count = |some: &[Vec3]| some.iter().filter(|p| !p.is_finite()).count();
+    points.chunks(256).filter(|some| any_infinite(some)).map(count).sum()
+}
+
+fn any_infinite(points: &[Vec3]) -> bool {
+    // An exponent of ones, and nothing else, carries into the sign's place. Four points are three registers.
+    let carry = |v: f32| (v.to_bits() & 0x7fff_ffff) + 0x0080_0000;
+    let (fours, rest) = points.as_chunks::<4>();
+    let mut any = [0; 12];
+    for four in fours {
+        let numbers = four.map(|p| p.to_array());
+        for (any, &v) in any.iter_mut().zip(numbers.as_flattened()) {
+            *any |= carry(v);
+        }
+    }
+    let rest = rest.iter().flat_map(|p| p.to_array());
+    any.into_iter().chain(rest.map(carry)).fold(0, |any, bits| any | bits) >> 31 != 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_finite_is_counted_wherever_it_is() {
+        for length in [0, 1, 3, 4, 5, 12, 255, 256, 257, 600] {
+            let mut points = vec![Vec3::new(f32::MAX, f32::MIN, -0.0); length];
+            assert_eq!(count_infinite(&points), 0);
+            for (i, bad) in (0..length).step_by(7).zip([f32::NAN, f32::INFINITY].iter().cycle()) {
+                points[i][i % 3] = if i % 2 == 0 { *bad } else { -*bad };
+                assert_eq!(count_infinite(&points), i / 7 + 1, "{length}");
+            }
+        }
     }
 }

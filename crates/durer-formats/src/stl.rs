@@ -10,6 +10,7 @@
 //! Cost: one pass, after one that asks for colors. Memory: 0.72 of a binary file, 1.7 with colors;
 //! under 4 times an ascii file.
 
+use crate::model::count_infinite;
 use crate::text::{Cursor, Tally, utf8};
 use crate::{
     Error, Limits, Model, ModelFormat, Place, ReadOptions, Resources, Result, color, place,
@@ -74,12 +75,11 @@ fn is_ascii(bytes: &[u8]) -> bool {
 /// [`Error::Decode`] for a file too short to be binary STL, cut off before its first triangle, or
 /// for a vertex without three numbers (ascii); [`Error::Limit`] for too many triangles.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
-    let model = if !has_exact_length(bytes) && is_ascii(bytes) {
-        read_ascii(&utf8(bytes), &options.limits)?
+    if !has_exact_length(bytes) && is_ascii(bytes) {
+        read_ascii(&utf8(bytes), &options.limits)
     } else {
-        read_binary(bytes, &options.limits)?
-    };
-    finished(model)
+        read_binary(bytes, &options.limits)
+    }
 }
 
 /// Reads a binary STL file as it comes: the bytes after `head`, for which [`is_whole_binary`] holds.
@@ -103,16 +103,13 @@ pub fn read_binary_stream(
         facets.add(bytes.as_chunks().0);
         left -= count;
     }
-    finished(facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() }))
+    facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() })
 }
 
-/// What files of both kinds have in common.
-fn finished(mut model: Model) -> Result<Model> {
+/// What files of both kinds have in common; told how many vertices are not finite.
+fn finished(mut model: Model, infinite: usize) -> Result<Model> {
     model.scene.up_axis = UpAxis::Z;
-    let positions = || model.scene.meshes.iter().flat_map(|m| &m.positions);
-    // Counted in one sweep, for there are hardly ever any.
-    let infinite: usize = positions().map(|p| usize::from(!p.is_finite())).sum();
-    if positions().next().is_none() {
+    if model.scene.meshes.iter().all(|m| m.positions.is_empty()) {
         model.warn(Place::Whole, "holds no triangles");
     }
     if infinite > 0 {
@@ -153,7 +150,7 @@ fn read_binary(bytes: &[u8], limits: &Limits) -> Result<Model> {
     check_limit(records.len() as u64, limits)?;
     let mut facets = Facets::new(bytes, records.len());
     records.chunks(AT_ONCE).for_each(|some| facets.add(some));
-    Ok(facets.into_model(model))
+    facets.into_model(model)
 }
 
 /// The triangles that are really there.
@@ -195,13 +192,15 @@ struct Facets {
     /// How many there will be.
     count: usize,
     palette: Palette,
+    /// Vertices that are not finite, counted while they are in the cache.
+    infinite: usize,
 }
 
 impl Facets {
     /// For a file that begins so and has so many facets.
     fn new(head: &[u8], count: usize) -> Self {
         let mesh = Mesh { positions: Vec::with_capacity(3 * count), ..Mesh::default() };
-        Self { mesh, count, palette: Palette::new(head) }
+        Self { mesh, count, palette: Palette::new(head), infinite: 0 }
     }
 
     fn add(&mut self, records: &[[u8; RECORD]]) {
@@ -211,6 +210,7 @@ impl Facets {
         for (to, record) in positions[before..].as_chunks_mut().0.iter_mut().zip(records) {
             *to = vertices(record);
         }
+        self.infinite += count_infinite(&positions[before..]);
         let attribute = |r: &[u8; RECORD]| u16::from_le_bytes([r[48], r[49]]);
         let marked = |r: &[u8; RECORD]| attribute(r) & PAINTED;
         let colored = !colors.is_empty() || self.palette.body.is_some();
@@ -223,14 +223,14 @@ impl Facets {
         colors.extend(records.iter().flat_map(|r| [self.palette.color(attribute(r)); 3]));
     }
 
-    fn into_model(mut self, mut model: Model) -> Model {
+    fn into_model(mut self, mut model: Model) -> Result<Model> {
         if !self.mesh.colors.is_empty() {
             let range = 0..self.count as u32;
             self.mesh.parts.push(Part { range, material: Some(0), name: String::new() });
             model.scene.materials.push(color::vertex_color_material());
         }
         add(&mut model, self.mesh, DVec3::ZERO);
-        model
+        finished(model, self.infinite)
     }
 }
 
@@ -308,8 +308,9 @@ fn read_ascii(text: &[u8], limits: &Limits) -> Result<Model> {
     let origin = place::origin(&ascii.points);
     let parts = ascii.parts();
     let mesh = Mesh { positions: place::narrow(&ascii.points, origin), parts, ..Mesh::default() };
+    let infinite = count_infinite(&mesh.positions);
     add(&mut model, mesh, origin);
-    Ok(model)
+    finished(model, infinite)
 }
 
 impl Ascii {

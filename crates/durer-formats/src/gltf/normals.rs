@@ -1,13 +1,14 @@
 //! Normals and tangents brought to unit length; those that cannot are replaced.
 
 use super::primitive::Geometry;
+use crate::model::count_infinite;
 use durer::math::{Vec3, Vec4};
 use durer::scene::Topology;
 
 /// Gives normals and tangents unit length. A normal without a direction becomes the mean of the
 /// normals of the triangles around its vertex, by area; where these have none either, +z.
 pub fn repair(g: &mut Geometry) {
-    let positions = g.positions.iter().filter(|p| !p.is_finite()).count();
+    let positions = count_infinite(&g.positions);
     if positions > 0 {
         g.notes.push(format!("{positions} vertices are not finite"));
     }

@@ -2,6 +2,7 @@
 
 use super::body::Values;
 use super::header::{Element, Encoding, Header, Property, Type};
+use crate::model::count_infinite;
 use crate::text::Tally;
 use crate::{Error, Limits, Model, Place, Result, color, place};
 use durer::math::{DVec3, Vec2, Vec4};
@@ -359,7 +360,7 @@ impl Builder {
     }
 
     fn warn(&self, model: &mut Model, header: &Header) {
-        let infinite = self.mesh.positions.iter().filter(|p| !p.is_finite()).count();
+        let infinite = count_infinite(&self.mesh.positions);
         if infinite > 0 {
             let message = format!("{infinite} vertices have a coordinate that is NaN or infinite");
             model.warn(Place::Whole, message);
