@@ -48,14 +48,27 @@ pub fn write_color<W: Write>(
 ) -> Result<()> {
     // Row by row, as a loop that may end at any pixel looks at one pixel at a time.
     let mut rows = (0..pixels.height()).map(|y| pixels.row(y));
-    let opaque = rows.all(|row| row.iter().fold(255, |alpha, p| alpha & p[3]) == 255);
+    // Whole pixels: parts of them cannot be put together as quickly.
+    let all = |row: &[[u8; 4]]| row.iter().fold(!0, |all, &p| all & u32::from_ne_bytes(p));
+    let opaque = rows.all(|row| all(row).to_ne_bytes()[3] == 255);
     let color = if opaque { ColorType::Rgb } else { ColorType::Rgba };
     let kind = Kind { color, depth: BitDepth::Eight, srgb: true };
     if opaque {
-        write(out, pixels, kind, compression, |[r, g, b, _]| [r, g, b])
+        write_rows(out, pixels, kind, compression, without_alpha)
     } else {
         write(out, pixels, kind, compression, |pixel| pixel)
     }
+}
+
+/// The first three bytes of each pixel, of rows of the same length.
+fn without_alpha(row: &[[u8; 4]], bytes: &mut [[u8; 3]]) {
+    let Some((last, others)) = row.split_last() else { return };
+    let bytes = bytes.as_flattened_mut();
+    // All four in one go: the next pixel takes the place of the fourth.
+    for (i, pixel) in others.iter().enumerate() {
+        bytes[3 * i..][..4].copy_from_slice(pixel);
+    }
+    bytes[3 * others.len()..][..3].copy_from_slice(&last[..3]);
 }
 
 /// Which channels a PNG has beside a grey one.
@@ -208,6 +221,21 @@ fn write<W: Write, T: Copy, const BYTES: usize>(
     compression: Compression,
     encode: impl Fn(T) -> [u8; BYTES],
 ) -> Result<()> {
+    write_rows(out, pixels, kind, compression, |row, bytes| {
+        for (bytes, &pixel) in bytes.iter_mut().zip(row) {
+            *bytes = encode(pixel);
+        }
+    })
+}
+
+/// [`write`] with rows encoded as a whole.
+fn write_rows<W: Write, T: Copy, const BYTES: usize>(
+    out: W,
+    pixels: &Pixels<T>,
+    kind: Kind,
+    compression: Compression,
+    encode: impl Fn(&[T], &mut [[u8; BYTES]]),
+) -> Result<()> {
     if pixels.width() == 0 || pixels.height() == 0 {
         let size = format!("{}x{}", pixels.width(), pixels.height());
         return Err(durer::Error::parameter("size", size, "at least 1x1 for a PNG").into());
@@ -229,9 +257,7 @@ fn write<W: Write, T: Copy, const BYTES: usize>(
     let mut stream = writer.stream_writer_with_size(CHUNK_BYTES).map_err(encoding)?;
     let mut row = vec![[0; BYTES]; pixels.width() as usize];
     for y in 0..pixels.height() {
-        for (bytes, &pixel) in row.iter_mut().zip(pixels.row(y)) {
-            *bytes = encode(pixel);
-        }
+        encode(pixels.row(y), &mut row);
         stream.write_all(row.as_flattened())?;
     }
     stream.finish().map_err(encoding)?;
