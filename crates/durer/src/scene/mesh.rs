@@ -127,10 +127,12 @@ impl Mesh {
         if let Some(wrong) = lengths.into_iter().chain(sets).find(|&n| n != 0 && n != count) {
             return Err(Error::parameter("attribute length", wrong, "0 or the number of vertices"));
         }
-        if let Some(largest) = self.indices.as_ref().and_then(|i| i.iter().copied().max())
-            && largest as usize >= count
-        {
-            return Err(Error::Dangling { what: "vertex", index: largest as usize, count });
+        let indices = self.indices.as_deref().unwrap_or_default();
+        // A comparison with what is always the same is sooner done than a search for the largest.
+        let dangling = |any, &i: &u32| any | (i >= count as u32);
+        if indices.iter().fold(false, dangling) {
+            let index = indices.iter().copied().max().unwrap_or_default() as usize;
+            return Err(Error::Dangling { what: "vertex", index, count });
         }
         let mut end = 0;
         for part in &self.parts {
