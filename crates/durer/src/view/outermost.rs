@@ -1,7 +1,7 @@
 //! The points of a set that lie outermost along some directions: all that fitting a frame needs.
 //!
 //! Points come in batches; a batch whose box lies within what there is already costs one look per
-//! direction. Cost: O(points), a few operations each.
+//! direction, and so do many batches that together do. Cost: O(points), a few operations each.
 
 use crate::math::{DMat3, DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Scene};
@@ -9,8 +9,8 @@ use crate::scene::{Aabb, Scene};
 /// Points that are looked at together: neighbours in the file mostly are neighbours in space.
 const BATCH: usize = 64;
 
-/// Every so-manieth batch of a mesh is looked at before the others.
-const SAMPLED: usize = 16;
+/// Batches of a mesh that are looked at together. The first of them is looked at before all others.
+const GROUP: usize = 16;
 
 /// What a box of transformed points grows by, relative to its numbers, so that rounding does not
 /// leave a point outside: far above the 2⁻⁵³ that each of a few operations may be off.
@@ -27,23 +27,30 @@ pub(super) struct Outermost<const N: usize> {
 #[derive(Clone, Copy)]
 struct Furthest {
     direction: DVec3,
+    /// What of the direction is above zero, and what below.
+    above_below: [DVec3; 2],
     distance: f64,
     point: DVec3,
 }
 
 impl Furthest {
     fn along(direction: DVec3) -> Self {
-        Self { direction, distance: f64::NEG_INFINITY, point: DVec3::ZERO }
+        let above_below = [direction.max(DVec3::ZERO), direction.min(DVec3::ZERO)];
+        Self { direction, above_below, distance: f64::NEG_INFINITY, point: DVec3::ZERO }
     }
 
-    /// Adds points and a box around them.
-    fn add(&mut self, points: impl Iterator<Item = DVec3>, around: &Aabb) {
-        // The same products and sums as a point's, each at least as large, also when rounded.
-        let corner = DVec3::select(self.direction.cmpge(DVec3::ZERO), around.max, around.min);
-        if self.direction.dot(corner) <= self.distance {
-            return;
-        }
-        for point in points {
+    /// Whether a point in a box may be further. Where the box is not finite, it may.
+    fn may_be_in(&self, around: &Aabb) -> bool {
+        let [above, below] = self.above_below;
+        // Of each sum one half is zero. The other is a product as a point's, at least as large, also when rounded;
+        // and their sums are as a point's.
+        let most = above * around.max + below * around.min;
+        let inside = most.x + most.y + most.z <= self.distance;
+        !inside
+    }
+
+    fn add(&mut self, points: &[DVec3]) {
+        for &point in points {
             let distance = self.direction.dot(point);
             if distance > self.distance {
                 (self.distance, self.point) = (distance, point);
@@ -75,8 +82,12 @@ impl<const N: usize> Outermost<N> {
 
     fn add_batch(&mut self, points: &[DVec3]) {
         if let Some(around) = Aabb::around(points.iter().copied()) {
-            self.add(points.iter().copied(), &around);
+            self.all().filter(|f| f.may_be_in(&around)).for_each(|f| f.add(points));
         }
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut Furthest> {
+        self.furthest.iter_mut().chain(self.extremes.as_flattened_mut())
     }
 
     /// Adds all finite vertices of a scene that something is drawn with.
@@ -92,26 +103,41 @@ impl<const N: usize> Outermost<N> {
     }
 
     fn add_mesh(&mut self, positions: &[Vec3], used: Option<&[bool]>, place: &DMat4) {
-        let mut add = |(i, batch): (usize, &[Vec3])| {
-            let used = used.and_then(|used| used.get(BATCH * i..));
-            let drawn = |j: &usize| used.is_none_or(|used| used.get(*j).is_some_and(|&u| u));
-            let points = (0..batch.len())
-                .filter(drawn)
-                .map(|j| place.transform_point3(batch[j].as_dvec3()))
-                .filter(|p| p.is_finite());
-            self.add(points, &around(batch, place));
+        let mut add = {
+            let mut placed = Vec::with_capacity(BATCH);
+            move |all: &mut Self, i: usize, batch: &[Vec3], around: &Aabb| {
+                let used = used.and_then(|used| used.get(BATCH * i..));
+                let drawn = |j: &usize| used.is_none_or(|used| used.get(*j).is_some_and(|&u| u));
+                let points = (0..batch.len())
+                    .filter(drawn)
+                    .map(|j| place.transform_point3(batch[j].as_dvec3()))
+                    .filter(|p| p.is_finite());
+                placed.clear();
+                for furthest in all.all().filter(|f| f.may_be_in(around)) {
+                    // Once for all directions, and only where one asks.
+                    if placed.is_empty() {
+                        placed.extend(points.clone());
+                    }
+                    furthest.add(&placed);
+                }
+            }
         };
         // Some from everywhere first: of those that follow few reach beyond, though a file may run
         // from the bottom of a model to its top.
-        let sampled = |(i, _): &(usize, &[Vec3])| i.is_multiple_of(SAMPLED);
-        let batches = || positions.chunks(BATCH).enumerate();
-        batches().filter(sampled).for_each(&mut add);
-        batches().filter(|batch| !sampled(batch)).for_each(add);
-    }
-
-    fn add(&mut self, points: impl Iterator<Item = DVec3> + Clone, around: &Aabb) {
-        for furthest in self.furthest.iter_mut().chain(self.extremes.as_flattened_mut()) {
-            furthest.add(points.clone(), around);
+        for (i, batch) in positions.chunks(BATCH).enumerate().step_by(GROUP) {
+            add(self, i, batch, &around(extent(batch), place));
+        }
+        for (group, positions) in positions.chunks(BATCH * GROUP).enumerate() {
+            let others = || positions.chunks(BATCH).enumerate().skip(1);
+            let mut extents = [NOTHING; GROUP];
+            others().for_each(|(i, batch)| extents[i] = extent(batch));
+            let whole = extents.into_iter().fold(NOTHING, |[a, b], [c, d]| [a.min(c), b.max(d)]);
+            let whole = around(whole, place);
+            if self.all().any(|f| f.may_be_in(&whole)) {
+                for (i, batch) in others() {
+                    add(self, group * GROUP + i, batch, &around(extents[i], place));
+                }
+            }
         }
     }
 
@@ -129,9 +155,8 @@ impl<const N: usize> Outermost<N> {
     }
 }
 
-/// A box in world space around placed positions; not finite where one of them is not.
-fn around(positions: &[Vec3], place: &DMat4) -> Aabb {
-    let [min, max] = extent(positions);
+/// A box in world space around placed positions of an extent; not finite where one of them is not.
+fn around([min, max]: [Vec3; 2], place: &DMat4) -> Aabb {
     let (min, max) = (min.as_dvec3(), max.as_dvec3());
     let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
     let linear = DMat3::from_mat4(*place);
@@ -142,22 +167,76 @@ fn around(positions: &[Vec3], place: &DMat4) -> Aabb {
     Aabb { min: world - reach, max: world + reach }
 }
 
-/// The least and the largest coordinates of points; infinite, the wrong way round, where there are none.
+/// The extent of no points.
+const NOTHING: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+
+/// The least and the largest coordinates of points, of those that are numbers; [`NOTHING`] where there are none.
 fn extent(positions: &[Vec3]) -> [Vec3; 2] {
     // Four points are twelve numbers: three registers, whose lanes are put together in the end.
     let (mut least, mut most) = ([f32::INFINITY; 12], [f32::NEG_INFINITY; 12]);
+    // NaN is neither smaller nor larger, and such a point is left out in the end.
+    let lesser = |least: f32, v: f32| if v < least { v } else { least };
+    let larger = |most: f32, v: f32| if v > most { v } else { most };
     let (fours, rest) = positions.as_chunks::<4>();
     for four in fours {
         let numbers = four.map(|p| p.to_array());
         for (i, &v) in numbers.as_flattened().iter().enumerate() {
-            // NaN is neither smaller nor larger, and such a point is left out in the end.
-            least[i] = if v < least[i] { v } else { least[i] };
-            most[i] = if v > most[i] { v } else { most[i] };
+            (least[i], most[i]) = (lesser(least[i], v), larger(most[i], v));
         }
     }
+    for (i, v) in rest.iter().flat_map(|p| p.to_array().into_iter().enumerate()) {
+        (least[i], most[i]) = (lesser(least[i], v), larger(most[i], v));
+    }
     let lanes = |all: &[f32; 12]| [0, 3, 6, 9].map(|i| Vec3::new(all[i], all[i + 1], all[i + 2]));
-    let min = lanes(&least).iter().chain(rest).copied().fold(Vec3::INFINITY, |min, p| p.min(min));
-    let max =
-        lanes(&most).iter().chain(rest).copied().fold(Vec3::NEG_INFINITY, |max, p| p.max(max));
-    [min, max]
+    let ([a, b, c, d], [e, f, g, h]) = (lanes(&least), lanes(&most));
+    [a.min(b).min(c.min(d)), e.max(f).max(g.max(h))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points in an order that runs from one end of a skew body to the other; some are not finite.
+    fn points(count: usize) -> Vec<Vec3> {
+        let point = |i: usize| {
+            let (t, turn) = (i as f32 / count as f32, i as f32 * 0.37);
+            let p = Vec3::new(turn.sin() * t, t * 3.0 - 1.0, turn.cos() * (1.0 - t));
+            match i % 97 {
+                13 => p.with_x(f32::NAN),
+                14 => p.with_y(f32::INFINITY),
+                15 => Vec3::NAN,
+                _ => p,
+            }
+        };
+        (0..count).map(point).collect()
+    }
+
+    #[test]
+    fn a_mesh_has_the_outermost_of_its_points() {
+        let place = DMat4::from_cols(
+            [1.0, 0.2, 0.0, 0.0].into(),
+            [0.3, -2.0, 0.1, 0.0].into(),
+            [0.0, 0.4, 1.5, 0.0].into(),
+            [10.0, 20.0, -5.0, 1.0].into(),
+        );
+        let directions = [DVec3::ONE, -DVec3::ONE, DVec3::new(0.3, -1.0, 0.2), DVec3::X, -DVec3::Z];
+        for count in [0, 1, 3, 63, 64, 65, 1023, 1024, 1025, 1094, 5003] {
+            let positions = points(count);
+            let used: Vec<bool> = (0..count).map(|i| i % 5 != 0).collect();
+            for used in [None, Some(&used[..])] {
+                let mut found = Outermost::new(directions);
+                found.add_mesh(&positions, used, &place);
+                let drawn = |i: &usize| used.is_none_or(|used| used[*i]);
+                let placed = (0..count)
+                    .filter(drawn)
+                    .map(|i| place.transform_point3(positions[i].as_dvec3()))
+                    .filter(|p| p.is_finite());
+                assert_eq!(found.bounds(), Aabb::around(placed.clone()), "{count}");
+                for (direction, point) in directions.into_iter().zip(found.points()) {
+                    let most = placed.clone().map(|p| direction.dot(p)).reduce(f64::max);
+                    assert_eq!(direction.dot(point), most.unwrap_or(0.0), "{count}");
+                }
+            }
+        }
+    }
 }
