@@ -219,23 +219,50 @@ mod tests {
             [0.0, 0.4, 1.5, 0.0].into(),
             [10.0, 20.0, -5.0, 1.0].into(),
         );
-        let directions = [DVec3::ONE, -DVec3::ONE, DVec3::new(0.3, -1.0, 0.2), DVec3::X, -DVec3::Z];
-        for count in [0, 1, 3, 63, 64, 65, 1023, 1024, 1025, 1094, 5003] {
-            let positions = points(count);
-            let used: Vec<bool> = (0..count).map(|i| i % 5 != 0).collect();
-            for used in [None, Some(&used[..])] {
-                let mut found = Outermost::new(directions);
-                found.add_mesh(&positions, used, &place);
-                let drawn = |i: &usize| used.is_none_or(|used| used[*i]);
-                let placed = (0..count)
-                    .filter(drawn)
-                    .map(|i| place.transform_point3(positions[i].as_dvec3()))
-                    .filter(|p| p.is_finite());
-                assert_eq!(found.bounds(), Aabb::around(placed.clone()), "{count}");
-                for (direction, point) in directions.into_iter().zip(found.points()) {
-                    let most = placed.clone().map(|p| direction.dot(p)).reduce(f64::max);
-                    assert_eq!(direction.dot(point), most.unwrap_or(0.0), "{count}");
+        // Wherever the one vertex is that lies far off, to whichever side.
+        for (count, far) in [
+            (0, 0),
+            (1, 0),
+            (3, 1),
+            (63, 62),
+            (64, 0),
+            (65, 64),
+            (67, 64),
+            (1023, 1022),
+            (1025, 1024),
+            (1094, 1093),
+            (5003, 0),
+            (5003, 70),
+            (5003, 1981),
+            (5003, 2047),
+            (5003, 5002),
+        ] {
+            for side in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
+                let mut positions = points(count);
+                if let Some(vertex) = positions.get_mut(far) {
+                    *vertex = (side * 100.0).as_vec3();
                 }
+                check(&positions, &place);
+            }
+        }
+    }
+
+    /// Compares with all points looked at one by one.
+    fn check(positions: &[Vec3], place: &DMat4) {
+        let directions = [DVec3::ONE, -DVec3::ONE, DVec3::new(0.3, -1.0, 0.2), DVec3::X, -DVec3::Z];
+        let used: Vec<bool> = (0..positions.len()).map(|i| i % 5 != 3).collect();
+        for used in [None, Some(&used[..])] {
+            let mut found = Outermost::new(directions);
+            found.add_mesh(positions, used, place);
+            let drawn = |i: &usize| used.is_none_or(|used| used[*i]);
+            let placed = (0..positions.len())
+                .filter(drawn)
+                .map(|i| place.transform_point3(positions[i].as_dvec3()))
+                .filter(|p| p.is_finite());
+            assert_eq!(found.bounds(), Aabb::around(placed.clone()), "{}", positions.len());
+            for (direction, point) in directions.into_iter().zip(found.points()) {
+                let most = placed.clone().map(|p| direction.dot(p)).reduce(f64::max);
+                assert_eq!(direction.dot(point), most.unwrap_or(0.0), "{}", positions.len());
             }
         }
     }
