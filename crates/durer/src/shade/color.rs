@@ -133,26 +133,71 @@ pub fn encode_srgb8(linear: f32) -> u8 {
 ///
 /// Cost: one look-up per channel.
 #[inline(always)]
-pub fn encode_opaque_x16<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> u32x16<S> {
-    let (r, g, b) = (codes_x16(simd, r), codes_x16(simd, g), codes_x16(simd, b));
-    r | (g << 8u32) | (b << 16u32) | (255 << 24)
+pub fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32x16<S> {
+    let mut encoding = Encoding::new(simd, colors);
+    encoding.look_up();
+    encoding.codes(simd)
 }
 
+/// Sixteen colours on their way to codes. Steps of several that are done one after the other need not wait for each
+/// other: vectors that are stored are then long there when their numbers are read one by one, and the other way round.
+#[derive(Clone, Copy)]
+pub(crate) struct Encoding {
+    /// By channel the buckets, later the steps.
+    steps: [[u32; 16]; 3],
+    /// By channel the bits below the buckets.
+    below: [[u32; 16]; 3],
+}
+
+impl Encoding {
+    /// None yet.
+    pub const NONE: Self = Self { steps: [[0; 16]; 3], below: [[0; 16]; 3] };
+
+    /// The buckets of colours.
+    #[inline(always)]
+    pub fn new<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> Self {
+        let (r, g, b) = (buckets_x16(simd, r), buckets_x16(simd, g), buckets_x16(simd, b));
+        Self {
+            steps: [r[0].into(), g[0].into(), b[0].into()],
+            below: [r[1].into(), g[1].into(), b[1].into()],
+        }
+    }
+
+    /// From buckets to steps.
+    #[inline(always)]
+    pub fn look_up(&mut self) {
+        for steps in &mut self.steps {
+            for step in steps {
+                *step = BUCKET_STEP[*step as usize % 2048];
+            }
+        }
+    }
+
+    /// The codes, from steps.
+    #[inline(always)]
+    pub fn codes<S: Simd>(&self, simd: S) -> u32x16<S> {
+        let [r, g, b] = &self.steps;
+        let (steps_r, steps_g) = (u32x16::from_slice(simd, r), u32x16::from_slice(simd, g));
+        let steps_b = u32x16::from_slice(simd, b);
+        let [r, g, b] = &self.below;
+        let (r, g) = (u32x16::from_slice(simd, r), u32x16::from_slice(simd, g));
+        let b = u32x16::from_slice(simd, b);
+        let (r, g) = ((steps_r + r) >> BUCKET_SHIFT, (steps_g + g) >> BUCKET_SHIFT);
+        let b = (steps_b + b) >> BUCKET_SHIFT;
+        r | (g << 8u32) | (b << 16u32) | (255 << 24)
+    }
+}
+
+/// The buckets of linear values, and what is below in their bits.
 #[inline(always)]
-fn codes_x16<S: Simd>(simd: S, linear: f32x16<S>) -> u32x16<S> {
+fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     // From the first bucket to the largest number below 1; NaN is not above the first.
     let (least, most) = (f32::from_bits(FIRST_BUCKET << BUCKET_SHIFT), 1.0 - f32::EPSILON / 2.0);
     let (least, most) = (f32x16::splat(simd, least), f32x16::splat(simd, most));
     let linear = linear.simd_gt(least).select(linear, least);
     let linear = linear.simd_lt(most).select(linear, most);
     let bits: u32x16<S> = linear.bitcast();
-    let buckets: [u32; 16] = (((bits >> BUCKET_SHIFT) - FIRST_BUCKET) & 2047).into();
-    let mut steps = [0; 16];
-    for i in 0..16 {
-        steps[i] = BUCKET_STEP[buckets[i] as usize % 2048];
-    }
-    let below = bits & ((1 << BUCKET_SHIFT) - 1);
-    (u32x16::simd_from(simd, steps) + below) >> BUCKET_SHIFT
+    [(bits >> BUCKET_SHIFT) - FIRST_BUCKET, bits & ((1 << BUCKET_SHIFT) - 1)]
 }
 
 /// Linear RGBA to 8-bit sRGB with 8-bit linear alpha.
