@@ -57,15 +57,7 @@ impl PreparedTexture<'_> {
         } else {
             Self::filtered_x16(simd, this, &at.uv, this.chain.level(0))
         };
-        let [r, g, b, a] = columns(simd, rows);
-        if this.chain.usage != Usage::ColorWithAlpha {
-            return [r, g, b, a];
-        }
-        let zero = simd.splat_f32x16(0.0);
-        let seen = a.simd_gt(zero);
-        let (r, g, b) = (r / a, g / a, b / a);
-        let a = seen.select(a, zero);
-        [seen.select(r, zero), seen.select(g, zero), seen.select(b, zero), a]
+        straight_x16(simd, rows, this.chain.usage)
     }
 
     /// From the levels that suit each point.
@@ -198,21 +190,25 @@ impl PreparedTexture<'_> {
     }
 
     #[inline(always)]
-    fn decode(&self, code: [u8; 4]) -> Vec4 {
+    pub(super) fn decode(&self, code: [u8; 4]) -> Vec4 {
         let texel = self.chain.usage.decode(code);
         if self.chain.usage == Usage::ColorWithAlpha { premultiply(texel) } else { texel }
     }
 }
 
 #[inline(always)]
-fn decode_all(codes: &[[u8; 4]], out: &mut [[f32; 4]], decode: impl Fn([u8; 4]) -> Vec4) {
+pub(super) fn decode_all(
+    codes: &[[u8; 4]],
+    out: &mut [[f32; 4]],
+    decode: impl Fn([u8; 4]) -> Vec4,
+) {
     for (to, &code) in out.iter_mut().zip(codes) {
         *to = decode(code).to_array();
     }
 }
 
 /// Sixteen colours, four side by side.
-type Rows<S> = [f32x16<S>; 4];
+pub(super) type Rows<S> = [f32x16<S>; 4];
 
 /// Four colours side by side: those of the points from `4 i` on, so many texels after their first.
 #[inline(always)]
@@ -229,7 +225,7 @@ fn four_near<S: Simd>(
 
 /// Four colours side by side.
 #[inline(always)]
-fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
+pub(super) fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
     let (a, b) = (f32x4::simd_from(simd, a.to_array()), f32x4::simd_from(simd, b.to_array()));
     let (c, d) = (f32x4::simd_from(simd, c.to_array()), f32x4::simd_from(simd, d.to_array()));
     simd.combine_f32x8(simd.combine_f32x4(a, b), simd.combine_f32x4(c, d))
@@ -237,7 +233,7 @@ fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
 
 /// Each of sixteen numbers four times, for the channels of the colours in [`Rows`].
 #[inline(always)]
-fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
+pub(super) fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
     let (low, high) = (simd.zip_low_f32x16(v, v), simd.zip_high_f32x16(v, v));
     let (first, second) = (simd.zip_low_f32x16(low, low), simd.zip_high_f32x16(low, low));
     [first, second, simd.zip_low_f32x16(high, high), simd.zip_high_f32x16(high, high)]
@@ -245,7 +241,7 @@ fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
 
 /// The bilinear mean of four texels, the upper two first.
 #[inline(always)]
-fn mean<S: Simd>([a, b, c, d]: Rows<S>, [tx, ty]: [f32x16<S>; 2]) -> f32x16<S> {
+pub(super) fn mean<S: Simd>([a, b, c, d]: Rows<S>, [tx, ty]: [f32x16<S>; 2]) -> f32x16<S> {
     let (left, upper) = (1.0 - tx, 1.0 - ty);
     let top = a * left + b * tx;
     let low = c * left + d * tx;
@@ -260,6 +256,20 @@ fn ends<S: Simd>(simd: S, v: i32x16<S>) -> [i32; 2] {
     let ((a, b), (c, d)) = (simd.split_i32x8(least), simd.split_i32x8(most));
     let (least, most) = (simd.min_i32x4(a, b), simd.max_i32x4(c, d));
     [simd.reduce_min_i32x4(least), simd.reduce_max_i32x4(most)]
+}
+
+/// Red, green, blue and alpha, straight, of sixteen texels of this usage.
+#[inline(always)]
+pub(super) fn straight_x16<S: Simd>(simd: S, rows: Rows<S>, usage: Usage) -> [f32x16<S>; 4] {
+    let [r, g, b, a] = columns(simd, rows);
+    if usage != Usage::ColorWithAlpha {
+        return [r, g, b, a];
+    }
+    let zero = simd.splat_f32x16(0.0);
+    let seen = a.simd_gt(zero);
+    let (r, g, b) = (r / a, g / a, b / a);
+    let a = seen.select(a, zero);
+    [seen.select(r, zero), seen.select(g, zero), seen.select(b, zero), a]
 }
 
 /// The reds, greens, blues and alphas of sixteen colours.
@@ -292,11 +302,23 @@ fn linear_x16<S: Simd>(
     size: i32,
     wrap: Wrap,
 ) -> (i32x16<S>, i32x16<S>, f32x16<S>) {
+    let (first, weight) = fixed_x16(simd, u, size, wrap);
+    (inside_x16(simd, first, size, wrap), inside_x16(simd, first + 1, size, wrap), weight)
+}
+
+/// The first texel of the two around each coordinate, −1 … size − 1, and the weight of the second, which may be
+/// beyond the border too.
+#[inline(always)]
+pub(super) fn fixed_x16<S: Simd>(
+    simd: S,
+    u: f32x16<S>,
+    size: i32,
+    wrap: Wrap,
+) -> (i32x16<S>, f32x16<S>) {
     let fixed = (wrapped_x16(simd, u, wrap) * size as f32 + 0.5) * SUBTEXEL + 0.5;
     let fixed = simd.cvt_i32_f32x16(fixed);
-    let first = (fixed >> SUBTEXEL_BITS) - 1;
     let weight = simd.cvt_f32_i32x16(fixed & ((1 << SUBTEXEL_BITS) - 1)) * (1.0 / SUBTEXEL);
-    (inside_x16(simd, first, size, wrap), inside_x16(simd, first + 1, size, wrap), weight)
+    ((fixed >> SUBTEXEL_BITS) - 1, weight)
 }
 
 /// Coordinates brought to 0…1 (both ends possible) by the wrap mode; not finite = 0.

@@ -146,7 +146,7 @@ impl<'a> PreparedMaterial<'a> {
         let mut base = Vec3Lane::splat(like, this.base_color.truncate());
         let mut alpha = like.splat(this.base_color.w);
         if let Some(texel) = sampled_x16(simd, &this.base_color_slot, at) {
-            base = base.times(texel.color());
+            base = this.base_times(&texel);
             alpha *= texel.0[3];
         }
         let alpha = match this.alpha_mode {
@@ -168,6 +168,32 @@ impl<'a> PreparedMaterial<'a> {
         };
         let inputs = this.inputs(like, base, &texels, shading);
         (formula::display(&frame, points.position, &inputs, None, lights, shading), alpha)
+    }
+
+    /// Base colour with its texture, without the vertex colour.
+    #[inline(always)]
+    pub(super) fn base_times<L: Lane>(&self, texel: &Texel<L>) -> Vec3Lane<L> {
+        Vec3Lane::splat(texel.0[0], self.base_color.truncate()).times(texel.color())
+    }
+
+    /// Whether a display can show the base colour, and so all of its products with numbers within 0…1.
+    #[inline(always)]
+    pub(super) fn base_is_shown(&self) -> bool {
+        // By their bits, for of what is below 0, −0 too, they are more than of 1.
+        self.base_color.truncate().to_array().iter().all(|c| c.to_bits() <= 1.0_f32.to_bits())
+    }
+
+    /// The texture of the base colour.
+    #[inline(always)]
+    pub(super) fn base_color_slot(&self) -> Option<&Slot<'a>> {
+        self.base_color_slot.as_ref()
+    }
+
+    /// Whether [`super::Strip`] may be used: textures are [looked up together](Self::looked_up_together), at one size,
+    /// and nothing but that of the base colour is asked for.
+    pub fn suits_strips(&self, shading: Shading) -> bool {
+        shading == Shading::Unlit
+            && self.base_color_slot.as_ref().is_some_and(|slot| !slot.texture.has_levels())
     }
 
     /// The formula the material was written for.

@@ -24,6 +24,7 @@ mod plain;
 mod sample;
 pub mod shadow;
 mod slot;
+mod strip;
 mod surface;
 pub mod texture;
 mod tone;
@@ -38,6 +39,7 @@ pub(crate) use normal::Frame;
 pub(crate) use plain::shade_frame;
 pub use plain::{Faces, Points, shade_points};
 pub use sample::{Sample, Samples};
+pub(crate) use strip::{MOST_PATCHES, Strip};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;
 

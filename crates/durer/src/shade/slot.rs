@@ -37,14 +37,21 @@ impl Slot<'_> {
     /// [`Self::sample`] of sixteen points; `at` is of the slot's own set.
     #[inline(always)]
     fn sample_x16<S: Simd>(&self, simd: S, at: &TexCoords<f32x16<S>>) -> [f32x16<S>; 4] {
-        let [x, y, offset] = self.columns;
+        let [x, y, _] = self.columns;
         let (u, v) = ([x.x, y.x], [x.y, y.y]);
         let at = TexCoords {
-            uv: [sum(at.uv, u) + offset.x, sum(at.uv, v) + offset.y],
+            uv: self.placed(at.uv),
             ddx: [sum(at.ddx, u), sum(at.ddx, v)],
             ddy: [sum(at.ddy, u), sum(at.ddy, v)],
         };
         PreparedTexture::sample_x16(simd, &self.texture, &at)
+    }
+
+    /// Coordinates in the texture from those of the mesh.
+    #[inline(always)]
+    pub fn placed<S: Simd>(&self, uv: [f32x16<S>; 2]) -> [f32x16<S>; 2] {
+        let [x, y, offset] = self.columns;
+        [sum(uv, [x.x, y.x]) + offset.x, sum(uv, [x.y, y.y]) + offset.y]
     }
 }
 

@@ -4,6 +4,7 @@ mod batch;
 mod known;
 mod queue;
 mod sixteen;
+mod strip;
 #[cfg(test)]
 mod tests;
 
@@ -73,7 +74,11 @@ impl<'a> Lighting<'a> {
             .looked_up_together(shading)
             .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
             .and_then(|set| mesh.tex_coords.get(set))
-            .map(|coords| LookedUp { coords, changing: material.has_levels() });
+            .map(|coords| LookedUp {
+                coords,
+                changing: material.has_levels(),
+                in_strips: material.suits_strips(shading),
+            });
         RunInfo {
             run: index,
             first_item: run.first_item,
@@ -118,6 +123,8 @@ struct LookedUp<'a> {
     coords: &'a [Vec2],
     /// Whether it matters how they change over the screen.
     changing: bool,
+    /// Whether nothing but one texture at one size is asked for.
+    in_strips: bool,
 }
 
 /// From where a point of an item is seen.
@@ -148,6 +155,8 @@ pub struct Lit<'a> {
     sight: Sight,
     /// The light on the face or at the corners of the latest triangle; for flat and Gouraud.
     reflected: Option<(u32, [Reflected; 3])>,
+    /// Made when a strip is first asked for.
+    strip: Option<Box<strip::Room>>,
 }
 
 impl<'a> Lit<'a> {
@@ -166,7 +175,16 @@ impl<'a> Lit<'a> {
         let Lighting { scene, view, runs, reach, level, .. } = shared;
         let triangles = Triangles::new(scene, view, runs, level, (kept, reach));
         let part = shared.part();
-        Self { shared, triangles, part, latest: None, parallel_view, sight, reflected: None }
+        Self {
+            shared,
+            triangles,
+            part,
+            latest: None,
+            parallel_view,
+            sight,
+            reflected: None,
+            strip: None,
+        }
     }
 
     /// The run of an item, and what it is made of.

@@ -186,7 +186,7 @@ impl<'a> Lit<'a> {
     fn coords_by_pixel<S: Simd>(
         &mut self,
         simd: S,
-        (run, LookedUp { coords, changing }): (usize, LookedUp<'a>),
+        (run, LookedUp { coords, changing, .. }): (usize, LookedUp<'a>),
         items: &[u32; 16],
         mut left: u64,
         patch: Patch,
@@ -207,7 +207,7 @@ impl<'a> Lit<'a> {
     fn coords_by_triangle<S: Simd>(
         &mut self,
         simd: S,
-        (run, LookedUp { coords, changing }): (usize, LookedUp<'a>),
+        (run, LookedUp { coords, changing, .. }): (usize, LookedUp<'a>),
         (shown, items): (u32x16<S>, &[u32; 16]),
         there: u64,
         patch: Patch,

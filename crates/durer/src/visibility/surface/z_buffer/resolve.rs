@@ -21,6 +21,28 @@ pub(super) const MOST_SAMPLES: usize = 16;
 /// Rows of a tile, and one more: rows are taken in pairs.
 const ROWS: usize = TILE as usize + 1;
 
+/// Fewer patches that show one item are lit like others.
+const FEWEST_OF_STRIP: usize = 4;
+
+/// What is behind each row of a tile, linear and encoded, apart: pairs of them would be copied piece by piece.
+struct Behind {
+    linear: [Vec4; ROWS],
+    encoded: [u32; ROWS],
+}
+
+impl Behind {
+    fn new(area: &Area<'_>) -> Self {
+        let (mut linear, mut encoded) = ([Vec4::ZERO; ROWS], [0; ROWS]);
+        for (y, row) in (0..area.size[1]).zip(0..ROWS) {
+            linear[row] = premultiply((area.background)(area.tile[1] + y));
+            let as_above = row > 0 && linear[row] == linear[row - 1];
+            encoded[row] =
+                if as_above { encoded[row - 1] } else { u32::from_le_bytes(encode(linear[row])) };
+        }
+        Self { linear, encoded }
+    }
+}
+
 /// Lets the fragments of masked surfaces pass where they are.
 pub struct MaskTest<'t, 'a> {
     pub lit: &'t mut Lit<'a>,
@@ -85,22 +107,32 @@ fn resolve_opaque<S: Simd>(
     area: &Area<'_>,
     codes: &mut Codes,
 ) {
-    // What is behind each row, linear and encoded, apart: pairs of them would be copied piece by piece.
-    let (mut behind, mut encoded) = ([Vec4::ZERO; ROWS], [0; ROWS]);
-    for (y, row) in (0..area.size[1]).zip(0..ROWS) {
-        behind[row] = premultiply((area.background)(area.tile[1] + y));
-        let as_above = row > 0 && behind[row] == behind[row - 1];
-        encoded[row] =
-            if as_above { encoded[row - 1] } else { u32::from_le_bytes(encode(behind[row])) };
-    }
+    let mut behind_rows = None;
     // Filled anew for each block, but not cleared.
     let mut samples = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
     // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
         let width = 8.min(area.size[0] - x) as usize;
-        expect_column(simd, (planes, known), x, area.size[1], lit);
-        for y in (0..area.size[1]).step_by(2) {
+        let (mut y, mut strips, mut expected) = (0, true, false);
+        while y < area.size[1] {
             let at = [area.tile[0] + x, area.tile[1] + y];
+            if strips {
+                let place = ([x, y], area.size[1]);
+                match light_strip(simd, planes, place, lit, at, codes) {
+                    Some(0) => {}
+                    Some(count) => {
+                        y += 2 * count as i32;
+                        continue;
+                    }
+                    None => strips = false,
+                }
+            }
+            if !expected {
+                expect_column(simd, (planes, known), x, area.size[1], lit);
+                expected = true;
+            }
+            let Behind { linear: behind, encoded } =
+                behind_rows.get_or_insert_with(|| Behind::new(area));
             let patch = Patch::block(at);
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let row = y as usize % TILE as usize;
@@ -111,6 +143,7 @@ fn resolve_opaque<S: Simd>(
                 let (above, below) = simd.split_u32x16(pixels);
                 above.store_slice(&mut codes[first..first + 8]);
                 below.store_slice(&mut codes[second..second + 8]);
+                y += 2;
                 continue;
             }
             let (above, above_differs) = whole_pixels(simd, planes, first);
@@ -129,6 +162,7 @@ fn resolve_opaque<S: Simd>(
                     add_mixed(simd, planes, [first, second][i], differs, mixed, lit, behind, at);
                 }
             }
+            y += 2;
         }
     }
     Batch::flush(simd, batch, lit, codes);
@@ -136,6 +170,56 @@ fn resolve_opaque<S: Simd>(
     for pixel in mixed.pixels.drain(..) {
         codes[pixel as usize] = u32::from_le_bytes(encode(mixed.sums[pixel as usize]));
     }
+}
+
+/// Lights the patches from a place in a column on that show one item at all samples, if they are several and its material
+/// suits that: how many they are. `None` where too many texels are between them, so that there is no use in asking again.
+#[inline(always)]
+fn light_strip<S: Simd>(
+    simd: S,
+    planes: &[SamplePlane],
+    ([x, y], height): ([i32; 2], i32),
+    lit: &mut Lit<'_>,
+    at: [i32; 2],
+    codes: &mut Codes,
+) -> Option<usize> {
+    let first = (y * TILE + x) as usize;
+    let item = planes.first().map_or(NO_ITEM, |plane| plane.items(first)[0]);
+    if item == NO_ITEM || !lit.suits_strips(item) {
+        return Some(0);
+    }
+    let count = patches_of_one(simd, planes, [x, y], height, item);
+    if count < FEWEST_OF_STRIP {
+        return Some(0);
+    }
+    let place = (&mut codes[first..], TILE as usize);
+    Lit::strip(simd, lit, item, (at, count), place).then_some(count)
+}
+
+/// How many patches from a place on one below another show an item at all samples.
+#[inline(always)]
+fn patches_of_one<S: Simd>(
+    simd: S,
+    planes: &[SamplePlane],
+    [x, first]: [i32; 2],
+    height: i32,
+    item: u32,
+) -> usize {
+    let mut last = height;
+    for plane in planes {
+        for y in first..last {
+            let mut differs = u32x8::splat(simd, 0);
+            for eight in plane.items_of_eight((y * TILE + x) as usize).as_chunks::<8>().0 {
+                differs |= u32x8::from_slice(simd, eight) ^ item;
+            }
+            if differs.simd_ne(u32x8::splat(simd, 0)).any_true() {
+                last = y;
+                break;
+            }
+        }
+    }
+    // Of the last patch of a picture there may be but one row.
+    if last == height { (last - first + 1) as usize / 2 } else { (last - first) as usize / 2 }
 }
 
 /// Makes what a column of eight pixels shows ready to be lit.
