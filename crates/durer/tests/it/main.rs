@@ -45,6 +45,7 @@ mod section_caps;
 mod shading;
 mod shadows;
 mod smooth_outlines;
+mod strips;
 mod surface_depth_sort;
 mod surface_fuzz;
 mod surface_methods;
