@@ -2,8 +2,8 @@
 //! is left of each, and to keep it as a triangle would cost more than to find these.
 //!
 //! Source: micropolygons, after R. L. Cook, L. Carpenter, E. Catmull, *The Reyes image rendering architecture*,
-//! SIGGRAPH 1987; here they are sampled by the same integers as other triangles, eight side by side. Cost: O(1) for
-//! each.
+//! SIGGRAPH 1987; here they are sampled by the same integers as other triangles, eight side by side, in a few
+//! operations each.
 
 use super::eight::{Corner, EIGHT};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
