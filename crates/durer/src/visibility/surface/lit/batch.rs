@@ -57,10 +57,8 @@ impl Batch {
             Lit::colors_x16(simd, lit, shown, patch, &mut colors);
             return put(simd, opaque(simd, &colors), shown, places, codes);
         }
-        let points = match known.of_patch(simd, places, shown) {
-            Some(known) => lit.points_known(simd, info.run, (shown, &items), there, (patch, known)),
-            None => lit.points(simd, info.run, (shown, &items), there, patch),
-        };
+        let known = known.of_patch(simd, places, shown);
+        let points = lit.points_known(simd, info.run, (shown, &items), there, (patch, known));
         if let Faces::Seen(_) = points.faces {
             let Points { position, .. } = points;
             let (material, lights) = (info.material, lit.shared.lights);

@@ -15,6 +15,9 @@ pub struct KnownNormals {
     normals: Vec<[f32; 4]>,
 }
 
+/// Which of sixteen pixels' normals are known, and the normals.
+pub type Known<S> = (mask32x16<S>, Vec3Lane<f32x16<S>>);
+
 impl KnownNormals {
     /// Room for so many pixels.
     pub fn new(pixels: usize) -> Self {
@@ -36,12 +39,14 @@ impl KnownNormals {
         self.normals[pixel] = [x, y, z, 0.0];
     }
 
+    /// Whether there are any.
+    pub fn any(&self) -> bool {
+        self.any
+    }
+
     /// Of eight pixels in a row those whose normals of the items that they show are known.
     #[inline(always)]
     pub fn of_eight<S: Simd>(&self, simd: S, pixel: usize, shown: u32x8<S>) -> mask32x8<S> {
-        if !self.any {
-            return shown.simd_lt(u32x8::splat(simd, 0));
-        }
         shown.simd_eq(u32x8::from_slice(simd, &self.items[pixel..pixel + 8]))
     }
 
@@ -52,7 +57,7 @@ impl KnownNormals {
         simd: S,
         [first, second]: [usize; 2],
         shown: u32x16<S>,
-    ) -> Option<(mask32x16<S>, Vec3Lane<f32x16<S>>)> {
+    ) -> Option<Known<S>> {
         if !self.any {
             return None;
         }

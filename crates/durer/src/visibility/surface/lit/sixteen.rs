@@ -1,5 +1,6 @@
 //! Lighting visible items sixteen pixels at a time, where their materials allow it.
 
+use super::known::Known;
 use super::{Lit, LookedUp, RunInfo};
 use crate::math::{Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
@@ -272,7 +273,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// [`Self::points`] where some of the normals are known; of these, positions are not asked for.
+    /// [`Self::points`] where some of the normals may be known; of these, positions are not asked for.
     #[inline(always)]
     pub(super) fn points_known<S: Simd>(
         &mut self,
@@ -280,18 +281,23 @@ impl<'a> Lit<'a> {
         run: usize,
         shown: (u32x16<S>, &[u32; 16]),
         there: u64,
-        (patch, (known, normal)): (Patch, (mask32x16<S>, Vec3Lane<f32x16<S>>)),
+        (patch, known): (Patch, Option<Known<S>>),
     ) -> Points<f32x16<S>> {
-        let others = there & !known.to_bitmask();
-        if others == 0 {
-            let view = self.sight.towards_eye_x16(simd, patch);
-            return Points { position: view, view, normal, faces: Faces::Settled };
+        let mut others = there;
+        if let Some((known, normal)) = known {
+            others &= !known.to_bitmask();
+            if others == 0 {
+                let view = self.sight.towards_eye_x16(simd, patch);
+                return Points { position: view, view, normal, faces: Faces::Settled };
+            }
         }
         let mut points = self.points(simd, run, shown, others, patch);
-        points.normal = chosen(known, normal, points.normal);
-        if let Faces::Seen(faces) = &mut points.faces {
-            // Settled normals are on the side that they show themselves.
-            *faces = chosen(known, normal, *faces);
+        if let Some((known, normal)) = known {
+            points.normal = chosen(known, normal, points.normal);
+            if let Faces::Seen(faces) = &mut points.faces {
+                // Settled normals are on the side that they show themselves.
+                *faces = chosen(known, normal, *faces);
+            }
         }
         points
     }

@@ -6,7 +6,7 @@ use super::{Filter, ScreenTriangle};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use crate::visibility::surface::gather::{integers_widened, narrowed, transpose, widened};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
+use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
 
 /// Triangles that are set up at a time.
 pub const EIGHT: usize = 8;
@@ -88,25 +88,44 @@ impl<S: Simd> Corner<S> {
     }
 }
 
-/// What snapping took away from x and y of one corner of eight triangles, in grid steps.
-#[inline(always)]
-fn rest<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT]) -> [f32x8<S>; 2] {
-    let [x, y, ..] = four_columns(simd, of, 4);
-    [x, y]
+/// What snapping took away from the corners of eight triangles, in grid steps.
+struct Rest<S: Simd> {
+    x: [f64x8<S>; 3],
+    y: [f64x8<S>; 3],
+}
+
+impl<S: Simd> Rest<S> {
+    /// Where `swapped` is set, the second and the third corner change places.
+    #[inline(always)]
+    fn new(simd: S, [a, b, c]: [&[&ScreenVertex; EIGHT]; 3], swapped: mask32x8<S>) -> Self {
+        let [ax, ay, ..] = four_columns(simd, a, 4);
+        let [bx, by, ..] = four_columns(simd, b, 4);
+        let [cx, cy, ..] = four_columns(simd, c, 4);
+        let (bx, cx) = (swapped.select(cx, bx), swapped.select(bx, cx));
+        let (by, cy) = (swapped.select(cy, by), swapped.select(by, cy));
+        let x = [widened(simd, ax), widened(simd, bx), widened(simd, cx)];
+        Self { x, y: [widened(simd, ay), widened(simd, by), widened(simd, cy)] }
+    }
 }
 
 /// Four numbers of eight vertices, from the given one on, apart.
 #[inline(always)]
 fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [f32x8<S>; 4] {
-    let four = |i: usize| u32x4::from_slice(simd, &of[i].0[from..from + 4]).bitcast::<f32x4<S>>();
-    let two = |i: usize| simd.combine_f32x4(four(i), four(i + 1));
-    let (a, b, c, d) = (two(0), two(2), two(4), two(6));
+    let (a, b) = (two(simd, of[0], of[1], from), two(simd, of[2], of[3], from));
+    let (c, d) = (two(simd, of[4], of[5], from), two(simd, of[6], of[7], from));
     let (even_ab, even_cd) = (simd.unzip_low_f32x8(a, b), simd.unzip_low_f32x8(c, d));
     let (odd_ab, odd_cd) = (simd.unzip_high_f32x8(a, b), simd.unzip_high_f32x8(c, d));
     let first = simd.unzip_low_f32x8(even_ab, even_cd);
     let third = simd.unzip_high_f32x8(even_ab, even_cd);
     let second = simd.unzip_low_f32x8(odd_ab, odd_cd);
     [first, second, third, simd.unzip_high_f32x8(odd_ab, odd_cd)]
+}
+
+/// Four numbers of each of two vertices.
+#[inline(always)]
+fn two<S: Simd>(simd: S, a: &ScreenVertex, b: &ScreenVertex, from: usize) -> f32x8<S> {
+    let a = u32x4::from_slice(simd, &a.0[from..from + 4]);
+    simd.combine_u32x4(a, u32x4::from_slice(simd, &b.0[from..from + 4])).bitcast()
 }
 
 /// Back-face and area test, bounding box test, depth plane; of small triangles, where that is asked for, which pixels they
@@ -160,11 +179,7 @@ pub fn set_up<S: Simd>(
             }
         }
     }
-    let rest = [rest(simd, of_a), rest(simd, of_b), rest(simd, of_c)];
-    let rest = [0, 1].map(|axis| {
-        let [a, b, c] = rest.map(|rest| rest[axis]);
-        [a, negative.select(c, b), negative.select(b, c)].map(|rest| widened(simd, rest))
-    });
+    let rest = Rest::new(simd, [of_a, of_b, of_c], negative);
     let [depth, depth_dx, depth_dy] = depth_planes(simd, [a, b, c], rest, area.abs());
     let nothing = simd.splat_f32x8(0.0);
     // Adding 0 makes a 0 of −0, whose bits are another order.
@@ -215,10 +230,12 @@ fn with_bits<S: Simd>(simd: S, codes: u32x8<S>, bits: u32) -> u64 {
 fn depth_planes<S: Simd>(
     simd: S,
     [a, b, c]: [Corner<S>; 3],
-    [[mut rest_x, rest_x1, rest_x2], [mut rest_y, rest_y1, rest_y2]]: [[f64x8<S>; 3]; 2],
+    rest: Rest<S>,
     snapped_area: f64x8<S>,
 ) -> [f32x8<S>; 3] {
     let zero = simd.splat_f64x8(0.0);
+    let [mut rest_x, rest_x1, rest_x2] = rest.x;
+    let [mut rest_y, rest_y1, rest_y2] = rest.y;
     let (snapped_x1, snapped_y1) =
         (integers_widened(simd, b.x - a.x), integers_widened(simd, b.y - a.y));
     let (snapped_x2, snapped_y2) =

@@ -83,7 +83,8 @@ pub fn cover<S: Simd>(
     size: [u32; 2],
     sampled: &mut Sampled,
 ) {
-    let [x, y] = first.map(|v| (v << SUBPIXEL_BITS) + HALF_PIXEL);
+    let x = (first[0] << SUBPIXEL_BITS) + HALF_PIXEL;
+    let y = (first[1] << SUBPIXEL_BITS) + HALF_PIXEL;
     let mut outside = [i32x8::splat(simd, 0); PIXELS];
     for i in 0..3 {
         let (from, to) = (&corners[i], &corners[(i + 1) % 3]);

@@ -320,8 +320,8 @@ impl<S: Simd> NormalPlanes<S> {
             transpose(simd, [a, b, c, none, d, e, f, none]),
             transpose(simd, [g, h, i, none, none, none, none, none]),
         ];
-        let origins = self.origins.map(Into::into);
-        Normals { origins, rows, settled: self.settled.to_bitmask() }
+        let [x, y] = self.origins;
+        Normals { origins: [x.into(), y.into()], rows, settled: self.settled.to_bitmask() }
     }
 }
 

@@ -130,7 +130,11 @@ impl Queue {
             (this.covered[lane], this.corners[lane]) = (0, this.corners[0]);
         }
         this.count = 0;
-        let planes = normals.map(|normals| normals.planes(simd, &this.corners));
+        // No closures, in which the SIMD level may be lost.
+        let planes = match normals {
+            Some(normals) => Some(normals.planes(simd, &this.corners)),
+            None => None,
+        };
         let covered = u32x8::from_slice(simd, &this.covered);
         let [first_x, first_y] = &this.first;
         let first = [i32x8::from_slice(simd, first_x), i32x8::from_slice(simd, first_y)];
@@ -143,13 +147,16 @@ impl Queue {
             }
             let [column, row] = place_in_box(pixel);
             let (x, y) = (first[0] + column, first[1] + row);
-            let normal = planes.as_ref().map_or([none; 3], |planes| {
-                planes.at(simd, x, y).map(|v| planes.settled.select(v, none))
-            });
+            let mut normal = [[f32::NAN; EIGHT]; 3];
+            if let Some(planes) = &planes {
+                let [nx, ny, nz] = planes.at(simd, x, y);
+                planes.settled.select(nx, none).store_slice(&mut normal[0]);
+                ny.store_slice(&mut normal[1]);
+                nz.store_slice(&mut normal[2]);
+            }
             let place: [u32; EIGHT] = place(simd, x, y, columns).into();
             let depth = depths(simd, [x, y], &this.origin, &this.depth);
             let depth: [i32; EIGHT] = depth.bitcast::<i32x8<S>>().into();
-            let normal: [[f32; EIGHT]; 3] = normal.map(Into::into);
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % EIGHT;
                 left &= left - 1;

@@ -231,7 +231,7 @@ fn expect_column<S: Simd>(
     height: i32,
     lit: &mut Lit<'_>,
 ) {
-    let none = u32x8::splat(simd, NO_ITEM);
+    let (none, any_known) = (u32x8::splat(simd, NO_ITEM), known.any());
     for plane in planes {
         let mut rows_above = [none; 4];
         for y in 0..height {
@@ -245,7 +245,9 @@ fn expect_column<S: Simd>(
                 let above_right = simd.slide_u32x8::<1>(*above, none);
                 let mut new = shown.simd_ne(none) & shown.simd_ne(beside) & shown.simd_ne(*above);
                 new &= shown.simd_ne(above_left) & shown.simd_ne(above_right);
-                new &= !known.of_eight(simd, pixel, shown);
+                if any_known {
+                    new &= !known.of_eight(simd, pixel, shown);
+                }
                 *above = shown;
                 let mut left = new.to_bitmask();
                 while left != 0 {
