@@ -1,6 +1,6 @@
 //! Which triangles touch which tiles: lists per job, joined in the order of the jobs.
 
-use super::micropolygon::{Fragment, Fragments, MOST_TILES, Micropolygons};
+use super::micropolygon::{Fragment, Fragments, MOST_TILES, Micropolygons, Sample, Tiles};
 use super::tile::TILE;
 use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::view::View;
@@ -54,8 +54,9 @@ pub struct Bins {
     triangles: Vec<ScreenTriangle>,
     /// Of each tile which triangles touch it, in item order.
     touching: ByTile<u32>,
-    /// What small triangles have left that are not among the others.
+    /// What small triangles have left that are not among the others: with their normals, and without.
     fragments: ByTile<Fragment>,
+    samples: ByTile<Sample>,
 }
 
 /// What is needed to make [`Bins`], and is used again.
@@ -97,8 +98,9 @@ impl Bins {
         let (coverage, counts, triangles) = (job.coverage, assembler.counts, sorter.triangles);
         *vertices = assembler.into_memory();
         let touching = sort_by_tile(touched, screen.count());
-        let fragments = gather_by_tile(fragments);
-        Self { coverage, counts, triangles, touching, fragments }
+        let samples = gather_by_tile(&mut fragments.samples);
+        let fragments = gather_by_tile(&mut fragments.with_normals);
+        Self { coverage, counts, triangles, touching, fragments, samples }
     }
 
     /// The triangles that touch a tile, in item order.
@@ -106,14 +108,16 @@ impl Bins {
         self.touching.of(tile).iter().map(|&e| &self.triangles[e as usize])
     }
 
-    /// What is in a tile of triangles that were sampled at once.
-    pub fn fragments_of_tile(&self, tile: u32) -> &[Fragment] {
-        self.fragments.of(tile)
+    /// What is in a tile of triangles that were sampled at once, with normals and without.
+    pub fn fragments_of_tile(&self, tile: u32) -> (&[Fragment], &[Sample]) {
+        (self.fragments.of(tile), self.samples.of(tile))
     }
 
     /// Tiles with something in them.
     fn tiles(&self) -> impl Iterator<Item = u32> + '_ {
-        self.touching.starts.iter().chain(&self.fragments.starts).map(|&(tile, _)| tile)
+        let Self { touching, fragments, samples, .. } = self;
+        let starts = touching.starts.iter().chain(&fragments.starts).chain(&samples.starts);
+        starts.map(|&(tile, _)| tile)
     }
 }
 
@@ -211,10 +215,10 @@ fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile<u32> {
     ByTile { starts, entries }
 }
 
-/// Puts fragments into one list.
-fn gather_by_tile(fragments: &mut Fragments) -> ByTile<Fragment> {
-    let (mut starts, mut entries) = (Vec::new(), Vec::with_capacity(fragments.count()));
-    fragments.drain(|tile, of_tile| {
+/// Puts what is in tiles into one list.
+fn gather_by_tile<T: Copy>(tiles: &mut Tiles<T>) -> ByTile<T> {
+    let (mut starts, mut entries) = (Vec::new(), Vec::with_capacity(tiles.count()));
+    tiles.drain(|tile, of_tile| {
         starts.push((tile, entries.len() as u32));
         entries.extend_from_slice(of_tile);
     });

@@ -21,14 +21,37 @@ const PIXEL_BITS: u32 = 2 * TILE.trailing_zeros();
 /// Screens of more tiles have places that do not fit 32 bits; nothing is sampled there before its time.
 pub const MOST_TILES: u32 = 1 << (32 - PIXEL_BITS);
 
-/// A sample of a small triangle.
+/// A sample that a small triangle covers.
 #[derive(Debug, Clone, Copy)]
-pub struct Fragment {
+pub struct Sample {
     /// The pixel in its tile.
     pixel: u32,
     /// Bits of the depth.
     depth: i32,
     item: u32,
+}
+
+impl Sample {
+    /// Depth test and write; whether it is seen.
+    #[inline(always)]
+    pub fn draw(&self, plane: &mut SamplePlane) -> bool {
+        let pixel = self.pixel as usize;
+        let (depth, item) = (&mut plane.depth[pixel], &mut plane.item[pixel]);
+        // At equal depths the lower item wins, as where triangles are rasterized.
+        let wins_ties = item.cast_signed().wrapping_sub(self.item.cast_signed()) >= 0;
+        let seen = self.depth < *depth || self.depth == *depth && wins_ties;
+        if seen {
+            (*depth, *item) = (self.depth, self.item);
+        }
+        seen
+    }
+}
+
+/// A sample with its normal.
+#[derive(Debug, Clone, Copy)]
+pub struct Fragment {
+    /// Where it is.
+    pub sample: Sample,
     /// Of the side that is seen, of any length; NaN where it is to be found when it is asked for.
     normal: [f32; 3],
 }
@@ -36,37 +59,35 @@ pub struct Fragment {
 impl Fragment {
     /// Depth test and write; in `known` its normal.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane, known: Option<&mut KnownNormals>) {
-        let pixel = self.pixel as usize;
-        let (depth, item) = (&mut plane.depth[pixel], &mut plane.item[pixel]);
-        // At equal depths the lower item wins, as where triangles are rasterized.
-        let wins_ties = item.cast_signed().wrapping_sub(self.item.cast_signed()) >= 0;
-        if self.depth < *depth || self.depth == *depth && wins_ties {
-            (*depth, *item) = (self.depth, self.item);
-            if let Some(known) = known {
-                known.set(pixel, self.item, self.normal);
-            }
+    pub fn draw(&self, plane: &mut SamplePlane, known: &mut KnownNormals) {
+        if self.sample.draw(plane) {
+            known.set(self.sample.pixel as usize, self.sample.item, self.normal);
         }
     }
 }
 
-/// Fragments by the tiles that they are in.
-#[derive(Default)]
-pub struct Fragments {
-    by_tile: Vec<Vec<Fragment>>,
-    /// Tiles with fragments.
+/// Things by the tiles that they are in.
+pub struct Tiles<T> {
+    by_tile: Vec<Vec<T>>,
+    /// Tiles with something in them.
     tiles: Vec<u32>,
 }
 
-impl Fragments {
+impl<T> Default for Tiles<T> {
+    fn default() -> Self {
+        Self { by_tile: Vec::new(), tiles: Vec::new() }
+    }
+}
+
+impl<T> Tiles<T> {
     #[inline(always)]
-    fn push(&mut self, place: u32, fragment: Fragment) {
+    fn push(&mut self, place: u32, thing: T) {
         let tile = place >> PIXEL_BITS;
         let of_tile = &mut self.by_tile[tile as usize];
         if of_tile.is_empty() {
             self.tiles.push(tile);
         }
-        of_tile.push(fragment);
+        of_tile.push(thing);
     }
 
     /// How many there are.
@@ -75,7 +96,7 @@ impl Fragments {
     }
 
     /// Hands on what there is, tile by tile in ascending order, and is empty then.
-    pub fn drain(&mut self, mut take: impl FnMut(u32, &[Fragment])) {
+    pub fn drain(&mut self, mut take: impl FnMut(u32, &[T])) {
         self.tiles.sort_unstable();
         for tile in self.tiles.drain(..) {
             let of_tile = &mut self.by_tile[tile as usize];
@@ -83,6 +104,15 @@ impl Fragments {
             of_tile.clear();
         }
     }
+}
+
+/// What small triangles leave.
+#[derive(Default)]
+pub struct Fragments {
+    /// Where normals were made.
+    pub with_normals: Tiles<Fragment>,
+    /// The others.
+    pub samples: Tiles<Sample>,
 }
 
 /// Small triangles that wait until there are eight.
@@ -147,23 +177,27 @@ impl Queue {
             }
             let [column, row] = place_in_box(pixel);
             let (x, y) = (first[0] + column, first[1] + row);
-            let mut normal = [[f32::NAN; EIGHT]; 3];
+            let place: [u32; EIGHT] = place(simd, x, y, columns).into();
+            let depth = depths(simd, [x, y], &this.origin, &this.depth);
+            let depth: [i32; EIGHT] = depth.bitcast::<i32x8<S>>().into();
+            let mut normal = [[0.0; EIGHT]; 3];
             if let Some(planes) = &planes {
                 let [nx, ny, nz] = planes.at(simd, x, y);
                 planes.settled.select(nx, none).store_slice(&mut normal[0]);
                 ny.store_slice(&mut normal[1]);
                 nz.store_slice(&mut normal[2]);
             }
-            let place: [u32; EIGHT] = place(simd, x, y, columns).into();
-            let depth = depths(simd, [x, y], &this.origin, &this.depth);
-            let depth: [i32; EIGHT] = depth.bitcast::<i32x8<S>>().into();
             while left != 0 {
                 let lane = left.trailing_zeros() as usize % EIGHT;
                 left &= left - 1;
-                let (depth, item) = (depth[lane], this.items[lane]);
-                let normal = [normal[0][lane], normal[1][lane], normal[2][lane]];
-                let pixel = place[lane] % (1 << PIXEL_BITS);
-                fragments.push(place[lane], Fragment { pixel, depth, item, normal });
+                let (place, depth, item) = (place[lane], depth[lane], this.items[lane]);
+                let sample = Sample { pixel: place % (1 << PIXEL_BITS), depth, item };
+                if planes.is_some() {
+                    let normal = [normal[0][lane], normal[1][lane], normal[2][lane]];
+                    fragments.with_normals.push(place, Fragment { sample, normal });
+                } else {
+                    fragments.samples.push(place, sample);
+                }
             }
         }
     }
@@ -183,7 +217,9 @@ pub struct Micropolygons<'f> {
 impl<'f> Micropolygons<'f> {
     /// For a screen.
     pub fn new(screen: TileGrid, fragments: &'f mut Fragments) -> Self {
-        fragments.by_tile.resize_with(screen.count() as usize, Vec::new);
+        let tiles = screen.count() as usize;
+        fragments.with_normals.by_tile.resize_with(tiles, Vec::new);
+        fragments.samples.by_tile.resize_with(tiles, Vec::new);
         let (fronts, backs) = (Queue::default(), Queue::default());
         Self { fronts, backs, fragments, columns: screen.columns }
     }

@@ -271,11 +271,18 @@ impl<'a> Frame<'a> {
     ) -> bool {
         let mut any = false;
         // There are none where pixels have several samples.
-        if let [plane] = planes {
-            for fragment in self.bins.iter().flat_map(|bins| bins.fragments_of_tile(index)) {
-                fragment.draw(plane, known.as_deref_mut());
-                any = true;
+        let [plane] = planes else { return any };
+        for (fragments, samples) in self.bins.iter().map(|bins| bins.fragments_of_tile(index)) {
+            for fragment in fragments {
+                match &mut known {
+                    Some(known) => fragment.draw(plane, known),
+                    None => _ = fragment.sample.draw(plane),
+                }
             }
+            for sample in samples {
+                sample.draw(plane);
+            }
+            any |= !fragments.is_empty() || !samples.is_empty();
         }
         any
     }
