@@ -189,7 +189,7 @@ impl<'a> PreparedMaterial<'a> {
         self.base_color_slot.as_ref()
     }
 
-    /// Whether [`super::Strip`] may be used: textures are [looked up together](Self::looked_up_together), at one size,
+    /// Whether strips may be used: textures are [looked up together](Self::looked_up_together), at one size,
     /// and nothing but that of the base colour is asked for.
     pub fn suits_strips(&self, shading: Shading) -> bool {
         shading == Shading::Unlit
