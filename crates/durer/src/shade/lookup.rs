@@ -52,12 +52,12 @@ impl PreparedTexture<'_> {
         this: &Self,
         at: &TexCoords<f32x16<S>>,
     ) -> [f32x16<S>; 4] {
-        let rows = if this.has_levels() {
+        let colors = if this.has_levels() {
             this.between_levels(simd, at)
         } else {
             Self::filtered_x16(simd, this, &at.uv, this.chain.level(0))
         };
-        straight_x16(simd, rows, this.chain.usage)
+        straight_x16(simd, columns(simd, colors), this.chain.usage)
     }
 
     /// From the levels that suit each point.
@@ -197,11 +197,7 @@ impl PreparedTexture<'_> {
 }
 
 #[inline(always)]
-pub(super) fn decode_all(
-    codes: &[[u8; 4]],
-    out: &mut [[f32; 4]],
-    decode: impl Fn([u8; 4]) -> Vec4,
-) {
+fn decode_all(codes: &[[u8; 4]], out: &mut [[f32; 4]], decode: impl Fn([u8; 4]) -> Vec4) {
     for (to, &code) in out.iter_mut().zip(codes) {
         *to = decode(code).to_array();
     }
@@ -260,8 +256,11 @@ fn ends<S: Simd>(simd: S, v: i32x16<S>) -> [i32; 2] {
 
 /// Red, green, blue and alpha, straight, of sixteen texels of this usage.
 #[inline(always)]
-pub(super) fn straight_x16<S: Simd>(simd: S, rows: Rows<S>, usage: Usage) -> [f32x16<S>; 4] {
-    let [r, g, b, a] = columns(simd, rows);
+pub(super) fn straight_x16<S: Simd>(
+    simd: S,
+    [r, g, b, a]: [f32x16<S>; 4],
+    usage: Usage,
+) -> [f32x16<S>; 4] {
     if usage != Usage::ColorWithAlpha {
         return [r, g, b, a];
     }
@@ -274,7 +273,7 @@ pub(super) fn straight_x16<S: Simd>(simd: S, rows: Rows<S>, usage: Usage) -> [f3
 
 /// The reds, greens, blues and alphas of sixteen colours.
 #[inline(always)]
-fn columns<S: Simd>(simd: S, mut from: Rows<S>) -> [f32x16<S>; 4] {
+pub(super) fn columns<S: Simd>(simd: S, mut from: Rows<S>) -> [f32x16<S>; 4] {
     // Each shuffle rotates the six bits of a number's row and lane by one; two bring its channel to the front.
     for _ in 0..2 {
         let mut to = from;

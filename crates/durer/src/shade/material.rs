@@ -143,19 +143,9 @@ impl<'a> PreparedMaterial<'a> {
         shading: Shading,
     ) -> (Vec3Lane<f32x16<S>>, f32x16<S>) {
         let like = points.position.x;
-        let mut base = Vec3Lane::splat(like, this.base_color.truncate());
-        let mut alpha = like.splat(this.base_color.w);
-        if let Some(texel) = sampled_x16(simd, &this.base_color_slot, at) {
-            base = this.base_times(&texel);
-            alpha *= texel.0[3];
-        }
-        let alpha = match this.alpha_mode {
-            AlphaMode::Blend => {
-                let most = alpha.if_above(1.0, like.splat(1.0), alpha);
-                alpha.if_above(0.0, most, like.splat(0.0))
-            }
-            _ => like.splat(1.0),
-        };
+        let white = Texel([like.splat(1.0); 4]);
+        let texel = sampled_x16(simd, &this.base_color_slot, at).unwrap_or(white);
+        let (base, alpha) = (this.base_times(&texel), this.alpha_times(&texel));
         if shading == Shading::Unlit {
             return (tone::display(base), alpha);
         }
@@ -174,6 +164,16 @@ impl<'a> PreparedMaterial<'a> {
     #[inline(always)]
     pub(super) fn base_times<L: Lane>(&self, texel: &Texel<L>) -> Vec3Lane<L> {
         Vec3Lane::splat(texel.0[0], self.base_color.truncate()).times(texel.color())
+    }
+
+    /// The alpha that is left of that of the base colour with its texture, without the vertex colour; of masked materials 1.
+    #[inline(always)]
+    pub(super) fn alpha_times<L: Lane>(&self, texel: &Texel<L>) -> L {
+        let alpha = texel.0[3] * self.base_color.w;
+        match self.alpha_mode {
+            AlphaMode::Blend => alpha.at_most(1.0).at_least(0.0),
+            _ => alpha.splat(1.0),
+        }
     }
 
     /// Whether a display can show the base colour, and so all of its products with numbers within 0…1.

@@ -26,7 +26,8 @@ pub mod shadow;
 mod slot;
 mod strip;
 mod surface;
-pub mod texture;
+pub mod texel_rows;
+mod texture;
 mod tone;
 pub mod unlit;
 

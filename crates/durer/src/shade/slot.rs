@@ -5,7 +5,7 @@ use super::lookup::TexCoords;
 use super::mip::MipChain;
 use super::surface::{Surface, TexCoord};
 use super::texture::{PreparedTexture, Usage};
-use crate::math::{Vec2, Vec4};
+use crate::math::{DMat3, Vec2, Vec4};
 use crate::scene::{MipFilter, Scene, TextureRef};
 use fearless_simd::{Simd, f32x16};
 use std::sync::Arc;
@@ -15,15 +15,15 @@ use std::sync::Arc;
 pub(super) struct Slot<'a> {
     pub texture: PreparedTexture<'a>,
     pub set: usize,
-    /// Columns of the affine map from the mesh's coordinates to the texture's.
-    columns: [Vec2; 3],
+    /// Columns of the affine map from the mesh's coordinates to the texture's, unless they are the same.
+    columns: Option<[Vec2; 3]>,
 }
 
 impl Slot<'_> {
     #[inline]
     pub fn coordinates(&self, surface: &Surface<'_>) -> TexCoord {
         let at = surface.tex_coords.get(self.set).copied().unwrap_or_default();
-        let [x, y, offset] = self.columns;
+        let Some([x, y, offset]) = self.columns else { return at };
         let turned = |d: Vec2| x * d.x + y * d.y;
         TexCoord { uv: turned(at.uv) + offset, ddx: turned(at.ddx), ddy: turned(at.ddy) }
     }
@@ -37,20 +37,22 @@ impl Slot<'_> {
     /// [`Self::sample`] of sixteen points; `at` is of the slot's own set.
     #[inline(always)]
     fn sample_x16<S: Simd>(&self, simd: S, at: &TexCoords<f32x16<S>>) -> [f32x16<S>; 4] {
-        let [x, y, _] = self.columns;
-        let (u, v) = ([x.x, y.x], [x.y, y.y]);
-        let at = TexCoords {
-            uv: self.placed(at.uv),
-            ddx: [sum(at.ddx, u), sum(at.ddx, v)],
-            ddy: [sum(at.ddy, u), sum(at.ddy, v)],
-        };
+        let mut at = *at;
+        if let Some([x, y, _]) = self.columns {
+            let (u, v) = ([x.x, y.x], [x.y, y.y]);
+            at = TexCoords {
+                uv: self.placed(at.uv),
+                ddx: [sum(at.ddx, u), sum(at.ddx, v)],
+                ddy: [sum(at.ddy, u), sum(at.ddy, v)],
+            };
+        }
         PreparedTexture::sample_x16(simd, &self.texture, &at)
     }
 
     /// Coordinates in the texture from those of the mesh.
     #[inline(always)]
     pub fn placed<S: Simd>(&self, uv: [f32x16<S>; 2]) -> [f32x16<S>; 2] {
-        let [x, y, offset] = self.columns;
+        let Some([x, y, offset]) = self.columns else { return uv };
         [sum(uv, [x.x, y.x]) + offset.x, sum(uv, [x.y, y.y]) + offset.y]
     }
 }
@@ -121,10 +123,9 @@ impl<'a> Chains<'a> {
             self.made.push((wanted, Arc::clone(&chain)));
             chain
         };
-        let columns = reference.transform.to_cols_array_2d().map(|c| {
-            let [x, y, _] = c;
-            Vec2::new(x as f32, y as f32)
-        });
+        let column = |[x, y, _]: [f64; 3]| Vec2::new(x as f32, y as f32);
+        let moves = reference.transform != DMat3::IDENTITY;
+        let columns = moves.then(|| reference.transform.to_cols_array_2d().map(column));
         let texture = PreparedTexture::from_chain(chain, texture.sampler);
         Some(Slot { texture, set: reference.tex_coord as usize, columns })
     }

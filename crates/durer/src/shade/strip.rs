@@ -5,10 +5,11 @@
 
 use super::color::decode_srgb8;
 use super::lane::Vec3Lane;
-use super::lookup::{decode_all, fixed_x16, four, mean, spread, straight_x16};
+use super::lookup::{Rows, columns, fixed_x16, four, mean, spread, straight_x16};
 use super::material::PreparedMaterial;
 use super::mip::Level;
 use super::slot::Texel;
+use super::texel_rows::TexelRows;
 use super::texture::{PreparedTexture, Usage, inside};
 use super::tone;
 use crate::math::Vec4;
@@ -33,6 +34,12 @@ pub struct Strip {
     points: Vec<Sixteen>,
     /// The texels as they are stored.
     codes: Box<[[u8; 4]; MOST_TEXELS]>,
+    /// Whether the points of each eight lie between the same two rows of texels.
+    between_rows: bool,
+    /// The texels where points lie so and near enough to each other; else they are in `texels`.
+    rows: Option<Box<TexelRows>>,
+    /// Whether they are in `rows`.
+    in_rows: bool,
     /// One more than are decoded, so that each has one after it.
     texels: Box<[[f32; 4]; MOST_TEXELS + 1]>,
     /// Column and row of the first texel; it may be beyond the border of the image by one.
@@ -53,7 +60,16 @@ impl Default for Strip {
     fn default() -> Self {
         let texels = Box::new([[0.0; 4]; MOST_TEXELS + 1]);
         let codes = Box::new([[0; 4]; MOST_TEXELS]);
-        Self { points: Vec::with_capacity(MOST_PATCHES), codes, texels, first: [0; 2], columns: 0 }
+        Self {
+            points: Vec::with_capacity(MOST_PATCHES),
+            codes,
+            between_rows: true,
+            rows: None,
+            in_rows: false,
+            texels,
+            first: [0; 2],
+            columns: 0,
+        }
     }
 }
 
@@ -61,6 +77,7 @@ impl Strip {
     /// Forgets all points.
     pub fn clear(&mut self) {
         self.points.clear();
+        self.between_rows = true;
     }
 
     /// Adds sixteen points by their coordinates in the set that the material's texture uses.
@@ -73,6 +90,9 @@ impl Strip {
         let (x, tx) = fixed_x16(simd, u, level.width as i32, sampler.wrap_u);
         let (y, ty) = fixed_x16(simd, v, level.height as i32, sampler.wrap_v);
         let (first, weights) = ([x.into(), y.into()], [tx.into(), ty.into()]);
+        // Of each eight the last has none beside it.
+        let differs = y.simd_ne(simd.slide_i32x16::<1>(y, y)).to_bitmask();
+        self.between_rows &= differs & 0x7f7f == 0;
         self.points.push(Sixteen { first, weights });
     }
 
@@ -89,8 +109,17 @@ impl Strip {
         (this.first, this.columns) = ([left, top], columns as i32);
         // First all rows are copied: they come from far, and while one is decoded not all others could be waited for.
         slot.texture.copy_area([left, top], [columns, rows], &mut this.codes);
-        let count = columns * rows;
-        slot.texture.decode_base(&this.codes[..count], &mut this.texels[..count]);
+        let codes = &this.codes[..columns * rows];
+        this.in_rows = this.between_rows && TexelRows::have_room([columns, rows]);
+        if this.in_rows {
+            let to = this.rows.get_or_insert_default();
+            for (y, codes) in codes.chunks_exact(columns).enumerate() {
+                slot.texture.decode_base(codes, |x, texel| to.set([x, y], texel));
+            }
+        } else {
+            let to = &mut this.texels;
+            slot.texture.decode_base(codes, |i, texel| to[i % MOST_TEXELS] = texel.to_array());
+        }
         true
     }
 
@@ -112,16 +141,41 @@ impl Strip {
         Some([x, y])
     }
 
-    /// Linear red, green and blue of the sixteen points that were added as those of this number, bit for bit as by
-    /// [`PreparedMaterial::shade_x16`].
+    /// Linear red, green and blue of the sixteen points that were added as those of this number, and their alpha, bit for
+    /// bit as by [`PreparedMaterial::shade_x16`].
     #[inline(always)]
     pub fn color<S: Simd>(
         &self,
         simd: S,
         material: &PreparedMaterial<'_>,
         number: usize,
-    ) -> Vec3Lane<f32x16<S>> {
+    ) -> (Vec3Lane<f32x16<S>>, f32x16<S>) {
         let points = &self.points[number];
+        let usage = material.base_color_slot().map_or(Usage::Color, |s| s.texture.chain.usage);
+        let means = match &self.rows {
+            Some(rows) if self.in_rows => {
+                let x = first_of(simd, points, 0) - self.first[0];
+                let [above, below] = rows_of(&points.first);
+                let y = [above - self.first[1], below - self.first[1]];
+                let tx = f32x16::from_slice(simd, &points.weights[0]);
+                let ty = f32x16::from_slice(simd, &points.weights[1]);
+                rows.means(simd, (x, y), [tx, ty], usage == Usage::ColorWithAlpha)
+            }
+            _ => columns(simd, self.means(simd, points)),
+        };
+        let texel = Texel(straight_x16(simd, means, usage));
+        let (color, alpha) = (material.base_times(&texel), material.alpha_times(&texel));
+        // Weights are whole multiples of 2⁻¹², so that means of texels within 0…1 stay there.
+        if usage != Usage::ColorWithAlpha && material.base_is_shown() {
+            (color, alpha)
+        } else {
+            (tone::display(color), alpha)
+        }
+    }
+
+    /// The means of four texels each at sixteen points.
+    #[inline(always)]
+    fn means<S: Simd>(&self, simd: S, points: &Sixteen) -> Rows<S> {
         let x = first_of(simd, points, 0) - self.first[0];
         let y = first_of(simd, points, 1) - self.first[1];
         let upper = y * self.columns + x;
@@ -130,20 +184,12 @@ impl Strip {
         let tx = spread(simd, f32x16::from_slice(simd, &points.weights[0]));
         let ty = spread(simd, f32x16::from_slice(simd, &points.weights[1]));
         // Not in a loop, in which they would be stored and read again.
-        let means = [
+        [
             self.mean_of_four(simd, (&upper, &lower), 0, [tx[0], ty[0]]),
             self.mean_of_four(simd, (&upper, &lower), 1, [tx[1], ty[1]]),
             self.mean_of_four(simd, (&upper, &lower), 2, [tx[2], ty[2]]),
             self.mean_of_four(simd, (&upper, &lower), 3, [tx[3], ty[3]]),
-        ];
-        let usage = material.base_color_slot().map_or(Usage::Color, |s| s.texture.chain.usage);
-        let color = material.base_times(&Texel(straight_x16(simd, means, usage)));
-        // Weights are whole multiples of 2⁻¹², so that means of texels within 0…1 stay there.
-        if usage != Usage::ColorWithAlpha && material.base_is_shown() {
-            color
-        } else {
-            tone::display(color)
-        }
+        ]
     }
 
     /// The means of four texels each at four points side by side, from the point 4 `i` on.
@@ -178,6 +224,12 @@ fn first_of<S: Simd>(simd: S, points: &Sixteen, axis: usize) -> i32x16<S> {
     i32x16::from_slice(simd, &points.first[axis])
 }
 
+/// The rows of the first texels around the first of sixteen points and around the ninth.
+#[inline(always)]
+fn rows_of(first: &[[i32; 16]; 2]) -> [i32; 2] {
+    [first[1][0], first[1][8]]
+}
+
 impl PreparedTexture<'_> {
     /// Copies texels of so many columns and rows of the image; the first and the last may be beyond the border by one.
     #[inline(always)]
@@ -209,15 +261,17 @@ impl PreparedTexture<'_> {
         }
     }
 
-    /// Decodes texels of a base colour; those of opaque materials need no alpha.
+    /// Gives the decoded texels of a base colour with their numbers; those of opaque materials need no alpha.
     #[inline(always)]
-    fn decode_base(&self, codes: &[[u8; 4]], out: &mut [[f32; 4]]) {
+    fn decode_base(&self, codes: &[[u8; 4]], mut to: impl FnMut(usize, Vec4)) {
         if self.chain.usage == Usage::ColorWithAlpha {
-            decode_all(codes, out, |code| self.decode(code));
+            for (i, &code) in codes.iter().enumerate() {
+                to(i, self.decode(code));
+            }
         } else {
-            decode_all(codes, out, |[r, g, b, _]| {
-                Vec4::new(decode_srgb8(r), decode_srgb8(g), decode_srgb8(b), 1.0)
-            });
+            for (i, &[r, g, b, _]) in codes.iter().enumerate() {
+                to(i, Vec4::new(decode_srgb8(r), decode_srgb8(g), decode_srgb8(b), 1.0));
+            }
         }
     }
 }
@@ -238,14 +292,14 @@ mod tests {
     /// Coordinates of sixteen points.
     type Sixteen = [[f32; 16]; 2];
 
-    /// Compares a strip with [`PreparedMaterial::shade_x16`]: whether its texels are not too many.
+    /// Compares a strip with [`PreparedMaterial::shade_x16`]: whether its texels are not too many, and are in rows.
     #[simd]
     fn agrees<S: Simd>(
         simd: S,
         strip: &mut Strip,
         material: &PreparedMaterial<'_>,
         points: &[Sixteen],
-    ) -> bool {
+    ) -> [bool; 2] {
         let load =
             |uv: &Sixteen| [f32x16::from_slice(simd, &uv[0]), f32x16::from_slice(simd, &uv[1])];
         strip.clear();
@@ -253,7 +307,7 @@ mod tests {
             strip.add(simd, material, load(uv));
         }
         if !Strip::decode(simd, strip, material) {
-            return false;
+            return [false; 2];
         }
         let none = [f32x16::splat(simd, 0.0); 2];
         let nowhere = Vec3Lane::splat(none[0], Vec3::ZERO);
@@ -265,15 +319,15 @@ mod tests {
         let lights = PreparedLights::new(&[], &camera);
         for (i, uv) in points.iter().enumerate() {
             let at = TexCoords { uv: load(uv), ddx: none, ddy: none };
-            let (one, _) =
+            let (one, alpha) =
                 PreparedMaterial::shade_x16(simd, material, &nothing, &at, &lights, Shading::Unlit);
-            let ours = strip.color(simd, material, i);
-            for (a, b) in [(one.x, ours.x), (one.y, ours.y), (one.z, ours.z)] {
+            let (ours, our_alpha) = strip.color(simd, material, i);
+            for (a, b) in [(one.x, ours.x), (one.y, ours.y), (one.z, ours.z), (alpha, our_alpha)] {
                 let bits = |v: f32x16<S>| <[f32; 16]>::from(v).map(f32::to_bits);
                 assert_eq!(bits(a), bits(b), "{uv:?}");
             }
         }
-        true
+        [true, strip.in_rows]
     }
 
     #[test]
@@ -284,9 +338,13 @@ mod tests {
             (seed >> 8) as f32 / (1 << 24) as f32
         };
         let strange = [f32::NAN, f32::INFINITY, -0.0, 1.0, -1e-9, 8_388_609.0, 3e9];
-        let (mut decoded, mut too_many) = (0, 0);
+        let (mut decoded, mut too_many, mut in_rows) = (0, 0, 0);
         for (width, height) in [(1, 1), (3, 2), (30, 30), (64, 16), (400, 300)] {
-            let data = (0..width * height).map(|_| [0; 4].map(|_: u8| (random() * 255.0) as u8));
+            let opaque = height % 3 == 1;
+            let data = (0..width * height).map(|_| {
+                let [r, g, b, a] = [0; 4].map(|_: u8| (random() * 255.0) as u8);
+                [r, g, b, if opaque { 255 } else { a }]
+            });
             let images = vec![Image { name: String::new(), width, height, data: data.collect() }];
             for (wrap, bright) in
                 [(Wrap::Repeat, 1.8), (Wrap::MirroredRepeat, 0.9), (Wrap::ClampToEdge, 0.9)]
@@ -298,9 +356,11 @@ mod tests {
                     ..Default::default()
                 };
                 let textures = vec![Texture { image: 0, sampler }];
-                let materials = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }].map(|mode| {
+                let modes = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend];
+                let materials = modes.map(|mode| {
+                    let angle = if width == height { 0.0 } else { 0.3 };
                     let transform =
-                        DMat3::from_scale_angle_translation(DVec2::splat(0.8), 0.3, DVec2::X);
+                        DMat3::from_scale_angle_translation(DVec2::splat(0.8), angle, DVec2::X);
                     let texture = TextureRef { texture: 0, tex_coord: 0, transform };
                     Material {
                         model: ShadingModel::Unlit,
@@ -314,27 +374,36 @@ mod tests {
                 let scene = Scene { images, textures, materials, ..Scene::default() };
                 let prepared = PreparedMaterials::new(&scene);
                 for round in 0..60 {
-                    let material = prepared.get(Some(round % 2));
+                    let material = prepared.get(Some(round % 3));
                     assert!(material.suits_strips(Shading::Unlit));
                     let (u, v, extent) =
                         (random() * 3.0, random() * 3.0, random() * random() * 0.4);
                     let mut points = vec![[[0.0; 16]; 2]; 1 + round / 2];
+                    let upright = round % 2 == 0;
                     for [us, vs] in &mut points {
                         *us = us.map(|_| u + random() * extent);
-                        *vs = vs.map(|_| v + random() * extent);
+                        if upright {
+                            for eight in vs.chunks_exact_mut(8) {
+                                eight.fill(v + random() * extent);
+                            }
+                        } else {
+                            *vs = vs.map(|_| v + random() * extent);
+                        }
                     }
-                    if round % 3 == 0 {
+                    if round % 4 == 0 {
                         points[round / 4][round % 2][round % 16] = strange[round % strange.len()];
                     }
                     for level in levels() {
                         let mut strip = Strip::default();
-                        let done = dispatch!(level, simd =>
+                        let [done, rows] = dispatch!(level, simd =>
                             agrees(simd, &mut strip, material, &points));
                         *if done { &mut decoded } else { &mut too_many } += 1;
+                        in_rows += u32::from(rows);
                     }
                 }
             }
         }
         assert!(decoded > 300 && too_many > 100, "{decoded} {too_many}");
+        assert!(in_rows > 100 && decoded - in_rows > 100, "{in_rows} of {decoded}");
     }
 }

@@ -13,22 +13,25 @@ fn image(width: u32, height: u32, numbers: &mut Numbers) -> Image {
     Image { name: String::new(), width, height, data: data.collect() }
 }
 
-/// A tilted wall and a smaller one before it, of two triangles each, whose textures are repeated as often as given.
-fn walls(size: [u32; 2], wrap: Wrap, alpha_mode: AlphaMode, repeated: f32) -> Scene {
+/// A tilted wall and a smaller one before it, of two triangles each, whose textures are repeated as often as given;
+/// upright ones have rows along those of the picture.
+fn walls(size: [u32; 2], wrap: Wrap, alpha_mode: AlphaMode, repeated: f32, upright: bool) -> Scene {
     let mut numbers = Numbers(u64::from(size[0] * 1000 + size[1]));
     let (mut mesh, mut coordinates) = (Mesh::default(), Vec::new());
     for (half, z, tilt) in [(1.6, 0.0, 0.4), (0.5, 0.7, 0.0)] {
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
         {
+            let (tilt, turn) = if upright { (0.0, 0.0) } else { (tilt, 0.3) };
             mesh.positions.push(Vec3::new(x * half, y * half, z + tilt * x));
-            coordinates.push(Vec2::new(x + 0.2 * y, y - 0.3 * x) * (0.5 * repeated));
+            coordinates.push(Vec2::new(x + turn * y, y - turn * x) * (0.5 * repeated));
         }
     }
     mesh.tex_coords.push(coordinates);
     let part = |range, material| Part { range, material: Some(material), name: String::new() };
     mesh.parts = vec![part(0..2, 0), part(2..4, 1)];
+    let angle = if upright { 0.0 } else { 0.2 };
     let transform =
-        DMat3::from_scale_angle_translation(DVec2::new(0.9, 1.1), 0.2, DVec2::splat(0.3));
+        DMat3::from_scale_angle_translation(DVec2::new(0.9, 1.1), angle, DVec2::splat(0.3));
     let material = |texture, transform, base_color| Material {
         model: ShadingModel::Unlit,
         base_color,
@@ -58,15 +61,15 @@ fn options(width: u32, height: u32, projection: Projection) -> RenderOptions {
 fn walls_have_the_colours_of_other_methods_at_every_level() {
     let projections =
         [Projection::Orthographic { height: 2.0 }, Projection::Perspective { fov_y: 0.6 }];
-    let modes = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.3 }];
+    let modes = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.3 }, AlphaMode::Blend];
     let mut number = 0;
     for size in [[1, 1], [5, 3], [40, 24], [64, 64], [300, 130], [0, 0]] {
         for wrap in [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge] {
             for repeated in [0.3, 1.0, 5.0] {
-                let mode = modes[number % 2];
+                let mode = modes[number % 3];
                 let mut options = options(150, 93, projections[number / 2 % 2]);
+                let scene = walls(size, wrap, mode, repeated, number % 5 < 2);
                 number += 1;
-                let scene = walls(size, wrap, mode, repeated);
                 options.samples = Samples::One;
                 options.algorithm = SurfaceMethod::ScanLineZ;
                 let (expected, _) = render(&scene, &options).expect("picture");
@@ -85,7 +88,7 @@ fn walls_have_the_colours_of_other_methods_at_every_level() {
 #[test]
 fn strange_coordinates_have_the_colours_of_other_methods() {
     for strange in [f32::NAN, f32::INFINITY, f32::MAX, -3e9, 1e-40] {
-        let mut scene = walls([16, 16], Wrap::Repeat, AlphaMode::Opaque, 1.0);
+        let mut scene = walls([16, 16], Wrap::Repeat, AlphaMode::Opaque, 1.0, false);
         scene.meshes[0].tex_coords[0][1] = Vec2::new(strange, 0.5);
         scene.meshes[0].tex_coords[0][8] = Vec2::new(0.5, strange);
         let mut options = options(131, 77, Projection::Orthographic { height: 2.0 });

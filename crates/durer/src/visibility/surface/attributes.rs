@@ -75,8 +75,14 @@ impl VisibleTriangle {
         [0, 1, 2].map(|i| constant[i] + (dx[i] * x + dy[i] * y))
     }
 
-    /// The edge functions, by constant and changes along x and y, and where a pixel's centre lies for
-    /// them: what [`Self::weights`] and [`Self::weights_beside`] start from.
+    /// The edge functions, by constant and changes along x and y.
+    #[inline(always)]
+    pub fn edges(&self) -> &[[f32; 4]; 3] {
+        &self.edges
+    }
+
+    /// The edge functions, and where a pixel's centre lies for them: what [`Self::weights`] and
+    /// [`Self::weights_beside`] start from.
     #[inline(always)]
     pub fn edge_functions(&self, x: i32, y: i32) -> (&[[f32; 4]; 3], [f32; 2]) {
         (&self.edges, [(x - self.normals.origin[0]) as f32, (y - self.normals.origin[1]) as f32])

@@ -51,29 +51,40 @@ impl GatheredCoords {
     }
 }
 
-/// The coordinates at the pixels of a patch, of one triangle, and, where it is `changing`, their change to the pixels beside
-/// and below; `corners` has those of its corners.
-#[inline(always)]
-pub fn coordinates_of_one<S: Simd>(
-    simd: S,
-    t: &VisibleTriangle,
-    patch: Patch,
-    corners: [Vec2; 3],
-    changing: bool,
-) -> TexCoords<f32x16<S>> {
-    let (edges, at) = t.edge_functions(patch.at[0], patch.at[1]);
-    let zero = simd.splat_f32x16(0.0);
-    let mut all = [[zero; 3]; 3];
-    for (all, edges) in all.iter_mut().zip(edges) {
-        for (all, edge) in all.iter_mut().zip(edges) {
-            *all = simd.splat_f32x16(*edge);
+/// What the texture coordinates of one triangle follow from.
+#[derive(Clone, Copy)]
+pub struct CoordsOfOne<S: Simd> {
+    edges: [Corners<S>; 3],
+    origin: [i32; 2],
+    /// u and v of each of the three corners.
+    corners: [Corners<S>; 2],
+}
+
+impl<S: Simd> CoordsOfOne<S> {
+    /// Of a triangle with these coordinates at its corners.
+    #[inline(always)]
+    pub fn new(simd: S, t: &VisibleTriangle, corners: [Vec2; 3]) -> Self {
+        let zero = simd.splat_f32x16(0.0);
+        let mut edges = [[zero; 3]; 3];
+        for (edges, of_t) in edges.iter_mut().zip(t.edges()) {
+            for (edge, of_t) in edges.iter_mut().zip(of_t) {
+                *edge = simd.splat_f32x16(*of_t);
+            }
         }
+        let (mut u, mut v) = ([zero; 3], [zero; 3]);
+        for (i, corner) in corners.iter().enumerate() {
+            (u[i], v[i]) = (simd.splat_f32x16(corner.x), simd.splat_f32x16(corner.y));
+        }
+        Self { edges, origin: t.normals.origin, corners: [u, v] }
     }
-    let (mut u, mut v) = ([zero; 3], [zero; 3]);
-    for (i, corner) in corners.iter().enumerate() {
-        (u[i], v[i]) = (simd.splat_f32x16(corner.x), simd.splat_f32x16(corner.y));
+
+    /// The coordinates at the pixels of a patch and, where it is `changing`, their change to the pixels beside and below.
+    #[inline(always)]
+    pub fn at(&self, simd: S, patch: Patch, changing: bool) -> TexCoords<f32x16<S>> {
+        let ([x, y], [left, top]) = (patch.at, self.origin);
+        let places = patch.places(simd, [(x - left) as f32, (y - top) as f32]);
+        coordinates(simd, &self.edges, places, self.corners, changing)
     }
-    coordinates(simd, &all, patch.places(simd, at), [u, v], changing)
 }
 
 #[inline(always)]

@@ -11,7 +11,7 @@ use crate::target::NO_ITEM;
 use crate::visibility::surface::gather::Gathered;
 use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::patch::Patch;
-use crate::visibility::surface::textured::{GatheredCoords, coordinates_of_one};
+use crate::visibility::surface::textured::{CoordsOfOne, GatheredCoords};
 use crate::visibility::surface::triangles::Part;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
@@ -216,7 +216,7 @@ impl<'a> Lit<'a> {
         let first = items[there.trailing_zeros() as usize % 16];
         let t = self.triangles.get(first, run);
         let corners = t.corners.map(|c| coords[c as usize]);
-        let mut all = coordinates_of_one(simd, t, patch, corners, changing);
+        let mut all = CoordsOfOne::new(simd, t, corners).at(simd, patch, changing);
         let mut left = there & !shown.simd_eq(u32x16::splat(simd, first)).to_bitmask();
         while left != 0 {
             let item = items[left.trailing_zeros() as usize % 16];
@@ -224,7 +224,7 @@ impl<'a> Lit<'a> {
             left &= !same.to_bitmask();
             let t = self.triangles.get(item, run);
             let corners = t.corners.map(|c| coords[c as usize]);
-            let of_t = coordinates_of_one(simd, t, patch, corners, changing);
+            let of_t = CoordsOfOne::new(simd, t, corners).at(simd, patch, changing);
             for k in 0..2 {
                 all.uv[k] = same.select(of_t.uv[k], all.uv[k]);
                 all.ddx[k] = same.select(of_t.ddx[k], all.ddx[k]);

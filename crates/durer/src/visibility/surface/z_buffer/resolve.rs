@@ -22,7 +22,7 @@ pub(super) const MOST_SAMPLES: usize = 16;
 const ROWS: usize = TILE as usize + 1;
 
 /// Fewer patches that show one item are lit like others.
-const FEWEST_OF_STRIP: usize = 4;
+pub(super) const FEWEST_OF_STRIP: usize = 4;
 
 /// What is behind each row of a tile, linear and encoded, apart: pairs of them would be copied piece by piece.
 struct Behind {

@@ -4,10 +4,10 @@ use super::super::tile::{TILE, TILE_PIXELS};
 use super::{BLOCKS, LANES, block_at, place_of};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::LEAST_THROUGH;
-use crate::visibility::surface::lit::Lit;
+use crate::visibility::surface::lit::{Lit, opaque};
 use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 
 /// No layer.
 const NONE: u32 = u32::MAX;
@@ -102,25 +102,59 @@ impl Layers {
         covered: u32x16<S>,
         lit: &mut Lit<'_>,
     ) {
-        let first = block * LANES;
-        let closed = &mut self.closed[first..first + LANES];
         // All bits of NO_ITEM are set.
-        let items = items | u32x16::from_slice(simd, closed);
+        let items = items | u32x16::from_slice(simd, &self.closed[block * LANES..][..LANES]);
         let there = items.simd_ne(u32x16::splat(simd, NO_ITEM));
-        let touched = there.to_bitmask();
-        if touched == 0 {
+        if there.to_bitmask() == 0 {
             return;
         }
-        let [x, y] = block_at(block);
         let mut colors = [[0.0; LANES]; 4];
-        let patch = Patch::block([self.tile[0] + x, self.tile[1] + y]);
-        Lit::colors_x16(simd, lit, items, patch, &mut colors);
+        Lit::colors_x16(simd, lit, items, Patch::block(self.place(block)), &mut colors);
+        let [r, g, b] = opaque(simd, &colors);
+        self.add(simd, block, (there, covered), [r, g, b, f32x16::from_slice(simd, &colors[3])]);
+    }
+
+    /// The upper left pixel of a block in the picture.
+    pub fn place(&self, block: usize) -> [i32; 2] {
+        let [x, y] = block_at(block);
+        [self.tile[0] + x, self.tile[1] + y]
+    }
+
+    /// Whether something comes through at a pixel of a block.
+    #[inline(always)]
+    pub fn is_open<S: Simd>(&self, simd: S, block: usize) -> bool {
+        let closed = u32x16::from_slice(simd, &self.closed[block * LANES..][..LANES]);
+        closed.simd_eq(u32x16::splat(simd, 0)).any_true()
+    }
+
+    /// Adds a layer of a block that shows one item at all samples, by its colours, straight.
+    #[inline(always)]
+    pub fn add_whole<S: Simd>(&mut self, simd: S, block: usize, colors: [f32x16<S>; 4]) {
+        let closed = u32x16::from_slice(simd, &self.closed[block * LANES..][..LANES]);
+        let there = closed.simd_eq(u32x16::splat(simd, 0));
+        let all = u32x16::splat(simd, (1 << self.count) - 1);
+        self.add(simd, block, (there, all), colors);
+    }
+
+    /// Adds a layer of a block: colours, straight, which mean something at the pixels that are `there`, and the samples
+    /// that it covers.
+    #[inline(always)]
+    fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        block: usize,
+        (there, covered): (mask32x16<S>, u32x16<S>),
+        [r, g, b, alpha]: [f32x16<S>; 4],
+    ) {
+        let touched = there.to_bitmask();
+        let first = block * LANES;
+        let closed = &mut self.closed[first..first + LANES];
         // What is not there may have been shaded as well.
         let zero = f32x16::splat(simd, 0.0);
-        let alpha = there.select(f32x16::from_slice(simd, &colors[3]), zero);
-        for channel in &mut colors[..3] {
-            let straight = there.select(f32x16::from_slice(simd, channel), zero);
-            (straight * alpha).store_slice(channel);
+        let alpha = there.select(alpha, zero);
+        let mut colors = [[0.0; LANES]; 4];
+        for (to, straight) in colors.iter_mut().zip([r, g, b]) {
+            (there.select(straight, zero) * alpha).store_slice(to);
         }
         alpha.store_slice(&mut colors[3]);
         let rest = 1.0 - alpha;

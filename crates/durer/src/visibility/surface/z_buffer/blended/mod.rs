@@ -11,7 +11,7 @@ mod sheet;
 mod tests;
 
 use super::rasterize::rasterize;
-use super::resolve::{Area, Codes, MOST_SAMPLES};
+use super::resolve::{Area, Codes, FEWEST_OF_STRIP, MOST_SAMPLES};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
@@ -34,14 +34,16 @@ const LANES: usize = 16;
 /// Blocks of a tile.
 const BLOCKS: usize = TILE_PIXELS / LANES;
 
+/// Blocks beside each other.
+const BLOCKS_ACROSS: usize = TILE as usize / 8;
+
 /// A sheet with more blocks is likely to be covered by the next large triangle.
 const MANY_BLOCKS: usize = BLOCKS / 2;
 
 /// The upper left pixel of a block, tile-local.
 #[inline(always)]
 fn block_at(block: usize) -> [i32; 2] {
-    let columns = TILE as usize / 8;
-    [(block % columns * 8) as i32, (block / columns * 2) as i32]
+    [(block % BLOCKS_ACROSS * 8) as i32, (block / BLOCKS_ACROSS * 2) as i32]
 }
 
 /// The place of a tile-local pixel: its block times 16 and its lane.
@@ -140,12 +142,23 @@ fn light_sheet<S: Simd>(
     let none = u32x16::splat(simd, NO_ITEM);
     let mut samples = [none; MOST_SAMPLES];
     let samples = &mut samples[..layers.count];
-    for &block in sheet.begun() {
-        let block = block as usize;
+    let mut strips = true;
+    for place in 0..sheet.begun().len() {
+        let block = sheet.begun()[place] as usize;
+        if sheet.is_done(block) {
+            continue;
+        }
         sheet.block(simd, block, samples);
         for items in samples.iter_mut() {
             *items = items.simd_eq(over).select(none, *items);
         }
+        if strips {
+            strips = light_strip(simd, (&mut *sheet, block), samples, layers, lit);
+            if sheet.is_done(block) {
+                continue;
+            }
+        }
+        sheet.set_done(block);
         // Each item at a time of those that the samples of a pixel show, which are no more than samples.
         for _ in 0..layers.count {
             let mut items = none;
@@ -165,6 +178,52 @@ fn light_sheet<S: Simd>(
         }
     }
     Ok(taken)
+}
+
+/// Lights the blocks from one on one below another that show one item, if they are several and its material suits that. Not
+/// true where too many texels are between them, so that there is no use in asking again.
+#[inline(always)]
+fn light_strip<S: Simd>(
+    simd: S,
+    (sheet, first): (&mut Sheet, usize),
+    samples: &[u32x16<S>],
+    layers: &mut Layers,
+    lit: &mut Lit<'_>,
+) -> bool {
+    let item = <[u32; 16]>::from(samples[0])[0];
+    if item == NO_ITEM || !is_only(simd, samples, item) || !lit.suits_strips(item) {
+        return true;
+    }
+    let mut below = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
+    let below = &mut below[..samples.len()];
+    let mut count = 0;
+    for block in (first..BLOCKS).step_by(BLOCKS_ACROSS) {
+        sheet.block(simd, block, below);
+        let is_last = sheet.is_done(block) || !layers.is_open(simd, block);
+        if is_last || !is_only(simd, below, item) {
+            break;
+        }
+        count += 1;
+    }
+    if count < FEWEST_OF_STRIP {
+        return true;
+    }
+    let place = layers.place(first);
+    Lit::blended_strip(simd, lit, item, (place, count), |i, colors| {
+        let block = first + i * BLOCKS_ACROSS;
+        layers.add_whole(simd, block, colors);
+        sheet.set_done(block);
+    })
+}
+
+/// Whether all samples of a block show an item.
+#[inline(always)]
+fn is_only<S: Simd>(simd: S, samples: &[u32x16<S>], item: u32) -> bool {
+    let mut differs = u32x16::splat(simd, 0);
+    for items in samples {
+        differs |= *items ^ item;
+    }
+    differs.simd_eq(u32x16::splat(simd, 0)).all_true()
 }
 
 /// Whether the box of a triangle takes more than a quarter of a tile.
