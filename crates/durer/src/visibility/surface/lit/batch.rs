@@ -1,11 +1,13 @@
 //! Patches that wait until there are enough of them to be lit in one loop, in which nothing waits for anything but
 //! its own patch.
 
+use super::shares::Shares;
 use super::{KnownNormals, Lit, opaque};
 use crate::shade::color::encode_opaque_x16;
 use crate::shade::lane::Vec3Lane;
 use crate::shade::{Faces, Frame, Points, shade_frame};
 use crate::target::NO_ITEM;
+use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x8, u32x16};
@@ -28,11 +30,26 @@ struct Waiting {
     vectors: [[f32; 16]; 3],
     /// By axis: unit vectors to the eye, once they are known.
     views: [[f32; 16]; 3],
-    /// The items that it shows; [`NO_ITEM`] where it shows none.
-    shown: [u32; 16],
     patch: Patch,
-    /// Where its two halves go.
-    places: [usize; 2],
+    to: Destination,
+}
+
+/// What becomes of colours.
+enum Destination {
+    /// They are those of pixels.
+    Pixels {
+        /// The items that they show; [`NO_ITEM`] where they show none.
+        shown: [u32; 16],
+        /// Where the two halves go.
+        places: [usize; 2],
+    },
+    /// They are parts of those of pixels, whose other parts wait before and behind.
+    Share {
+        /// How much they weigh.
+        weight: [f32; 16],
+        /// After the last part: where the two halves go.
+        places: Option<[usize; 2]>,
+    },
 }
 
 impl Batch {
@@ -71,7 +88,91 @@ impl Batch {
         }
         self.first_item = info.first_item;
         let (vectors, views) = (stored(normal), [[0.0; 16]; 3]);
-        self.waiting.push(Waiting { vectors, views, shown: items, patch, places });
+        let to = Destination::Pixels { shown: items, places };
+        self.waiting.push(Waiting { vectors, views, patch, to });
+    }
+
+    /// Lights all items of a patch whose pixels have the given samples, and weights them by their samples, as
+    /// [`Self::light`] now or later. Not true, and nothing is done, where there is background among them, where their
+    /// materials, lights or normals ask for more than normals, or where they are many or of several runs.
+    #[inline(always)]
+    pub fn light_samples<S: Simd>(
+        &mut self,
+        simd: S,
+        lit: &mut Lit<'_>,
+        samples: &[u32x16<S>],
+        patch: Patch,
+        places: [usize; 2],
+        codes: &mut [u32],
+    ) -> bool {
+        if self.waiting.len() >= MOST {
+            Self::flush(simd, self, lit, codes);
+        }
+        let first = self.waiting.len();
+        let mut shares = Shares::new(simd, samples);
+        while let Some((item, weight)) = shares.next(simd) {
+            let Some(plane) = self.plane_of(lit, item) else {
+                self.waiting.truncate(first);
+                if item != NO_ITEM {
+                    // What waits may be of a run that is not asked for any more.
+                    Self::flush(simd, self, lit, codes);
+                }
+                return false;
+            };
+            self.share(simd, first, (plane.of_patch(simd, patch), weight), patch);
+        }
+        if let Some(Waiting { to: Destination::Share { places: of_last, .. }, .. }) =
+            self.waiting.last_mut()
+        {
+            *of_last = Some(places);
+        }
+        true
+    }
+
+    /// The normals of an item, if it may wait with the others.
+    #[inline(always)]
+    fn plane_of<'l>(&mut self, lit: &'l mut Lit<'_>, item: u32) -> Option<&'l NormalPlane> {
+        if item == NO_ITEM {
+            return None;
+        }
+        let info = lit.run_info(item);
+        if !info.plain || !self.waiting.is_empty() && self.first_item != info.first_item {
+            return None;
+        }
+        self.first_item = info.first_item;
+        lit.settled_plane(item, info.run)
+    }
+
+    /// Adds an item of a patch to those that wait from the number `first` on, with its normals and how much it weighs: of each
+    /// pixel in the order in which they come, but together with others that are shown by other pixels.
+    #[inline(always)]
+    fn share<S: Simd>(
+        &mut self,
+        simd: S,
+        first: usize,
+        (normal, weight): ([f32x16<S>; 3], f32x16<S>),
+        patch: Patch,
+    ) {
+        let zero = f32x16::splat(simd, 0.0);
+        let mut left = weight.simd_gt(zero);
+        for Waiting { vectors, to, .. } in &mut self.waiting[first..] {
+            let Destination::Share { weight: weights, .. } = to else { continue };
+            let of_others = f32x16::from_slice(simd, weights);
+            let here = left & of_others.simd_eq(zero);
+            here.select(weight, of_others).store_slice(weights);
+            for (to, from) in vectors.iter_mut().zip(normal) {
+                here.select(from, f32x16::from_slice(simd, to)).store_slice(to);
+            }
+            left &= !here;
+        }
+        if left.any_true() {
+            let [x, y, z] = normal;
+            let (vectors, views) = ([x.into(), y.into(), z.into()], [[0.0; 16]; 3]);
+            // Where pixels show none of what is here, normals of others stand, and weigh nothing.
+            let weight = left.select(weight, zero).into();
+            let to = Destination::Share { weight, places: None };
+            self.waiting.push(Waiting { vectors, views, patch, to });
+        }
     }
 
     /// Lights what waits, in three loops: a processor looks ahead by less than what there is to do for one patch,
@@ -95,9 +196,24 @@ impl Batch {
             let frame = Frame { view, face: normal, normal };
             *vectors = stored(shade_frame(&frame, view, info.material, lights, info.shading));
         }
-        for Waiting { vectors, shown, places, .. } in &this.waiting {
+        let mut sums = [f32x16::splat(simd, 0.0); 3];
+        for Waiting { vectors, to, .. } in &this.waiting {
             let Vec3Lane { x, y, z } = loaded(simd, vectors);
-            put(simd, [x, y, z], u32x16::from_slice(simd, shown), *places, codes);
+            match to {
+                Destination::Pixels { shown, places } => {
+                    put(simd, [x, y, z], u32x16::from_slice(simd, shown), *places, codes);
+                }
+                Destination::Share { weight, places } => {
+                    let weight = f32x16::from_slice(simd, weight);
+                    sums = [sums[0] + x * weight, sums[1] + y * weight, sums[2] + z * weight];
+                    if let Some([first, second]) = *places {
+                        let (above, below) = simd.split_u32x16(encode_opaque_x16(simd, sums));
+                        above.store_slice(&mut codes[first..first + 8]);
+                        below.store_slice(&mut codes[second..second + 8]);
+                        sums = [f32x16::splat(simd, 0.0); 3];
+                    }
+                }
+            }
         }
         this.waiting.clear();
     }

@@ -3,6 +3,7 @@
 mod batch;
 mod known;
 mod queue;
+mod shares;
 mod sixteen;
 mod strip;
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod tests;
 pub use batch::Batch;
 pub use known::KnownNormals;
 pub use queue::{QUEUE, Queue, Queued};
+pub use shares::{MOST_SAMPLES, Shares};
 pub use sixteen::opaque;
 
 use crate::math::{DMat3, Vec2, Vec3, Vec4};
@@ -116,6 +118,14 @@ struct RunInfo<'a> {
     looked_up: Option<LookedUp<'a>>,
 }
 
+impl RunInfo<'_> {
+    /// Whether an item is of the run.
+    #[inline(always)]
+    fn has(&self, item: u32) -> bool {
+        item.wrapping_sub(self.first_item) < self.count
+    }
+}
+
 /// The one set of texture coordinates that a run's material uses.
 #[derive(Clone, Copy)]
 struct LookedUp<'a> {
@@ -191,7 +201,7 @@ impl<'a> Lit<'a> {
     #[inline(always)]
     fn run_info(&mut self, item: u32) -> RunInfo<'a> {
         match self.latest {
-            Some(info) if item.wrapping_sub(info.first_item) < info.count => info,
+            Some(info) if info.has(item) => info,
             _ => self.find_run_info(item),
         }
     }
@@ -207,10 +217,16 @@ impl<'a> Lit<'a> {
     /// time is faster than each when it is needed.
     #[inline(always)]
     pub fn expect(&mut self, item: u32) {
-        let info = self.run_info(item);
-        let part = if info.plain { self.part } else { Part::All };
+        let (plain, run) = match &self.latest {
+            Some(info) if info.has(item) => (info.plain, info.run),
+            _ => {
+                let info = self.find_run_info(item);
+                (info.plain, info.run)
+            }
+        };
+        let part = if plain { self.part } else { Part::All };
         if !self.triangles.has(item, part) {
-            self.triangles.want(item, info.run, part);
+            self.triangles.want(item, run, part);
         }
     }
 

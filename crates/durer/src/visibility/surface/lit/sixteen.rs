@@ -236,7 +236,7 @@ impl<'a> Lit<'a> {
 
     /// The normals of an item, where they are settled and nobody asks for more.
     #[inline(always)]
-    fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
+    pub(super) fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
         match self.part {
             Part::All => None,
             Part::Normals => Some(self.triangles.normals(item, run)).filter(|n| n.settled),

@@ -117,6 +117,50 @@ fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
     [at.x / at.w, at.y / at.w].map(|v| v as i32)
 }
 
+/// What pixels show whose samples show several items, as the sum of these by their weights; gives for how many patches
+/// that was found.
+fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
+    let (mut batch, mut found) = (Batch::default(), 0);
+    let (mut codes, mut expected) = ([0; 16 * 256], [0; 16 * 256]);
+    for k in 0..256 {
+        // Of each pixel two items at most, whose sum is the same in either order; more of the patch.
+        let run = numbers.below(2) * TRIANGLES;
+        let mut kind = || run + 8 * numbers.below(3) + [1, 2, 5][numbers.below(3) as usize];
+        let kinds = [kind(), kind(), kind()];
+        let [x, y] = middle(lit, kinds[0]);
+        let patch = Patch::block([x - numbers.below(8) as i32, y]);
+        let mut samples = [[0; 16]; 4];
+        let colors = kinds.map(|item| lit.colors_of_one_x16(simd, item, patch).expect("plain"));
+        for pixel in 0..16 {
+            let (a, b) = (numbers.below(3) as usize, numbers.below(3) as usize);
+            let of_b = numbers.below(5) as usize;
+            for (i, sample) in samples.iter_mut().enumerate() {
+                sample[pixel] = kinds[if i < of_b { b } else { a }];
+            }
+            let shares = if kinds[a] == kinds[b] { [4, 0] } else { [4 - of_b, of_b] };
+            let mut sum = [0.0; 3];
+            for (of_item, count) in [a, b].into_iter().zip(shares) {
+                for (sum, color) in sum.iter_mut().zip(colors[of_item]) {
+                    *sum += color[pixel] * (count as f32 * 0.25);
+                }
+            }
+            let [r, g, b] = sum.map(encode_srgb8);
+            expected[16 * k + pixel] = u32::from_le_bytes([r, g, b, 255]);
+        }
+        let samples = samples.map(|items| u32x16::from_slice(simd, &items));
+        let places = [16 * k, 16 * k + 8];
+        if batch.light_samples(simd, lit, &samples, patch, places, &mut codes) {
+            found += 1;
+        } else {
+            expected[16 * k..16 * k + 16].fill(0);
+        }
+    }
+    Batch::flush(simd, &mut batch, lit, &mut codes);
+    let differing = (0..codes.len()).find(|&i| codes[i] != expected[i]);
+    assert_eq!(differing, None);
+    found
+}
+
 /// In every way, what each pixel of patches shows; gives how many of those pixels are settled.
 fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut settled) = (Batch::default(), 0);
@@ -229,6 +273,9 @@ fn pixels_are_lit_alike_alone_and_together() {
                 let (mut lit, mut numbers) = (Lit::new(lighting), Numbers(11));
                 let settled = dispatch!(level, simd => light_all(simd, &mut lit, &mut numbers));
                 assert!(settled > 100, "{settled}");
+                let found = dispatch!(level, simd => light_samples(simd, &mut lit, &mut numbers));
+                let asks_for_more = !lights.points.is_empty();
+                assert!(if asks_for_more { found == 0 } else { found > 30 }, "{found}");
             }
         }
     }

@@ -45,6 +45,9 @@ pub fn jobs(runs: &[Run]) -> Vec<Job> {
     jobs
 }
 
+/// Triangles that touch fewer tiles are not asked whether one of them lies within: beside it are those of the corners.
+const FEWEST_TILES_OF_WALL: usize = 3;
+
 /// The triangles of one job and the tiles that they touch.
 pub struct Bins {
     /// What the job's triangles do with their fragments.
@@ -52,6 +55,8 @@ pub struct Bins {
     /// What happened on the way.
     pub counts: Counts,
     triangles: Vec<ScreenTriangle>,
+    /// Whether a tile may lie within one of them.
+    pub wide: bool,
     /// Of each tile which triangles touch it, in item order.
     touching: ByTile<u32>,
     /// What small triangles have left that are not among the others: with their normals, and without.
@@ -84,6 +89,7 @@ impl Bins {
             reach: filter.sample_reach,
             triangles: Vec::with_capacity(most),
             touched,
+            wide: false,
             samples: at_centers && job.coverage == Coverage::Opaque,
             micropolygons: Micropolygons::new(screen, fragments),
             normals: None,
@@ -95,12 +101,13 @@ impl Bins {
             assembler.primitives(&runs[*run], range.clone(), &mut sorter);
             sorter.micropolygons.finish(level, sorter.normals.as_ref());
         }
-        let (coverage, counts, triangles) = (job.coverage, assembler.counts, sorter.triangles);
+        let Sorter { triangles, wide, .. } = sorter;
+        let (coverage, counts) = (job.coverage, assembler.counts);
         *vertices = assembler.into_memory();
         let touching = sort_by_tile(touched, screen.count());
         let samples = gather_by_tile(&mut fragments.samples);
         let fragments = gather_by_tile(&mut fragments.with_normals);
-        Self { coverage, counts, triangles, touching, fragments, samples }
+        Self { coverage, counts, triangles, wide, touching, fragments, samples }
     }
 
     /// The triangles that touch a tile, in item order.
@@ -128,6 +135,8 @@ struct Sorter<'s> {
     triangles: Vec<ScreenTriangle>,
     /// Tile and triangle.
     touched: &'s mut Vec<(u32, u32)>,
+    /// As [`Bins::wide`].
+    wide: bool,
     /// Whether small triangles are sampled at once.
     samples: bool,
     micropolygons: Micropolygons<'s>,
@@ -141,10 +150,12 @@ impl Sink for Sorter<'_> {
         let index = self.triangles.len();
         // First to its place: from there its numbers are read sooner than from the pieces it comes in.
         self.triangles.push(triangle);
+        let before = self.touched.len();
         let touched = &mut self.touched;
         self.screen.touched(&self.triangles[index], self.reach, |tile| {
             touched.push((tile, index as u32));
         });
+        self.wide |= touched.len() - before >= FEWEST_TILES_OF_WALL;
     }
 
     #[inline(always)]

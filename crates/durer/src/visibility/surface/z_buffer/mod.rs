@@ -16,6 +16,7 @@ mod micropolygon;
 mod rasterize;
 mod resolve;
 mod tile;
+mod wall;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
@@ -37,6 +38,7 @@ use front_to_back::FrontToBack;
 use rasterize::{AllPass, FragmentTest, rasterize};
 use resolve::{Area, Codes, MaskTest, resolve};
 use tile::{SamplePlane, TILE, TILE_PIXELS};
+use wall::Wall;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -295,7 +297,6 @@ impl<'a> Frame<'a> {
         area: [[i32; 2]; 2],
         index: u32,
     ) {
-        known.clear();
         let mut drawn = self.draw_fragments(planes, Some(known), index);
         // Without the faces that look away little is hidden, and an order would not pay.
         if self.options.cull == Cull::Back {
@@ -331,18 +332,26 @@ impl<'a> Frame<'a> {
     ) {
         let [tile, size] = area;
         let Scratch { planes, known, blended, batch, mixed, codes, lit, order, .. } = scratch;
-        planes.iter_mut().for_each(SamplePlane::clear);
-        self.rasterize_opaque(order, (planes, known), area, index);
-        let mut mask = MaskTest { lit, tile };
-        self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
+        let wall = Wall::of_tile(self.bins, planes, area, index);
+        let alone = wall.and_then(|wall| wall.alone(self.bins, index));
+        known.clear();
         blended.clear();
-        let nearest_first = order.nearest_first(self.bins, index);
-        if !nearest_first.is_empty() {
-            dispatch!(self.options.level, simd =>
-                light_blended(simd, blended, nearest_first, planes, area, lit));
+        if let Some(item) = alone {
+            planes.iter_mut().for_each(|plane| plane.item.fill(item));
+        } else {
+            let farthest = wall.map(|wall| wall.farthest);
+            planes.iter_mut().for_each(|plane| plane.clear(farthest));
+            self.rasterize_opaque(order, (planes, known), area, index);
+            let mut mask = MaskTest { lit, tile };
+            self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
+            let nearest_first = order.nearest_first(self.bins, index);
+            if !nearest_first.is_empty() {
+                dispatch!(self.options.level, simd =>
+                    light_blended(simd, blended, nearest_first, planes, area, lit));
+            }
         }
         let background = background_rows(self.options.background, self.view.height());
-        let area = Area { tile, size, background: &background };
+        let area = Area { tile, size, alone, background: &background };
         dispatch!(self.options.level, simd =>
             resolve(simd, (planes, known), blended, (batch, mixed), lit, &area, codes));
         for (y, row) in band.rows_of(tile[0], size) {
@@ -366,7 +375,7 @@ impl<'a> Frame<'a> {
         if center.is_empty() {
             *center = SamplePlane::of(&[[0; 2]]);
         }
-        center.iter_mut().for_each(SamplePlane::clear);
+        center.iter_mut().for_each(|plane| plane.clear(None));
         self.draw_fragments(center, None, index);
         for coverage in [Coverage::Opaque, Coverage::Blended] {
             self.rasterize(coverage, center, area, index, None::<&mut AllPass>);

@@ -48,16 +48,16 @@ const SMALL: i32 = 16;
 
 /// The edge functions of a triangle at the centre of a pixel, in units of 1/65536 pixel², above or
 /// equal 0 inside; and their change per step of the grid.
-struct Edges {
-    at: [i64; 3],
-    dx: [i32; 3],
-    dy: [i32; 3],
+pub struct Edges {
+    pub at: [i64; 3],
+    pub dx: [i32; 3],
+    pub dy: [i32; 3],
 }
 
 impl Edges {
     /// At the centre of tile pixel (0, 0).
     #[inline(always)]
-    fn new(t: &ScreenTriangle, tile: [i32; 2]) -> Self {
+    pub fn new(t: &ScreenTriangle, tile: [i32; 2]) -> Self {
         let x = i64::from(tile[0] * SUBPIXELS + HALF_PIXEL);
         let y = i64::from(tile[1] * SUBPIXELS + HALF_PIXEL);
         let (mut at, mut step_x, mut step_y) = ([0; 3], [0; 3], [0; 3]);

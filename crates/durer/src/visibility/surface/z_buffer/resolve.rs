@@ -7,16 +7,13 @@ use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Batch, KnownNormals, Lit};
+use crate::visibility::surface::lit::{Batch, KnownNormals, Lit, MOST_SAMPLES, Shares};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u32x8, u32x16};
+use fearless_simd::{Simd, f32x16, mask32x16, u32x8, u32x16};
 use fearless_simd_macros::simd;
-
-/// Samples that a pixel has at most.
-pub(super) const MOST_SAMPLES: usize = 16;
 
 /// Rows of a tile, and one more: rows are taken in pairs.
 const ROWS: usize = TILE as usize + 1;
@@ -71,6 +68,8 @@ pub struct Area<'b> {
     pub tile: [i32; 2],
     /// Pixels across and down.
     pub size: [i32; 2],
+    /// The item that all samples show, where it is known.
+    pub alone: Option<u32>,
     /// Linear with straight alpha, by row of the picture.
     pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
 }
@@ -117,7 +116,7 @@ fn resolve_opaque<S: Simd>(
         while y < area.size[1] {
             let at = [area.tile[0] + x, area.tile[1] + y];
             if strips {
-                let place = ([x, y], area.size[1]);
+                let place = ([x, y], area.size[1], area.alone);
                 match light_strip(simd, planes, place, lit, at, codes) {
                     Some(0) => {}
                     Some(count) => {
@@ -139,10 +138,9 @@ fn resolve_opaque<S: Simd>(
             let count = samples_of_block(simd, planes, first, &mut samples);
             let both = [behind[row], behind[row + 1]];
             // Of the last row there may be none below; then what is written there is not copied.
-            if let Some(pixels) = resolve_block(simd, &samples[..count], lit, both, patch) {
-                let (above, below) = simd.split_u32x16(pixels);
-                above.store_slice(&mut codes[first..first + 8]);
-                below.store_slice(&mut codes[second..second + 8]);
+            let places = [first, second];
+            let samples = &samples[..count];
+            if resolve_block(simd, samples, (batch, lit), both, patch, places, codes) {
                 y += 2;
                 continue;
             }
@@ -178,7 +176,7 @@ fn resolve_opaque<S: Simd>(
 fn light_strip<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
-    ([x, y], height): ([i32; 2], i32),
+    ([x, y], height, alone): ([i32; 2], i32, Option<u32>),
     lit: &mut Lit<'_>,
     at: [i32; 2],
     codes: &mut Codes,
@@ -188,7 +186,10 @@ fn light_strip<S: Simd>(
     if item == NO_ITEM || !lit.suits_strips(item) {
         return Some(0);
     }
-    let count = patches_of_one(simd, planes, [x, y], height, item);
+    let count = match alone {
+        Some(_) => (height - y + 1) as usize / 2,
+        None => patches_of_one(simd, planes, [x, y], height, item),
+    };
     if count < FEWEST_OF_STRIP {
         return Some(0);
     }
@@ -231,33 +232,63 @@ fn expect_column<S: Simd>(
     height: i32,
     lit: &mut Lit<'_>,
 ) {
-    let (none, any_known) = (u32x8::splat(simd, NO_ITEM), known.any());
+    let none = u32x16::splat(simd, NO_ITEM);
+    let any_known = known.any();
     for plane in planes {
-        let mut rows_above = [none; 4];
-        for y in 0..height {
-            let pixel = (y * TILE + x) as usize;
-            let items = plane.items_of_eight(pixel);
-            for (eight, above) in items.as_chunks::<8>().0.iter().zip(&mut rows_above) {
-                let shown = u32x8::from_slice(simd, eight);
-                // Most that is beside the same or below it has been asked for.
-                let beside = simd.slide_u32x8::<7>(none, shown);
-                let above_left = simd.slide_u32x8::<7>(none, *above);
-                let above_right = simd.slide_u32x8::<1>(*above, none);
-                let mut new = shown.simd_ne(none) & shown.simd_ne(beside) & shown.simd_ne(*above);
-                new &= shown.simd_ne(above_left) & shown.simd_ne(above_right);
-                if any_known {
-                    new &= !known.of_eight(simd, pixel, shown);
+        // Rows with 64 items in all: a bit of each says whether it is asked for.
+        let (rows, across) = if plane.shift > 0 { (2, 32) } else { (8, 8) };
+        let (mut before, mut before_that) = (none, none);
+        for y in (0..height as usize).step_by(rows) {
+            let first = y * TILE as usize + x as usize;
+            let mut left = 0;
+            for quarter in 0..4 {
+                let mut new;
+                if plane.shift > 0 {
+                    // Four pixels, in turn to the left and to the right, of four samples each.
+                    let items = plane.items_of_eight(first + quarter / 2 * TILE as usize);
+                    let half = quarter % 2 * 16;
+                    let shown = u32x16::from_slice(simd, &items[half..half + 16]);
+                    new = first_shown(simd, shown, before_that).to_bitmask();
+                    (before_that, before) = (before, shown);
+                } else {
+                    // Eight pixels, and those below them.
+                    let upper = first + 2 * quarter * TILE as usize;
+                    let lower = upper + TILE as usize;
+                    let above = u32x8::from_slice(simd, plane.items_of_eight(upper));
+                    let below = u32x8::from_slice(simd, plane.items_of_eight(lower));
+                    let shown = simd.combine_u32x8(above, below);
+                    new = first_shown(simd, shown, simd.slide_u32x16::<8>(before, shown))
+                        .to_bitmask();
+                    before = shown;
+                    if any_known {
+                        let above = known.of_eight(simd, upper, above).to_bitmask();
+                        let below = known.of_eight(simd, lower, below).to_bitmask();
+                        new &= !(above | below << 8);
+                    }
                 }
-                *above = shown;
-                let mut left = new.to_bitmask();
-                while left != 0 {
-                    lit.expect(eight[left.trailing_zeros() as usize % 8]);
-                    left &= left - 1;
-                }
+                left |= new << (16 * quarter);
+            }
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let items = plane.items_of_eight(first + bit / across * TILE as usize);
+                lit.expect(items[bit % across]);
             }
         }
     }
     lit.make_ready();
+}
+
+/// Which of sixteen items beside each other are shown neither by the one before nor above nor beside that: most that are
+/// shown there have been asked for.
+#[inline(always)]
+fn first_shown<S: Simd>(simd: S, shown: u32x16<S>, above: u32x16<S>) -> mask32x16<S> {
+    let none = u32x16::splat(simd, NO_ITEM);
+    let beside = simd.slide_u32x16::<15>(none, shown);
+    let above_left = simd.slide_u32x16::<15>(none, above);
+    let above_right = simd.slide_u32x16::<1>(above, none);
+    let new = shown.simd_ne(none) & shown.simd_ne(beside) & shown.simd_ne(above);
+    new & shown.simd_ne(above_left) & shown.simd_ne(above_right)
 }
 
 /// Of eight pixels in a row the item that they show at all samples, [`NO_ITEM`] where there is none;
@@ -293,42 +324,43 @@ fn samples_of_block<S: Simd>(
 }
 
 /// Sixteen pixels with the given samples each, where they show few items of plain materials on something
-/// opaque: each item is lit at all of them, and weighted by its samples.
+/// opaque: each item is lit at all of them, now or with others, and weighted by its samples. Not true where it is not so.
 #[inline(always)]
 fn resolve_block<S: Simd>(
     simd: S,
     samples: &[u32x16<S>],
-    lit: &mut Lit<'_>,
+    (batch, lit): (&mut Batch, &mut Lit<'_>),
     [above, below]: [Vec4; 2],
     patch: Patch,
-) -> Option<u32x16<S>> {
-    let (first, count) = (samples.first()?, samples.len());
+    places: [usize; 2],
+    codes: &mut Codes,
+) -> bool {
+    let Some(first) = samples.first() else { return false };
     if above.w < 1.0 || below.w < 1.0 || !patch.shows_few(simd, *first) {
-        return None;
+        return false;
     }
-    let zero = f32x16::splat(simd, 0.0);
-    let share = f32x16::splat(simd, 1.0 / count as f32);
-    let mut sums = [zero; 3];
-    // By sample, the pixels whose item is not yet lit.
-    let mut left = [u64::from(u16::MAX); MOST_SAMPLES];
-    while let Some(k) = (0..count).find(|&k| left[k] != 0) {
-        let items: [u32; 16] = samples[k].into();
-        let item = items[left[k].trailing_zeros() as usize % 16];
-        let mut weight = zero;
-        for (sample, left) in samples.iter().zip(&mut left) {
-            let same = sample.simd_eq(u32x16::splat(simd, item));
-            weight += same.select(share, zero);
-            *left &= !same.to_bitmask();
-        }
-        let mut colors = [zero; 3];
-        if item == NO_ITEM {
-            let (above, below) = (above.to_array(), below.to_array());
-            for (i, to) in colors.iter_mut().enumerate() {
-                let (above, below) = (simd.splat_f32x8(above[i]), simd.splat_f32x8(below[i]));
-                *to = simd.combine_f32x8(above, below);
-            }
-        } else {
-            let shaded = lit.colors_of_one_x16(simd, item, patch)?;
+    // All bits of NO_ITEM are set.
+    let mut all = *first;
+    for items in samples {
+        all &= *items;
+    }
+    if all.simd_eq(u32x16::splat(simd, NO_ITEM)).all_true() {
+        return false;
+    }
+    if batch.light_samples(simd, lit, samples, patch, places, codes) {
+        return true;
+    }
+    let (above, below) = (above.to_array(), below.to_array());
+    let mut behind = [f32x16::splat(simd, 0.0); 3];
+    for (i, to) in behind.iter_mut().enumerate() {
+        *to = simd.combine_f32x8(simd.splat_f32x8(above[i]), simd.splat_f32x8(below[i]));
+    }
+    let mut sums = [f32x16::splat(simd, 0.0); 3];
+    let mut shares = Shares::new(simd, samples);
+    while let Some((item, weight)) = shares.next(simd) {
+        let mut colors = behind;
+        if item != NO_ITEM {
+            let Some(shaded) = lit.colors_of_one_x16(simd, item, patch) else { return false };
             for (to, from) in colors.iter_mut().zip(&shaded) {
                 *to = f32x16::from_slice(simd, from);
             }
@@ -337,7 +369,10 @@ fn resolve_block<S: Simd>(
             *sum += color * weight;
         }
     }
-    Some(encode_opaque_x16(simd, sums))
+    let (above, below) = simd.split_u32x16(encode_opaque_x16(simd, sums));
+    above.store_slice(&mut codes[places[0]..places[0] + 8]);
+    below.store_slice(&mut codes[places[1]..places[1] + 8]);
+    true
 }
 
 /// Of eight pixels in a row, those that show several items, or one and the background: each item is

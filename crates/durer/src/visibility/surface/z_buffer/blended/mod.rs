@@ -11,13 +11,13 @@ mod sheet;
 mod tests;
 
 use super::rasterize::rasterize;
-use super::resolve::{Area, Codes, FEWEST_OF_STRIP, MOST_SAMPLES};
+use super::resolve::{Area, Codes, FEWEST_OF_STRIP};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::color::{encode_opaque_x16, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Lit, opaque};
+use crate::visibility::surface::lit::{Lit, MOST_SAMPLES, opaque};
 use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
