@@ -29,8 +29,8 @@ impl<'a> Wall<'a> {
         let mut nearest: Option<Self> = None;
         for bins in bins.iter().filter(|b| b.wide && b.coverage == Coverage::Opaque) {
             for triangle in bins.of_tile(index) {
-                if spans(triangle, area)
-                    && nearest.is_none_or(|wall| triangle.depth_min < wall.farthest)
+                if nearest.is_none_or(|wall| triangle.depth_min < wall.farthest)
+                    && spans(triangle, area)
                     && planes.iter().all(|plane| covers(triangle, plane, area))
                 {
                     let farthest = planes.iter().map(|plane| farthest(triangle, plane, area));
