@@ -26,8 +26,8 @@ pub mod shadow;
 mod slot;
 mod strip;
 mod surface;
-pub mod texel_rows;
-mod texture;
+mod texel_rows;
+pub mod texture;
 mod tone;
 pub mod unlit;
 
