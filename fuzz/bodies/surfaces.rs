@@ -2,10 +2,11 @@
 //!
 //! The fuzz target and a plain test call [`body`].
 
-use durer::math::{DMat4, DVec3, Vec3, Vec4};
+use durer::math::{DMat3, DMat4, DVec3, Vec3, Vec4};
 use durer::pipeline::{Cull, RenderOptions, Samples, SurfaceMethod, render};
 use durer::scene::{
-    AlphaMode, Camera, Instance, Material, Mesh, Part, Projection, Scene, ShadingModel,
+    AlphaMode, Camera, Image, Instance, Material, Mesh, MipFilter, Part, Projection, Sampler,
+    Scene, ShadingModel, Texture, TextureRef, Wrap,
 };
 
 /// Triangles of a scene at most, so that one run stays short.
@@ -47,7 +48,20 @@ impl Bytes<'_> {
     }
 }
 
-/// Opaque, blended and masked triangles, up to 64.
+/// A texture of any size, wrap mode and transparency, with a mip chain or without.
+fn texture(number: usize) -> (Image, Sampler) {
+    let (width, height) = (1 + number as u32 * 5 % 37, 1 + number as u32 * 7 % 53);
+    let data = (0..width * height).map(|i| {
+        let code = i.wrapping_mul(0x9e37_79b9).to_le_bytes();
+        [code[3], code[2], code[1], if number.is_multiple_of(2) { 255 } else { code[0] }]
+    });
+    let wrap = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge][number % 3];
+    let mip = if number % 5 < 3 { MipFilter::None } else { MipFilter::Linear };
+    let sampler = Sampler { mip, wrap_u: wrap, wrap_v: wrap, ..Sampler::default() };
+    (Image { name: String::new(), width, height, data: data.collect() }, sampler)
+}
+
+/// Opaque, blended and masked triangles, up to 64; two scenes of three have a texture.
 pub fn scene(bytes: &mut Bytes<'_>) -> Scene {
     let count = 1 + bytes.next() as usize % TRIANGLES;
     let mut triangles: Vec<[Vec3; 3]> = Vec::new();
@@ -59,9 +73,13 @@ pub fn scene(bytes: &mut Bytes<'_>) -> Scene {
     if bytes.next() == 7 {
         positions[0] = Vec3::NAN;
     }
+    let (image, sampler) = texture(count);
+    let transform = DMat3::IDENTITY;
+    let texture = TextureRef { texture: 0, tex_coord: 0, transform };
     let material = |alpha_mode| Material {
         model: ShadingModel::Unlit,
         base_color: Vec4::new(0.4, 0.6, 0.2, 0.5),
+        base_color_texture: (!count.is_multiple_of(3)).then_some(texture),
         alpha_mode,
         ..Material::default()
     };
@@ -76,14 +94,17 @@ pub fn scene(bytes: &mut Bytes<'_>) -> Scene {
         Part { range: 0..half, material: None, name: String::new() },
         Part { range: half..count as u32, material: second, name: String::new() },
     ];
-    let mesh = Mesh { positions, parts, ..Mesh::default() };
+    let tex_coords = vec![positions.iter().map(|p| p.truncate() * 0.5).collect()];
+    let mesh = Mesh { positions, tex_coords, parts, ..Mesh::default() };
     let mut instances =
         vec![Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() }];
     if bytes.next() % 8 == 1 {
         let world_from_mesh = DMat4::from_scale(DVec3::new(-1.0, 0.7, 1.0));
         instances.push(Instance { mesh: 0, world_from_mesh, name: String::new() });
     }
-    Scene { meshes: vec![mesh], instances, materials, ..Scene::default() }
+    let textures = vec![Texture { image: 0, sampler }];
+    let meshes = vec![mesh];
+    Scene { meshes, instances, materials, textures, images: vec![image], ..Scene::default() }
 }
 
 /// Outside the scene, or amid it.
@@ -98,10 +119,11 @@ pub fn camera(bytes: &mut Bytes<'_>) -> Camera {
     Camera { eye, target, up, projection, near: 0.05, far: 6.0 }
 }
 
-/// Renders a scene made of the bytes by all methods at a size, and compares items and depths.
+/// Renders a scene made of the bytes by all methods at a size, and compares items and depths, and colours with those of
+/// the scan line; then with four samples at the least and the best SIMD level.
 ///
 /// # Panics
-/// Where a method finds other surfaces than the z-buffer.
+/// Where a method finds other surfaces than the z-buffer, or colours differ.
 pub fn compare(data: &[u8], width: u32, height: u32) {
     let mut bytes = Bytes(data);
     let mut options = RenderOptions::new(camera(&mut bytes));
@@ -116,7 +138,17 @@ pub fn compare(data: &[u8], width: u32, height: u32) {
         let items = |f: &durer::target::Framebuffer| f.item.clone().map(|p| p.into_data());
         assert!(items(&found) == items(&expected), "{method}: items at {width}x{height}");
         assert!(found.depth == expected.depth, "{method}: depths at {width}x{height}");
+        if method == SurfaceMethod::ScanLineZ {
+            assert!(found.color == expected.color, "{method}: colours at {width}x{height}");
+        }
     }
+    (options.algorithm, options.samples) = (SurfaceMethod::ZBuffer, Samples::Four);
+    let colors = durer::simd::levels().into_iter().map(|level| {
+        options.level = level;
+        render(&scene, &options).expect("what is rendered at one level is at all").0.color
+    });
+    let colors: Vec<_> = colors.collect();
+    assert!(colors.iter().all(|c| *c == colors[0]), "levels at {width}x{height}");
 }
 
 /// [`compare`] at a small size that the bytes choose.
