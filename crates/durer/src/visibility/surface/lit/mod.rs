@@ -47,6 +47,17 @@ pub struct Lighting<'a> {
 }
 
 impl<'a> Lighting<'a> {
+    /// Of tests: by the formula of each material.
+    #[cfg(test)]
+    pub fn by_material(
+        (scene, view, runs): (&'a Scene, &'a View, &'a [Run]),
+        (materials, lights): (&'a PreparedMaterials<'a>, &'a PreparedLights),
+        reach: i32,
+        level: Level,
+    ) -> Self {
+        Self { scene, view, runs, materials, lights, shading: None, reach, level }
+    }
+
     /// What lighting several pixels of plain materials asks of their triangles.
     fn part(&self) -> Part {
         // Lights ask where points lie, or shadows which way their faces look.

@@ -260,16 +260,8 @@ fn pixels_are_lit_alike_alone_and_together() {
         let view = View::new(camera, 96, 64).expect("view");
         for lights in [PreparedLights::auto(&camera), PreparedLights::new(&[lamp], &camera)] {
             for (level, reach) in levels().into_iter().flat_map(|l| [(l, 0), (l, 128)]) {
-                let lighting = Lighting {
-                    scene: &scene,
-                    view: &view,
-                    runs: &runs,
-                    materials: &materials,
-                    lights: &lights,
-                    shading: None,
-                    reach,
-                    level,
-                };
+                let drawn = (&scene, &view, runs.as_slice());
+                let lighting = Lighting::by_material(drawn, (&materials, &lights), reach, level);
                 let (mut lit, mut numbers) = (Lit::new(lighting), Numbers(11));
                 let settled = dispatch!(level, simd => light_all(simd, &mut lit, &mut numbers));
                 assert!(settled > 100, "{settled}");

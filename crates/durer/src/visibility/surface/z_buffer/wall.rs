@@ -153,16 +153,9 @@ mod tests {
         {
             let view = View::new(camera, size[0] as u32, size[1] as u32).expect("view");
             let filter = Filter { cull: Cull::None, sample_reach: 128 };
-            let lighting = Lighting {
-                scene: &scene,
-                view: &view,
-                runs: &runs,
-                materials: &materials,
-                lights: &lights,
-                shading: None,
-                reach: samples.reach(),
-                level,
-            };
+            let drawn = (&scene, &view, runs.as_slice());
+            let lighting =
+                Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
             let (jobs, mut scratch) = (jobs(&runs), Default::default());
             let bins = Bins::new(&jobs[0], &lighting, filter, &mut scratch);
             let area = [[0, 0], size];

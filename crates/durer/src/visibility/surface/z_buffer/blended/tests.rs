@@ -70,16 +70,8 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         .flat_map(|s| levels().into_iter().map(move |l| (s, l)))
     {
         let filter = Filter { cull: Cull::None, sample_reach: 128 };
-        let lighting = Lighting {
-            scene: &scene,
-            view: &view,
-            runs: &runs,
-            materials: &materials,
-            lights: &lights,
-            shading: None,
-            reach: samples.reach(),
-            level,
-        };
+        let drawn = (&scene, &view, runs.as_slice());
+        let lighting = Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
         let (jobs, mut scratch) = (jobs(&runs), Default::default());
         let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &mut scratch));
         let bins: Vec<Bins> = bins.collect();
