@@ -65,10 +65,14 @@ fn regions_of_random_scenes_are_sound() {
 }
 
 #[test]
-fn seeds_of_lines_and_regions() {
+fn seeds_of_surfaces_lines_and_regions() {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
-    for target in ["lines", "regions"] {
-        let body = if target == "lines" { drawn::lines } else { drawn::regions };
+    for target in ["surfaces", "lines", "regions"] {
+        let body = match target {
+            "surfaces" => surfaces::body,
+            "lines" => drawn::lines,
+            _ => drawn::regions,
+        };
         let files =
             std::fs::read_dir(seeds.join(target)).expect("seeds are part of the repository");
         let read = |f: std::io::Result<std::fs::DirEntry>| std::fs::read(f.expect("a file").path());

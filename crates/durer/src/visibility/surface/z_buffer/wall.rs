@@ -15,6 +15,9 @@ pub struct Wall<'a> {
     pub farthest: f32,
 }
 
+/// From this depth on nothing is seen.
+const FAR: f32 = 1.0;
+
 /// Slopes of depth per pixel of walls are less: depths are between 0 and 1 in more than a tile.
 const STEEPEST: f32 = 1.0;
 
@@ -30,18 +33,28 @@ impl<'a> Wall<'a> {
         for bins in bins.iter().filter(|b| b.wide && b.coverage == Coverage::Opaque) {
             for triangle in bins.of_tile(index) {
                 if nearest.is_none_or(|wall| triangle.depth_min < wall.farthest)
-                    && spans(triangle, area)
-                    && planes.iter().all(|plane| covers(triangle, plane, area))
+                    && let Some(wall) = Self::of(triangle, planes, area)
+                    && nearest.is_none_or(|nearest| wall.farthest < nearest.farthest)
                 {
-                    let farthest = planes.iter().map(|plane| farthest(triangle, plane, area));
-                    let farthest = farthest.fold(0.0, f32::max);
-                    if nearest.is_none_or(|wall| farthest < wall.farthest) {
-                        nearest = Some(Self { triangle, farthest });
-                    }
+                    nearest = Some(wall);
                 }
             }
         }
         nearest
+    }
+
+    /// A triangle that covers all samples of a tile and is seen at all of them, but for what is nearer.
+    fn of(
+        triangle: &'a ScreenTriangle,
+        planes: &[SamplePlane],
+        area: [[i32; 2]; 2],
+    ) -> Option<Self> {
+        if !spans(triangle, area) || !planes.iter().all(|plane| covers(triangle, plane, area)) {
+            return None;
+        }
+        let farthest = planes.iter().map(|plane| farthest(triangle, plane, area));
+        let farthest = farthest.fold(0.0, f32::max);
+        (farthest < FAR).then_some(Self { triangle, farthest })
     }
 
     /// The item that all samples of the tile show, where all else is behind the wall.
@@ -119,14 +132,14 @@ mod tests {
     use crate::visibility::surface::{Cull, Samples};
     use fearless_simd::dispatch;
 
-    /// Triangles about as large as the tile that is seen, of all slopes.
+    /// Triangles about as large as the tile that is seen, of all slopes; some reach beyond what is far enough.
     fn scene() -> Scene {
         let mut seed = 5_u32;
         let mut random = |most: f32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             ((seed >> 8) as f32 / 8_388_608.0 - 1.0) * most
         };
-        let positions = (0..3 * 400).map(|_| Vec3::new(random(9.0), random(9.0), random(0.9)));
+        let positions = (0..3 * 400).map(|_| Vec3::new(random(9.0), random(9.0), random(3.0)));
         Scene {
             meshes: vec![Mesh { positions: positions.collect(), ..Mesh::default() }],
             instances: vec![Instance {
@@ -171,21 +184,21 @@ mod tests {
                     pixels().all(|pixel| plane.items(pixel).iter().all(|item| *item == t.item))
                 };
                 let is_wall = planes.iter().all(is_seen);
-                let found = spans(t, area) && planes.iter().all(|plane| covers(t, plane, area));
+                let wall = Wall::of(t, &planes, area);
+                let found = wall.is_some();
                 // Of four samples none may be in a corner.
                 let is_tight = samples == Samples::One;
                 assert!(is_wall && (found || !is_tight) || !is_wall && !found, "{t:?}");
                 *if found { &mut walls } else { &mut others } += 1;
-                if is_wall {
-                    for plane in &planes {
-                        let depths = pixels().flat_map(|pixel| {
+                if let Some(wall) = wall {
+                    let depths = planes.iter().flat_map(|plane| {
+                        pixels().flat_map(|pixel| {
                             plane.depth[pixel << plane.shift..(pixel + 1) << plane.shift].iter()
-                        });
-                        let most = depths.max().map(|bits| f32::from_bits(*bits as u32));
-                        let found = Some(farthest(t, plane, area));
-                        assert!(found >= most, "{t:?} {found:?} {most:?}");
-                        assert!(found == most || !is_tight, "{t:?} {found:?} {most:?}");
-                    }
+                        })
+                    });
+                    let most = f32::from_bits(depths.copied().max().unwrap_or(0) as u32);
+                    assert!(wall.farthest >= most, "{t:?} {most}");
+                    assert!(wall.farthest == most || !is_tight, "{t:?} {most}");
                     assert_ne!(t.item, NO_ITEM);
                 }
             }
