@@ -94,7 +94,7 @@ impl Batch {
 
     /// Lights all items of a patch whose pixels have the given samples, and weights them by their samples, as
     /// [`Self::light`] now or later. Not true, and nothing is done, where there is background among them, where their
-    /// materials, lights or normals ask for more than normals, or where they are many or of several runs.
+    /// materials, lights or normals ask for more than normals, or where they are of several runs.
     #[inline(always)]
     pub fn light_samples<S: Simd>(
         &mut self,
