@@ -15,6 +15,10 @@ const MAX_MEASURED: f64 = 2000.0;
 /// Paths that are longer are made this long while they are cut into dashes.
 const MEASURED: f64 = 1e4;
 
+/// Curves whose control points lie nearer together are lines: the squares of their lengths may be too small for numbers, and
+/// kurbo makes dashes of them without end.
+const SHORTEST: f64 = 1e-9;
+
 /// Dots — dashes without length, with round or square caps — are lines as long as this share of the width: too
 /// short to be seen, long enough to have a direction.
 const DOT: f64 = 1e-4;
@@ -57,13 +61,17 @@ pub(super) fn dashed(
     let mut at = None;
     let source: BezPath = path
         .map(|element| {
-            // What has no length has no direction either, which ends kurbo's dashes of quadratic curves.
-            let element = match to_kurbo(element) {
-                PathEl::QuadTo(c, p) if at == Some(c) && c == p => PathEl::LineTo(p),
-                other => other,
-            };
-            at = element.end_point().or(at);
-            element
+            let element = to_kurbo(element);
+            let (end, start) = (element.end_point(), at);
+            at = end.or(at);
+            match (element, start, end) {
+                (PathEl::QuadTo(..) | PathEl::CurveTo(..), Some(start), Some(end))
+                    if chain_length(start, element) < SHORTEST =>
+                {
+                    PathEl::LineTo(end)
+                }
+                _ => element,
+            }
         })
         .collect();
     let source = with_dots(&source, (stroke.cap != Cap::Butt).then_some(stroke.width));
@@ -103,21 +111,29 @@ fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
 /// The lengths of the lines through all control points, which are not less than those of the curves.
 fn control_length(path: &BezPath) -> f64 {
     let (mut start, mut at, mut sum) = (Point::ORIGIN, Point::ORIGIN, 0.0);
-    for element in path.elements() {
-        let chain = match *element {
-            PathEl::MoveTo(p) => {
-                (start, at) = (p, p);
-                continue;
-            }
-            PathEl::LineTo(p) => [p, p, p],
-            PathEl::QuadTo(a, p) => [a, p, p],
-            PathEl::CurveTo(a, b, p) => [a, b, p],
-            PathEl::ClosePath => [start; 3],
-        };
-        for p in chain {
-            sum += at.distance(p);
-            at = p;
+    for &element in path.elements() {
+        match element {
+            PathEl::MoveTo(p) => start = p,
+            PathEl::ClosePath => sum += at.distance(start),
+            _ => sum += chain_length(at, element),
         }
+        at = element.end_point().unwrap_or(start);
+    }
+    sum
+}
+
+/// The same of one element that begins at a point; of what only moves or closes it is 0.
+fn chain_length(mut at: Point, element: PathEl) -> f64 {
+    let chain = match element {
+        PathEl::LineTo(p) => [p, p, p],
+        PathEl::QuadTo(a, p) => [a, p, p],
+        PathEl::CurveTo(a, b, p) => [a, b, p],
+        PathEl::MoveTo(_) | PathEl::ClosePath => return 0.0,
+    };
+    let mut sum = 0.0;
+    for p in chain {
+        sum += at.distance(p);
+        at = p;
     }
     sum
 }
