@@ -1,6 +1,7 @@
 //! SIMD levels: chosen at run time, and all of them give the same bits.
 
 pub use fearless_simd::Level;
+use fearless_simd::Simd;
 use std::sync::OnceLock;
 
 /// What everything works at where no other level is asked for.
@@ -26,6 +27,12 @@ pub fn set_default_level(level: Level) -> bool {
     DEFAULT.set(level).is_ok()
 }
 
+/// How many numbers of 32 bits a register of the level holds.
+#[inline(always)]
+pub(crate) const fn lanes<S: Simd>() -> usize {
+    size_of::<S::i32s>() / size_of::<i32>()
+}
+
 /// Every level that this machine can run, weakest first; tests render at each of them. Every x86-64 processor has
 /// SSE2, so there is no scalar one there.
 pub fn levels() -> Vec<Level> {
@@ -33,7 +40,6 @@ pub fn levels() -> Vec<Level> {
     let mut levels = Vec::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
-        use fearless_simd::Simd;
         levels.extend(best.as_sse2().map(|s| s.level()));
         levels.extend(best.as_sse4_2().map(|s| s.level()));
         levels.extend(best.as_avx2().map(|s| s.level()));

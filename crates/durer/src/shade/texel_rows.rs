@@ -3,8 +3,9 @@
 
 use super::lookup::mean;
 use crate::math::Vec4;
+use crate::simd::lanes;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f32x16, i32x8, i32x16, u8x32};
+use fearless_simd::{Simd, f32x8, f32x16, i32x8, i32x16, u8x32, u8x64};
 
 /// Rows at most.
 const MOST_ROWS: usize = 128;
@@ -18,8 +19,47 @@ pub struct TexelRows {
     rows: [[[f32; 16]; 4]; MOST_ROWS + 1],
 }
 
-/// Of eight points side by side the bytes of the number that each takes from a register of eight.
-type Places<S> = u8x32<S>;
+/// Of sixteen points side by side the bytes of the number that each takes: of a register of sixteen, or eight from each of two
+/// registers of eight.
+#[derive(Clone, Copy)]
+enum Places<S: Simd> {
+    Sixteen(u8x64<S>),
+    Eights([u8x32<S>; 2]),
+}
+
+impl<S: Simd> Places<S> {
+    /// Of points that take the numbers of these places, the first eight from one row, the others from another.
+    #[inline(always)]
+    fn new(simd: S, numbers: i32x16<S>) -> Self {
+        // All bytes of a number's own place times four, and which of its bytes each is.
+        let numbers = numbers & 7;
+        let bytes =
+            (numbers << 2u32) | (numbers << 10u32) | (numbers << 18u32) | (numbers << 26u32);
+        let bytes = bytes | i32x16::splat(simd, 0x0302_0100);
+        if lanes::<S>() >= 16 {
+            let (none, eight) = (i32x8::splat(simd, 0), i32x8::splat(simd, 0x2020_2020));
+            Self::Sixteen((bytes | simd.combine_i32x8(none, eight)).bitcast())
+        } else {
+            let (above, below) = simd.split_i32x16(bytes);
+            Self::Eights([above.bitcast(), below.bitcast()])
+        }
+    }
+
+    /// What the points take from a row each.
+    #[inline(always)]
+    fn take(&self, simd: S, [above, below]: [&[f32]; 2]) -> f32x16<S> {
+        let (above, below) = (f32x8::from_slice(simd, above), f32x8::from_slice(simd, below));
+        match self {
+            Self::Sixteen(places) => {
+                simd.swizzle_dyn_f32x16(simd.combine_f32x8(above, below), *places)
+            }
+            Self::Eights([first, last]) => simd.combine_f32x8(
+                simd.swizzle_dyn_f32x8(above, *first),
+                simd.swizzle_dyn_f32x8(below, *last),
+            ),
+        }
+    }
+}
 
 impl Default for TexelRows {
     fn default() -> Self {
@@ -52,16 +92,15 @@ impl TexelRows {
         weights: [f32x16<S>; 2],
         with_alpha: bool,
     ) -> [f32x16<S>; 4] {
-        let (above, below) = simd.split_i32x16(x);
-        let places = [places(simd, above), places(simd, below)];
+        let places = Places::new(simd, x);
         let rows = [y[0] as usize % MOST_ROWS, y[1] as usize % MOST_ROWS];
         // Not in a loop, in which they would be stored and read again.
         [
-            self.mean_of_channel(simd, 0, (places, rows), weights),
-            self.mean_of_channel(simd, 1, (places, rows), weights),
-            self.mean_of_channel(simd, 2, (places, rows), weights),
+            self.mean_of_channel(simd, 0, (&places, rows), weights),
+            self.mean_of_channel(simd, 1, (&places, rows), weights),
+            self.mean_of_channel(simd, 2, (&places, rows), weights),
             if with_alpha {
-                self.mean_of_channel(simd, 3, (places, rows), weights)
+                self.mean_of_channel(simd, 3, (&places, rows), weights)
             } else {
                 f32x16::splat(simd, 1.0)
             },
@@ -73,7 +112,7 @@ impl TexelRows {
         &self,
         simd: S,
         channel: usize,
-        at: ([Places<S>; 2], [usize; 2]),
+        at: (&Places<S>, [usize; 2]),
         weights: [f32x16<S>; 2],
     ) -> f32x16<S> {
         let a = self.sixteen(simd, channel, at, [0, 0]);
@@ -89,21 +128,10 @@ impl TexelRows {
         &self,
         simd: S,
         channel: usize,
-        (places, rows): ([Places<S>; 2], [usize; 2]),
+        (places, [above, below]): (&Places<S>, [usize; 2]),
         [right, down]: [usize; 2],
     ) -> f32x16<S> {
-        let above = &self.rows[rows[0] + down][channel][right..right + 8];
-        let below = &self.rows[rows[1] + down][channel][right..right + 8];
-        let above = simd.swizzle_dyn_f32x8(f32x8::from_slice(simd, above), places[0]);
-        let below = simd.swizzle_dyn_f32x8(f32x8::from_slice(simd, below), places[1]);
-        simd.combine_f32x8(above, below)
+        let above = &self.rows[above + down][channel][right..right + 8];
+        places.take(simd, [above, &self.rows[below + down][channel][right..right + 8]])
     }
-}
-
-#[inline(always)]
-fn places<S: Simd>(simd: S, numbers: i32x8<S>) -> Places<S> {
-    // All bytes of a number's own place times four, and which of its bytes each is.
-    let numbers = numbers & 7;
-    let bytes = (numbers << 2u32) | (numbers << 10u32) | (numbers << 18u32) | (numbers << 26u32);
-    (bytes | i32x8::splat(simd, 0x0302_0100)).bitcast()
 }

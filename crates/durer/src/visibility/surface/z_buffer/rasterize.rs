@@ -3,6 +3,7 @@
 
 use super::tile::{BLOCK, MOST_LANES, SamplePlane, TILE};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
+use crate::simd::lanes;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x8};
@@ -78,12 +79,6 @@ impl Edges {
 fn top_left(dx: i32, dy: i32) -> bool {
     // dy < 0, or it is 0 and dx > 0; as one sign, for edges take turns and cannot be foreseen.
     (i64::from(dy) << 33) - i64::from(dx) < 0
-}
-
-/// Samples that are tested at a time.
-#[inline(always)]
-pub const fn lanes<S: Simd>() -> usize {
-    size_of::<S::i32s>() / size_of::<i32>()
 }
 
 /// Edge functions of consecutive samples, in i32.

@@ -1,8 +1,9 @@
 //! Blended triangles of a tile that do not cover each other: what they show is known without sorting.
 
-use super::super::rasterize::{FragmentTest, lanes};
+use super::super::rasterize::FragmentTest;
 use super::super::tile::{TILE, TILE_PIXELS, block_of};
 use super::{BLOCKS, block_at};
+use crate::simd::lanes;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
