@@ -29,15 +29,25 @@ pub fn map_with<S: Send, T: Send, R: Send>(
     make: impl Fn() -> S + Sync + Send,
     f: impl Fn(&mut S, T) -> R + Sync + Send,
 ) -> Vec<R> {
-    let idle = Mutex::new(Vec::new());
-    let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
-    map(items, |item| {
+    map_and_keep(items, make, f).0
+}
+
+/// [`map_with`], and the states that there are in the end, as many as there were threads at most, in no order that is foretold.
+pub fn map_and_keep<S: Send, T: Send, R: Send>(
+    items: Vec<T>,
+    make: impl Fn() -> S + Sync + Send,
+    f: impl Fn(&mut S, T) -> R + Sync + Send,
+) -> (Vec<R>, Vec<S>) {
+    let states = Mutex::new(Vec::new());
+    let idle = || states.lock().unwrap_or_else(PoisonError::into_inner);
+    let results = map(items, |item| {
         let waiting = idle().pop();
         let mut state = waiting.unwrap_or_else(&make);
         let result = f(&mut state, item);
         idle().push(state);
         result
-    })
+    });
+    (results, states.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// How many threads share the work.

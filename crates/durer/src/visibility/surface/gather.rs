@@ -52,6 +52,35 @@ pub fn columns<S: Simd>(simd: S, first: &[f32], last: &[f32]) -> [f32x16<S>; 4] 
     [first, second, third, simd.unzip_high_f32x16(odd_ab, odd_cd)]
 }
 
+/// Four numbers of each of eight, apart.
+#[inline(always)]
+pub fn four_columns<S: Simd>(simd: S, [a, b, c, d, e, f, g, h]: [f32x4<S>; 8]) -> [f32x8<S>; 4] {
+    let (ab, cd) = (simd.combine_f32x4(a, b), simd.combine_f32x4(c, d));
+    let (ef, gh) = (simd.combine_f32x4(e, f), simd.combine_f32x4(g, h));
+    let (even_ad, even_eh) = (simd.unzip_low_f32x8(ab, cd), simd.unzip_low_f32x8(ef, gh));
+    let (odd_ad, odd_eh) = (simd.unzip_high_f32x8(ab, cd), simd.unzip_high_f32x8(ef, gh));
+    let first = simd.unzip_low_f32x8(even_ad, even_eh);
+    let third = simd.unzip_high_f32x8(even_ad, even_eh);
+    let second = simd.unzip_low_f32x8(odd_ad, odd_eh);
+    [first, second, third, simd.unzip_high_f32x8(odd_ad, odd_eh)]
+}
+
+/// Four numbers of each of eight side by side: undoes [`four_columns`].
+#[inline(always)]
+pub fn four_rows<S: Simd>(simd: S, [a, b, c, d]: [f32x8<S>; 4]) -> [[f32; 4]; 8] {
+    let (ac, bd) = (simd.zip_low_f32x8(a, c), simd.zip_low_f32x8(b, d));
+    let (ac_high, bd_high) = (simd.zip_high_f32x8(a, c), simd.zip_high_f32x8(b, d));
+    let mut rows = [[0.0; 4]; 8];
+    let [first, second, third, last] = rows.as_flattened_mut().as_chunks_mut::<8>().0 else {
+        return rows;
+    };
+    simd.zip_low_f32x8(ac, bd).store_slice(first);
+    simd.zip_high_f32x8(ac, bd).store_slice(second);
+    simd.zip_low_f32x8(ac_high, bd_high).store_slice(third);
+    simd.zip_high_f32x8(ac_high, bd_high).store_slice(last);
+    rows
+}
+
 /// Rows to columns.
 #[inline(always)]
 pub fn transpose<S: Simd>(simd: S, mut from: [f32x8<S>; 8]) -> [f32x8<S>; 8] {
@@ -81,11 +110,20 @@ pub fn narrowed<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
     simd.narrow_f64x4(a, b)
 }
 
+/// 1.5 · 2⁵²: a number that it is added to is rounded to the nearest integer, ties to even ones, which the low bits are.
+pub const MAGIC: f64 = 6_755_399_441_055_744.0;
+
+/// The lower 32 bits of eight doubles.
+#[inline(always)]
+pub fn low_bits<S: Simd>(simd: S, v: f64x8<S>) -> i32x8<S> {
+    let (a, b) = simd.split_f64x8(v);
+    simd.narrow_i64x4(a.bitcast(), b.bitcast())
+}
+
 /// Integers of at most 31 bits as they are.
 #[inline(always)]
 pub fn integers_widened<S: Simd>(simd: S, v: i32x8<S>) -> f64x8<S> {
-    // Added to the bits of 1.5 · 2⁵², an integer is added to the number.
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
+    // Added to the bits of this, an integer is added to the number.
     let (low, high) = simd.widen_i32x8(v);
     let bits = MAGIC.to_bits().cast_signed();
     let (low, high) = (low + bits, high + bits);

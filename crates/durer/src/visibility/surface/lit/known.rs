@@ -31,12 +31,12 @@ impl KnownNormals {
         }
     }
 
-    /// Sets the normal of an item at a pixel; NaN where it is not known.
+    /// Sets the normal of an item at a pixel, and a number that means nothing; NaN where it is not known.
     #[inline(always)]
-    pub fn set(&mut self, pixel: usize, item: u32, [x, y, z]: [f32; 3]) {
+    pub fn set(&mut self, pixel: usize, item: u32, normal: [f32; 4]) {
         self.any = true;
-        self.items[pixel] = if x.is_nan() { NO_ITEM } else { item };
-        self.normals[pixel] = [x, y, z, 0.0];
+        self.items[pixel] = if normal[0].is_nan() { NO_ITEM } else { item };
+        self.normals[pixel] = normal;
     }
 
     /// Whether there are any.

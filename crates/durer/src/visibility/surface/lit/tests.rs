@@ -207,8 +207,8 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                     let normals = lit.triangle(items[i]).normals;
                     // Of some the normals are known, of others that they are not, or those of another.
                     let normal = match numbers.below(3) {
-                        0 => [f32::NAN; 3],
-                        _ => normals.at([x, y]).to_array(),
+                        0 => [f32::NAN; 4],
+                        _ => normals.at([x, y]).extend(0.0).to_array(),
                     };
                     match numbers.below(4) {
                         0 => known.set(16 * k + i, items[i] + 1, normal),

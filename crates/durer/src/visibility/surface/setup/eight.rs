@@ -4,9 +4,9 @@ use super::sampled::{Sampled, Span, cover};
 use super::vertex::{Behind, ScreenVertex, code};
 use super::{Filter, ScreenTriangle};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
-use crate::visibility::surface::gather::{integers_widened, narrowed, transpose, widened};
+use crate::visibility::surface::gather::{self, integers_widened, narrowed, transpose, widened};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
+use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8, u32x4, u32x8};
 
 /// Triangles that are set up at a time.
 pub const EIGHT: usize = 8;
@@ -111,21 +111,11 @@ impl<S: Simd> Rest<S> {
 /// Four numbers of eight vertices, from the given one on, apart.
 #[inline(always)]
 fn four_columns<S: Simd>(simd: S, of: &[&ScreenVertex; EIGHT], from: usize) -> [f32x8<S>; 4] {
-    let (a, b) = (two(simd, of[0], of[1], from), two(simd, of[2], of[3], from));
-    let (c, d) = (two(simd, of[4], of[5], from), two(simd, of[6], of[7], from));
-    let (even_ab, even_cd) = (simd.unzip_low_f32x8(a, b), simd.unzip_low_f32x8(c, d));
-    let (odd_ab, odd_cd) = (simd.unzip_high_f32x8(a, b), simd.unzip_high_f32x8(c, d));
-    let first = simd.unzip_low_f32x8(even_ab, even_cd);
-    let third = simd.unzip_high_f32x8(even_ab, even_cd);
-    let second = simd.unzip_low_f32x8(odd_ab, odd_cd);
-    [first, second, third, simd.unzip_high_f32x8(odd_ab, odd_cd)]
-}
-
-/// Four numbers of each of two vertices.
-#[inline(always)]
-fn two<S: Simd>(simd: S, a: &ScreenVertex, b: &ScreenVertex, from: usize) -> f32x8<S> {
-    let a = u32x4::from_slice(simd, &a.0[from..from + 4]);
-    simd.combine_u32x4(a, u32x4::from_slice(simd, &b.0[from..from + 4])).bitcast()
+    let mut rows = [f32x4::splat(simd, 0.0); EIGHT];
+    for (row, vertex) in rows.iter_mut().zip(of) {
+        *row = u32x4::from_slice(simd, &vertex.0[from..from + 4]).bitcast();
+    }
+    gather::four_columns(simd, rows)
 }
 
 /// Back-face and area test, bounding box test, depth plane; of small triangles, where that is asked for, which pixels they

@@ -15,7 +15,7 @@ mod vertex;
 pub(crate) use eight::EIGHT;
 pub use runs::{Coverage, Run, runs};
 pub use sampled::Sampled;
-pub(crate) use sampled::{PIXELS, depths, place_in_box};
+pub(crate) use sampled::{PIXELS, place_in_box};
 pub(crate) use vertex::ScreenVertex;
 
 use crate::clip::volume::{ClipVertex, clip_polygon, clip_segment};
@@ -28,7 +28,8 @@ use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Cull;
 use eight::{Eight, Rules};
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, dispatch, u32x16};
 use fearless_simd_macros::simd;
 use std::ops::Range;
 use vertex::{Behind, Transform};
@@ -273,7 +274,7 @@ impl<'a> Assembler<'a> {
             return None;
         };
         let used = &indices[corners];
-        let (min, max) = used.iter().fold((u32::MAX, 0), |(lo, hi), &i| (lo.min(i), hi.max(i)));
+        let (min, max) = dispatch!(self.level, simd => least_and_largest(simd, used));
         if max >= min && ((max - min) as usize) < used.len() {
             let positions = &mesh.positions[min as usize..=max as usize];
             transform.vertices(self.level, positions, vertices);
@@ -363,6 +364,20 @@ impl<'a> Assembler<'a> {
     }
 }
 
+/// The least and the largest of some numbers; where there are none, the least is the larger one.
+#[simd]
+fn least_and_largest<S: Simd>(simd: S, numbers: &[u32]) -> (u32, u32) {
+    let (mut low, mut high) = (u32x16::splat(simd, u32::MAX), u32x16::splat(simd, 0));
+    let (sixteens, rest) = numbers.as_chunks::<16>();
+    for numbers in sixteens {
+        let numbers = u32x16::from_slice(simd, numbers);
+        (low, high) = (low.min(numbers), high.max(numbers));
+    }
+    let (low, high): ([u32; 16], [u32; 16]) = (low.into(), high.into());
+    let least = low.iter().chain(rest).fold(u32::MAX, |least, &v| least.min(v));
+    (least, high.iter().chain(rest).fold(0, |largest, &v| largest.max(v)))
+}
+
 /// Triangles of a run, and their vertices.
 struct Part<'p> {
     mesh: &'p Mesh,
@@ -385,6 +400,42 @@ impl Part<'_> {
             None => [3 * i, 3 * i + 1, 3 * i + 2],
         }
     }
+
+    /// The vertices of eight triangles from the i-th on, by corner. Where there are fewer than eight left, the last stands
+    /// for those missing.
+    #[inline(always)]
+    fn eight(&self, i: usize) -> [[&ScreenVertex; EIGHT]; 3] {
+        let mut vertices = [[&self.vertices[0]; EIGHT]; 3];
+        let [first, second, third] = &mut vertices;
+        let lanes = first.iter_mut().zip(second).zip(third);
+        let eight =
+            self.shared.and_then(|(first, corners)| Some((first, corners[i..].first_chunk()?)));
+        if let Some((first, eight)) = eight {
+            let eight: &[[u32; 3]; EIGHT] = eight;
+            for (((a, b), c), of) in lanes.zip(eight) {
+                *a = &self.vertices[(of[0] - first) as usize];
+                *b = &self.vertices[(of[1] - first) as usize];
+                *c = &self.vertices[(of[2] - first) as usize];
+            }
+        } else {
+            for (lane, ((a, b), c)) in lanes.enumerate() {
+                let of = self.corners((i + lane).min(self.triangles.len() - 1));
+                (*a, *b, *c) =
+                    (&self.vertices[of[0]], &self.vertices[of[1]], &self.vertices[of[2]]);
+            }
+        }
+        vertices
+    }
+
+    /// The item of the i-th triangle, and its vertices in the mesh.
+    #[inline(always)]
+    fn primitive(&self, i: usize) -> (u32, [u32; 3]) {
+        let corners = match self.shared {
+            Some((_, corners)) => corners[i],
+            None => self.mesh.triangle(self.triangles.start as usize + i),
+        };
+        (self.first_item + i as u32, corners)
+    }
 }
 
 /// Sets up triangles, eight at a time; those that must be cut first one by one.
@@ -399,33 +450,21 @@ fn assemble<S: Simd>(
     let mut eight = Eight::default();
     let count = part.triangles.len();
     for start in (0..count).step_by(EIGHT) {
-        // Where there are fewer than eight left, the last stands for those missing.
-        let mut corners = [[&part.vertices[0]; EIGHT]; 3];
-        let [first, second, third] = &mut corners;
-        for (lane, ((a, b), c)) in first.iter_mut().zip(second).zip(third).enumerate() {
-            let of = part.corners((start + lane).min(count - 1));
-            (*a, *b, *c) = (&part.vertices[of[0]], &part.vertices[of[1]], &part.vertices[of[2]]);
-        }
-        eight::set_up(simd, &rules, corners, &mut eight);
+        eight::set_up(simd, &rules, part.eight(start), &mut eight);
         let there = 0xff >> EIGHT.saturating_sub(count - start);
         let sampled = eight.sampled.which & there;
         let mut left = ((eight.seen & !sampled) | eight.uncut) & there;
         assembler.counts.add(&eight, there);
         if sampled != 0 {
-            sink.take_sampled(simd, &eight.sampled, sampled, |lane| {
-                let i = (start + lane) as u32;
-                (part.first_item + i, part.mesh.triangle((part.triangles.start + i) as usize))
-            });
+            sink.take_sampled(simd, &eight.sampled, sampled, |lane| part.primitive(start + lane));
         }
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            let i = (start + lane) as u32;
-            let item = part.first_item + i;
+            let (item, corners) = part.primitive(start + lane);
             if eight.uncut >> lane & 1 == 0 {
                 sink.take(eight.triangle(lane, item));
             } else {
-                let corners = part.mesh.triangle((part.triangles.start + i) as usize);
                 assembler.clip(part.mesh, part.transform, corners, item, sink);
             }
         }

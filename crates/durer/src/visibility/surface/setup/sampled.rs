@@ -8,7 +8,7 @@
 use super::eight::{Corner, EIGHT};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, i32x8, mask32x8, u32x8};
+use fearless_simd::{Simd, i32x8, mask32x8, u32x8};
 
 /// Pixels on a side of the boxes of triangles that are sampled at once.
 const SIDE: i32 = 4;
@@ -132,20 +132,4 @@ fn on_screen<S: Simd>(simd: S, [x, y]: [i32x8<S>; 2], size: [u32; 2]) -> i32x8<S
         bits |= here.select(i32x8::splat(simd, 1 << pixel), zero);
     }
     bits
-}
-
-/// The depths at a pixel of each box, bit for bit as the rasterizer finds them.
-#[inline(always)]
-pub fn depths<S: Simd>(
-    simd: S,
-    [x, y]: [i32x8<S>; 2],
-    origin: &[[i32; EIGHT]; 2],
-    depth: &[[f32; EIGHT]; 5],
-) -> f32x8<S> {
-    let x = simd.cvt_f32_i32x8(x - i32x8::from_slice(simd, &origin[0]));
-    let y = simd.cvt_f32_i32x8(y - i32x8::from_slice(simd, &origin[1]));
-    let [depth, depth_dx, depth_dy, least, largest] = depth;
-    let (x, y) = (x * f32x8::from_slice(simd, depth_dx), y * f32x8::from_slice(simd, depth_dy));
-    let here = (x + y) + f32x8::from_slice(simd, depth);
-    here.max(f32x8::from_slice(simd, least)).min(f32x8::from_slice(simd, largest))
 }

@@ -4,9 +4,9 @@ use crate::clip::volume::{self, Borders, ClipVertex};
 use crate::math::{DMat4, DVec2, Vec3};
 use crate::raster::fixed::{GUARD_BAND, SUBPIXELS, snap};
 use crate::simd::Level;
-use crate::visibility::surface::gather::{narrowed, transpose, widened};
+use crate::visibility::surface::gather::{MAGIC, low_bits, narrowed, transpose, widened};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, dispatch, f32x8, f64x8, u32x8};
+use fearless_simd::{Simd, dispatch, f32x8, u32x8};
 use fearless_simd_macros::simd;
 
 /// Bits of [`ScreenVertex::code`]: beyond which border of the view volume a vertex lies.
@@ -138,15 +138,13 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
     // Zero times what is not finite is NaN.
     let sum = (hx + hy + hz + hw) * 0.0;
     let non_finite = !sum.simd_eq(zero).to_bitmask();
-    // Adding 1.5 · 2⁵² leaves the integer, rounded to nearest and ties to even, in the low bits.
-    let magic = 6_755_399_441_055_744.0;
     let snap_scale = f64::from(SUBPIXELS);
     let (grid_x, grid_y) = (x * snap_scale, y * snap_scale);
-    let (snapped_x, snapped_y) = (grid_x + magic, grid_y + magic);
-    let (rest_x, rest_y) = (grid_x - (snapped_x - magic), grid_y - (snapped_y - magic));
+    let (snapped_x, snapped_y) = (grid_x + MAGIC, grid_y + MAGIC);
+    let (rest_x, rest_y) = (grid_x - (snapped_x - MAGIC), grid_y - (snapped_y - MAGIC));
     let none = simd.splat_f32x8(0.0);
     let (rest_x, rest_y) = (narrowed(simd, rest_x), narrowed(simd, rest_y));
-    let (x, y) = (low_bits(simd, snapped_x), low_bits(simd, snapped_y));
+    let (x, y) = (low_bits(simd, snapped_x).bitcast(), low_bits(simd, snapped_y).bitcast());
     let depth = narrowed(simd, z);
     let rows = transpose(simd, [x, y, none, depth, rest_x, rest_y, none, none]);
     for (to, row) in to.iter_mut().zip(&rows) {
@@ -162,13 +160,6 @@ fn transform_eight<S: Simd>(simd: S, by: &Transform, p: &[Vec3; 8], to: &mut [Sc
             to.0[CODE] = code;
         }
     }
-}
-
-/// The lower 32 bits of eight doubles.
-#[inline(always)]
-fn low_bits<S: Simd>(simd: S, v: f64x8<S>) -> f32x8<S> {
-    let (a, b) = simd.split_f64x8(v);
-    simd.narrow_i64x4(a.bitcast(), b.bitcast()).bitcast()
 }
 
 /// From masks whose bit i is set where vertex i is beyond a border, in the order of the bits of [`code`],

@@ -18,7 +18,7 @@ use crate::visibility::surface::setup::Run;
 use fearless_simd::{Simd, dispatch};
 use prepare::{normal_planes, prepare, prepare_normals};
 
-pub use prepare::NormalPlanes;
+pub use prepare::{NormalPlanes, Read};
 
 /// What all triangles of a run share.
 #[derive(Debug, Clone, Copy)]
@@ -75,9 +75,10 @@ pub enum Part {
 #[derive(Debug, Clone, Copy, Default)]
 struct Wanted {
     items: [u32; 8],
-    /// Their vertices in the mesh: read when they are wanted, for where they lie is asked for soon after, and
-    /// neither is in the cache.
+    /// Their vertices in the mesh.
     corners: [[u32; 3]; 8],
+    /// What is there: read when they are wanted, for it has to be waited for.
+    read: Read,
     count: usize,
     run: usize,
     part: Part,
@@ -150,8 +151,10 @@ impl<'a> Triangles<'a> {
             self.make_ready();
         }
         (self.wanted.run, self.wanted.part) = (run, part);
-        self.wanted.items[self.wanted.count] = item;
-        self.wanted.corners[self.wanted.count] = self.corners(item, run);
+        let (corners, lane) = (self.corners(item, run), self.wanted.count);
+        self.wanted.items[lane] = item;
+        self.wanted.corners[lane] = corners;
+        self.wanted.read.set(lane, &self.scene.meshes[self.runs[run].mesh], corners);
         self.wanted.count += 1;
         match part {
             Part::Normals => self.normals[place(item, &self.normals)].item = item,
@@ -173,35 +176,37 @@ impl<'a> Triangles<'a> {
 
     /// Makes all items ready that are wanted.
     pub fn make_ready(&mut self) {
-        let Wanted { mut items, mut corners, count, run: index, part } = self.wanted;
+        let Wanted { items, corners, read, count, run: index, part } = &mut self.wanted;
+        let (count, index, part) = (std::mem::take(count), *index, *part);
         if count == 0 {
             return;
         }
-        self.wanted.count = 0;
+        let mesh = &self.scene.meshes[self.runs[index].mesh];
         for i in count..8 {
             (items[i], corners[i]) = (items[0], corners[0]);
+            read.set(i, mesh, corners[0]);
         }
-        let mesh = &self.scene.meshes[self.runs[index].mesh];
         if self.transform.as_ref().is_none_or(|t| t.run != index) {
             let run = &self.runs[index];
             let new = RunTransform::new(index, run, self.scene, self.view, self.most_change);
             self.transform = Some(new);
         }
         let Some(t) = &self.transform else { return };
-        let (of, kept, normals) = ((&items, &corners), &mut *self.kept, &mut *self.normals);
+        let (items, corners, read) = (&*items, &*corners, &*read);
+        let (kept, normals) = (&mut *self.kept, &mut *self.normals);
         let (first, settled) = (part == Part::Normals && self.settled, &mut self.settled);
         dispatch!(self.level, simd => {
             if first {
-                *settled = prepare_normals(simd, t, mesh, of, normals);
+                *settled = prepare_normals(simd, t, mesh, (items, read), normals);
             }
             if !(first && *settled) {
-                prepare(simd, t, mesh, of, kept);
+                prepare(simd, t, mesh, (items, corners, read), kept);
             }
         });
         if part == Part::Normals && !first {
             // Where some are not settled, more are not that follow, and all would be made ready twice.
             self.settled = true;
-            for item in items {
+            for &item in items {
                 let of_item = self.kept[place(item, &self.kept)].normals;
                 self.settled &= of_item.settled;
                 self.normals[place(item, &self.normals)] = of_item;
@@ -230,10 +235,16 @@ impl<'a> RunNormals<'a> {
         Self { mesh: &scene.meshes[run.mesh], transform }
     }
 
-    /// Of eight triangles, by their vertices in the mesh.
+    /// Reads what those of a triangle are found from, by its vertices in the mesh.
     #[inline(always)]
-    pub fn planes<S: Simd>(&self, simd: S, corners: &[[u32; 3]; 8]) -> NormalPlanes<S> {
-        normal_planes(simd, &self.transform, self.mesh, corners)
+    pub fn read(&self, lane: usize, corners: [u32; 3], to: &mut Read) {
+        to.set(lane, self.mesh, corners);
+    }
+
+    /// Of eight triangles.
+    #[inline(always)]
+    pub fn planes<S: Simd>(&self, simd: S, read: &Read) -> NormalPlanes<S> {
+        normal_planes(simd, &self.transform, self.mesh, read)
     }
 }
 

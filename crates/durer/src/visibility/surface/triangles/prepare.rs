@@ -4,10 +4,12 @@ use super::{RunTransform, place};
 use crate::math::{DMat4, Vec3};
 use crate::scene::{Mesh, Topology};
 use crate::visibility::surface::attributes::VisibleTriangle;
-use crate::visibility::surface::gather::{integers_widened, narrowed, transpose, widened};
+use crate::visibility::surface::gather::{
+    MAGIC, four_columns, low_bits, narrowed, transpose, widened,
+};
 use crate::visibility::surface::normal_plane::NormalPlane;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8};
+use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8};
 use fearless_simd_macros::simd;
 
 /// Of eight vectors, by axis.
@@ -16,8 +18,48 @@ type Vectors<S> = [f32x8<S>; 3];
 /// Numbers of three corners of eight triangles, by corner.
 type Corners<S> = [f64x8<S>; 3];
 
-/// What eight triangles have at their corners, by corner and axis, as it is read.
-type Read = [[[f32; 8]; 3]; 3];
+/// What eight triangles have at their corners, by corner.
+type AtCorners<S> = [Vectors<S>; 3];
+
+/// Positions and normals at the corners of eight primitives, as they are read from a mesh: before they are needed, for they
+/// have to be waited for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Read {
+    /// By corner and primitive; the fourth numbers mean nothing.
+    positions: [[[f32; 4]; 8]; 3],
+    /// The same; without meaning where the mesh has none.
+    normals: [[[f32; 4]; 8]; 3],
+}
+
+impl Read {
+    /// Reads those of one.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, mesh: &Mesh, corners: [u32; 3]) {
+        for (to, corner) in self.positions.iter_mut().zip(corners) {
+            to[lane] = mesh.positions[corner as usize].extend(0.0).to_array();
+        }
+        if !mesh.normals.is_empty() {
+            for (to, corner) in self.normals.iter_mut().zip(corners) {
+                to[lane] = mesh.normals[corner as usize].extend(0.0).to_array();
+            }
+        }
+    }
+}
+
+/// Side by side what was read.
+#[inline(always)]
+fn at_corners<S: Simd>(simd: S, read: &[[[f32; 4]; 8]; 3]) -> AtCorners<S> {
+    let mut at = [[simd.splat_f32x8(0.0); 3]; 3];
+    for (to, from) in at.iter_mut().zip(read) {
+        let mut rows = [simd.splat_f32x4(0.0); 8];
+        for (row, from) in rows.iter_mut().zip(from) {
+            *row = f32x4::from_slice(simd, from);
+        }
+        let [x, y, z, _] = four_columns(simd, rows);
+        *to = [x, y, z];
+    }
+    at
+}
 
 /// Makes the normals of eight primitives of a mesh ready; gives whether all are settled.
 #[simd]
@@ -25,27 +67,26 @@ pub(super) fn prepare_normals<S: Simd>(
     simd: S,
     t: &RunTransform,
     mesh: &Mesh,
-    (items, corners): (&[u32; 8], &[[u32; 3]; 8]),
+    (items, read): (&[u32; 8], &Read),
     kept: &mut [NormalPlane],
 ) -> bool {
-    let normals = normal_planes(simd, t, mesh, corners).by_primitive(simd);
+    let normals = normal_planes(simd, t, mesh, read).by_primitive(simd);
     for (lane, &item) in items.iter().enumerate() {
         normals.store(simd, lane, item, &mut kept[place(item, kept)]);
     }
     normals.settled == 0xff
 }
 
-/// The normals of eight primitives of a mesh, by the vertices of each.
+/// The normals of eight primitives of a mesh.
 #[inline(always)]
 pub(super) fn normal_planes<S: Simd>(
     simd: S,
     t: &RunTransform,
     mesh: &Mesh,
-    corners: &[[u32; 3]; 8],
+    read: &Read,
 ) -> NormalPlanes<S> {
-    let (at, normals) = read(mesh, corners);
-    let normals = fronts(simd, t, mesh, &normals);
-    OnScreen::new(simd, t, mesh, &all_widened(simd, &at), normals.as_ref()).normal_planes(simd)
+    let (at, normals) = (all_widened(simd, read), fronts(simd, t, mesh, read));
+    OnScreen::new(simd, t, mesh, &at, normals.as_ref()).normal_planes(simd)
 }
 
 /// Makes eight primitives of a mesh ready to be interpolated, side by side.
@@ -54,11 +95,10 @@ pub(super) fn prepare<S: Simd>(
     simd: S,
     t: &RunTransform,
     mesh: &Mesh,
-    (items, corners): (&[u32; 8], &[[u32; 3]; 8]),
+    (items, corners, read): (&[u32; 8], &[[u32; 3]; 8], &Read),
     kept: &mut [VisibleTriangle],
 ) {
-    let (at, normals) = read(mesh, corners);
-    let (at, normals) = (all_widened(simd, &at), fronts(simd, t, mesh, &normals));
+    let (at, normals) = (all_widened(simd, read), fronts(simd, t, mesh, read));
     let on_screen = OnScreen::new(simd, t, mesh, &at, normals.as_ref());
     let planes = on_screen.normal_planes(simd).by_primitive(simd);
     let OnScreen { edges: [constant, dx, dy], sides, .. } = on_screen;
@@ -100,49 +140,26 @@ pub(super) fn prepare<S: Simd>(
     }
 }
 
-/// Positions and normals at the corners; all that is read first, for it has to be waited for.
-#[inline(always)]
-fn read(mesh: &Mesh, corners: &[[u32; 3]; 8]) -> (Read, Read) {
-    let (mut at, mut normals) = ([[[0.0; 8]; 3]; 3], [[[0.0; 8]; 3]; 3]);
-    for (lane, corners) in corners.iter().enumerate() {
-        for (to, &corner) in at.iter_mut().zip(corners) {
-            let p = mesh.positions[corner as usize];
-            (to[0][lane], to[1][lane], to[2][lane]) = (p.x, p.y, p.z);
-        }
-        if !mesh.normals.is_empty() {
-            for (to, &corner) in normals.iter_mut().zip(corners) {
-                let n = mesh.normals[corner as usize];
-                (to[0][lane], to[1][lane], to[2][lane]) = (n.x, n.y, n.z);
-            }
-        }
-    }
-    (at, normals)
-}
-
+/// The positions.
 #[inline(always)]
 fn all_widened<S: Simd>(simd: S, read: &Read) -> [Corners<S>; 3] {
     let mut all = [[simd.splat_f64x8(0.0); 3]; 3];
-    for (to, from) in all.as_flattened_mut().iter_mut().zip(read.as_flattened()) {
-        *to = widened(simd, f32x8::from_slice(simd, from));
+    let positions = at_corners(simd, &read.positions);
+    for (to, from) in all.as_flattened_mut().iter_mut().zip(positions.as_flattened()) {
+        *to = widened(simd, *from);
     }
     all
 }
 
 /// The mesh's normals at the corners, world axes, on the side of the front.
 #[inline(always)]
-fn fronts<S: Simd>(
-    simd: S,
-    t: &RunTransform,
-    mesh: &Mesh,
-    normals: &Read,
-) -> Option<[Vectors<S>; 3]> {
+fn fronts<S: Simd>(simd: S, t: &RunTransform, mesh: &Mesh, read: &Read) -> Option<AtCorners<S>> {
     if mesh.normals.is_empty() {
         return None;
     }
-    let mut fronts = [[simd.splat_f32x8(0.0); 3]; 3];
-    for (to, [x, y, z]) in fronts.iter_mut().zip(normals) {
-        let (x, y) = (f32x8::from_slice(simd, x), f32x8::from_slice(simd, y));
-        *to = along_world_axes(t, [x, y, f32x8::from_slice(simd, z)]);
+    let mut fronts = at_corners(simd, &read.normals);
+    for normal in &mut fronts {
+        *normal = along_world_axes(t, *normal);
     }
     Some(fronts)
 }
@@ -167,7 +184,7 @@ fn seen<S: Simd>([x, y, z]: Vectors<S>, sides: f32x8<S>) -> Vectors<S> {
 /// Eight primitives on the screen.
 struct OnScreen<'n, S: Simd> {
     /// The pixels from whose centres edge functions are counted.
-    origins: [f64x8<S>; 2],
+    origins: [i32x8<S>; 2],
     /// Edge functions, positive inside, that sum up to the w of the farthest vertex over w: constants and changes
     /// along x and y, by edge.
     edges: [Vectors<S>; 3],
@@ -182,16 +199,17 @@ struct OnScreen<'n, S: Simd> {
 
 /// The normals of eight primitives as linear functions of the place on the screen, as of [`NormalPlane`].
 pub struct NormalPlanes<S: Simd> {
-    origins: [f64x8<S>; 2],
+    /// The pixels from whose centres the place is counted.
+    pub origins: [i32x8<S>; 2],
     /// Constants and changes along x and y.
-    planes: [Vectors<S>; 3],
+    pub planes: [[f32x8<S>; 3]; 3],
     /// Which are [settled](NormalPlane::settled).
     pub settled: mask32x8<S>,
 }
 
 /// The same, primitive by primitive.
 struct Normals<S: Simd> {
-    origins: [[f64; 8]; 2],
+    origins: [[i32; 8]; 2],
     /// Constants and changes along x, by primitive; changes along y.
     rows: [[f32x8<S>; 8]; 2],
     /// Which are [settled](NormalPlane::settled), as bits.
@@ -275,7 +293,8 @@ impl<'n, S: Simd> OnScreen<'n, S> {
         } else {
             ([none; 3], simd.simd_gt_f32x8(none, none))
         };
-        Self { origins: [ox, oy], edges, sides, front, normals, settled }
+        let origins = [low_bits(simd, ox + MAGIC), low_bits(simd, oy + MAGIC)];
+        Self { origins, edges, sides, front, normals, settled }
     }
 
     /// The normals as planes.
@@ -299,19 +318,6 @@ impl<'n, S: Simd> OnScreen<'n, S> {
 }
 
 impl<S: Simd> NormalPlanes<S> {
-    /// The normals at the centres of pixels, one of each primitive's: bit for bit those of [`NormalPlane::at`].
-    #[inline(always)]
-    pub fn at(&self, simd: S, x: i32x8<S>, y: i32x8<S>) -> [f32x8<S>; 3] {
-        let x = narrowed(simd, integers_widened(simd, x) - self.origins[0]);
-        let y = narrowed(simd, integers_widened(simd, y) - self.origins[1]);
-        let [constant, dx, dy] = &self.planes;
-        let mut normal = *constant;
-        for (i, to) in normal.iter_mut().enumerate() {
-            *to = dx[i] * x + dy[i] * y + constant[i];
-        }
-        normal
-    }
-
     #[inline(always)]
     fn by_primitive(&self, simd: S) -> Normals<S> {
         let none = simd.splat_f32x8(0.0);
@@ -334,7 +340,7 @@ impl<S: Simd> Normals<S> {
         first[lane].store_slice(&mut planes[..8]);
         simd.split_f32x8(second[lane]).0.store_slice(&mut planes[8..]);
         let [x, y] = &self.origins;
-        to.origin = [x[lane] as i32, y[lane] as i32];
+        to.origin = [x[lane], y[lane]];
         (to.item, to.settled) = (item, self.settled >> lane & 1 == 1);
     }
 }

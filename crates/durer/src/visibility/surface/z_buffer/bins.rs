@@ -1,6 +1,6 @@
 //! Which triangles touch which tiles: lists per job, joined in the order of the jobs.
 
-use super::micropolygon::{Fragment, Fragments, MOST_TILES, Micropolygons, Sample, Tiles};
+use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
 use super::tile::TILE;
 use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::view::View;
@@ -12,8 +12,12 @@ use crate::visibility::surface::triangles::RunNormals;
 use fearless_simd::Simd;
 use std::ops::Range;
 
-/// Triangles per job: enough to keep a thread busy for about a tenth of a millisecond.
-const JOB_TRIANGLES: u32 = 8192;
+/// The least triangles per job, enough to keep a thread busy for about a tenth of a millisecond, and the most, whose vertices
+/// stay in the second-level cache: those at the borders of jobs are transformed twice.
+const JOB_TRIANGLES: [u32; 2] = [8192, 32768];
+
+/// So many jobs at least share the work evenly, where they are not too small.
+const JOBS: u32 = 32;
 
 /// Pieces of runs that one thread sets up at a time; all of one coverage.
 pub struct Job {
@@ -23,6 +27,9 @@ pub struct Job {
 
 /// Divides the runs into jobs: opaque ones first, then masked, then blended, each in scene order.
 pub fn jobs(runs: &[Run]) -> Vec<Job> {
+    let all = runs.iter().fold(0, |sum: u32, run| sum.saturating_add(run.range.len() as u32));
+    let [least, most] = JOB_TRIANGLES;
+    let size = (all / JOBS).clamp(least, most);
     let mut jobs: Vec<Job> = Vec::new();
     for coverage in [Coverage::Opaque, Coverage::Masked, Coverage::Blended] {
         let mut room = 0;
@@ -31,7 +38,7 @@ pub fn jobs(runs: &[Run]) -> Vec<Job> {
             while start < run.range.end {
                 if room == 0 {
                     jobs.push(Job { coverage, pieces: Vec::new() });
-                    room = JOB_TRIANGLES;
+                    room = size;
                 }
                 let end = run.range.end.min(start.saturating_add(room));
                 room -= end - start;
@@ -58,19 +65,17 @@ pub struct Bins {
     /// Whether a tile may lie within one of them.
     pub wide: bool,
     /// Of each tile which triangles touch it, in item order.
-    touching: ByTile<u32>,
-    /// What small triangles have left that are not among the others: with their normals, and without.
-    fragments: ByTile<Fragment>,
-    samples: ByTile<Sample>,
+    touching: ByTile,
 }
 
-/// What is needed to make [`Bins`], and is used again.
+/// What is needed to make [`Bins`], and is used again; and what small triangles have left, of all jobs that were done with it.
 #[derive(Default)]
 pub struct Scratch {
     /// Tile and triangle.
     touched: Vec<(u32, u32)>,
-    fragments: Fragments,
     vertices: Vec<ScreenVertex>,
+    /// Of triangles that are not among those in the bins.
+    pub fragments: Fragments,
 }
 
 impl Bins {
@@ -105,26 +110,12 @@ impl Bins {
         let (coverage, counts) = (job.coverage, assembler.counts);
         *vertices = assembler.into_memory();
         let touching = sort_by_tile(touched, screen.count());
-        let samples = gather_by_tile(&mut fragments.samples);
-        let fragments = gather_by_tile(&mut fragments.with_normals);
-        Self { coverage, counts, triangles, wide, touching, fragments, samples }
+        Self { coverage, counts, triangles, wide, touching }
     }
 
     /// The triangles that touch a tile, in item order.
     pub fn of_tile(&self, tile: u32) -> impl Iterator<Item = &ScreenTriangle> + '_ {
         self.touching.of(tile).iter().map(|&e| &self.triangles[e as usize])
-    }
-
-    /// What is in a tile of triangles that were sampled at once, with normals and without.
-    pub fn fragments_of_tile(&self, tile: u32) -> (&[Fragment], &[Sample]) {
-        (self.fragments.of(tile), self.samples.of(tile))
-    }
-
-    /// Tiles with something in them.
-    fn tiles(&self) -> impl Iterator<Item = u32> + '_ {
-        let Self { touching, fragments, samples, .. } = self;
-        let starts = touching.starts.iter().chain(&fragments.starts).chain(&samples.starts);
-        starts.map(|&(tile, _)| tile)
     }
 }
 
@@ -175,25 +166,27 @@ impl Sink for Sorter<'_> {
     }
 }
 
-/// Whether anything touches each tile of the screen.
-pub fn occupied(bins: &[Bins], view: &View) -> Vec<bool> {
-    let mut occupied = vec![false; TileGrid::new(view.width(), view.height()).count() as usize];
-    for tile in bins.iter().flat_map(Bins::tiles) {
-        occupied[tile as usize] = true;
+/// Whether there is anything in each tile of the screen.
+pub fn occupied(bins: &[Bins], fragments: &[Fragments], view: &View) -> Vec<bool> {
+    let tiles = 0..TileGrid::new(view.width(), view.height()).count();
+    let has_fragments = |tile: u32| !fragments.iter().all(|of_thread| of_thread.nothing_in(tile));
+    let mut occupied: Vec<bool> = tiles.map(has_fragments).collect();
+    for (tile, _) in bins.iter().flat_map(|bins| &bins.touching.starts) {
+        occupied[*tile as usize] = true;
     }
     occupied
 }
 
-/// Things by the tiles that they are in.
-struct ByTile<T> {
+/// Triangles by the tiles that they touch.
+struct ByTile {
     /// Tiles with something in them, ascending, and where their entries begin.
     starts: Vec<(u32, u32)>,
-    entries: Vec<T>,
+    entries: Vec<u32>,
 }
 
-impl<T> ByTile<T> {
-    /// What is in a tile.
-    fn of(&self, tile: u32) -> &[T] {
+impl ByTile {
+    /// Those of a tile.
+    fn of(&self, tile: u32) -> &[u32] {
         match self.starts.binary_search_by_key(&tile, |s| s.0) {
             Ok(i) => {
                 let end = self.starts.get(i + 1).map_or(self.entries.len(), |s| s.1 as usize);
@@ -205,7 +198,7 @@ impl<T> ByTile<T> {
 }
 
 /// Sorts (tile, triangle) pairs by tile, keeping the order of the triangles.
-fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile<u32> {
+fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile {
     let mut next = vec![0u32; tiles as usize + 1];
     for (tile, _) in touched {
         next[*tile as usize + 1] += 1;
@@ -223,16 +216,6 @@ fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile<u32> {
         entries[*slot as usize] = *triangle;
         *slot += 1;
     }
-    ByTile { starts, entries }
-}
-
-/// Puts what is in tiles into one list.
-fn gather_by_tile<T: Copy>(tiles: &mut Tiles<T>) -> ByTile<T> {
-    let (mut starts, mut entries) = (Vec::new(), Vec::with_capacity(tiles.count()));
-    tiles.drain(|tile, of_tile| {
-        starts.push((tile, entries.len() as u32));
-        entries.extend_from_slice(of_tile);
-    });
     ByTile { starts, entries }
 }
 

@@ -8,11 +8,12 @@
 
 use super::bins::TileGrid;
 use super::tile::{SamplePlane, TILE};
+use crate::visibility::surface::gather::four_rows;
 use crate::visibility::surface::lit::KnownNormals;
-use crate::visibility::surface::setup::{EIGHT, PIXELS, Sampled, depths, place_in_box};
-use crate::visibility::surface::triangles::RunNormals;
+use crate::visibility::surface::setup::{EIGHT, PIXELS, Sampled, place_in_box};
+use crate::visibility::surface::triangles::{Read, RunNormals};
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x8, i32x8, u32x8};
+use fearless_simd::{Level, Simd, dispatch, f32x4, f32x8, i32x8, u32x4, u32x8};
 use fearless_simd_macros::simd;
 
 /// Bits of a pixel's place in its tile.
@@ -21,87 +22,117 @@ const PIXEL_BITS: u32 = 2 * TILE.trailing_zeros();
 /// Screens of more tiles have places that do not fit 32 bits; nothing is sampled there before its time.
 pub const MOST_TILES: u32 = 1 << (32 - PIXEL_BITS);
 
+/// What lies at a pixel of a tile by its depth bits: depth test and write; whether it is seen.
+#[inline(always)]
+fn draw(plane: &mut SamplePlane, pixel: usize, depth: f32, item: u32) -> bool {
+    let depth = depth.to_bits().cast_signed();
+    let (nearest, of_nearest) = (&mut plane.depth[pixel], &mut plane.item[pixel]);
+    // At equal depths the lower item wins, as where triangles are rasterized.
+    let wins_ties = of_nearest.cast_signed().wrapping_sub(item.cast_signed()) >= 0;
+    let seen = depth < *nearest || depth == *nearest && wins_ties;
+    if seen {
+        (*nearest, *of_nearest) = (depth, item);
+    }
+    seen
+}
+
 /// A sample that a small triangle covers.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
     /// The pixel in its tile.
     pixel: u32,
-    /// Bits of the depth.
-    depth: i32,
     item: u32,
+    depth: f32,
 }
 
 impl Sample {
-    /// Depth test and write; whether it is seen.
+    /// Depth test and write.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane) -> bool {
-        let pixel = self.pixel as usize;
-        let (depth, item) = (&mut plane.depth[pixel], &mut plane.item[pixel]);
-        // At equal depths the lower item wins, as where triangles are rasterized.
-        let wins_ties = item.cast_signed().wrapping_sub(self.item.cast_signed()) >= 0;
-        let seen = self.depth < *depth || self.depth == *depth && wins_ties;
-        if seen {
-            (*depth, *item) = (self.depth, self.item);
-        }
-        seen
+    pub fn draw(&self, plane: &mut SamplePlane) {
+        draw(plane, self.pixel as usize, self.depth, self.item);
     }
 }
 
 /// A sample with its normal.
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment {
-    /// Where it is.
-    pub sample: Sample,
-    /// Of the side that is seen, of any length; NaN where it is to be found when it is asked for.
-    normal: [f32; 3],
+    /// The normal of the side that is seen, of any length, NaN where it is to be found when it is asked for; and the depth.
+    found: [f32; 4],
+    /// The pixel in its tile.
+    pixel: u32,
+    item: u32,
 }
 
 impl Fragment {
     /// Depth test and write; in `known` its normal.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane, known: &mut KnownNormals) {
-        if self.sample.draw(plane) {
-            known.set(self.sample.pixel as usize, self.sample.item, self.normal);
+    pub fn draw(&self, plane: &mut SamplePlane, known: Option<&mut KnownNormals>) {
+        let (pixel, depth) = (self.pixel as usize, self.found[3]);
+        if draw(plane, pixel, depth, self.item)
+            && let Some(known) = known
+        {
+            known.set(pixel, self.item, self.found);
         }
     }
 }
 
-/// Things by the tiles that they are in.
+/// Things by the tiles that they are in, in blocks that stay where they are.
 pub struct Tiles<T> {
-    by_tile: Vec<Vec<T>>,
-    /// Tiles with something in them.
-    tiles: Vec<u32>,
+    by_tile: Vec<Blocks<T>>,
 }
+
+/// What is in one tile.
+struct Blocks<T> {
+    /// Where the next comes to; full or without room when there is none.
+    open: Vec<T>,
+    full: Vec<Vec<T>>,
+}
+
+/// The least and the most that a block holds: each next one four times as much.
+const BLOCK: [usize; 2] = [32, 2048];
 
 impl<T> Default for Tiles<T> {
     fn default() -> Self {
-        Self { by_tile: Vec::new(), tiles: Vec::new() }
+        Self { by_tile: Vec::new() }
     }
 }
 
 impl<T> Tiles<T> {
     #[inline(always)]
     fn push(&mut self, place: u32, thing: T) {
-        let tile = place >> PIXEL_BITS;
-        let of_tile = &mut self.by_tile[tile as usize];
-        if of_tile.is_empty() {
-            self.tiles.push(tile);
+        let tile = &mut self.by_tile[(place >> PIXEL_BITS) as usize];
+        if tile.open.len() == tile.open.capacity() {
+            tile.open_next();
         }
-        of_tile.push(thing);
+        tile.open.push(thing);
     }
 
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        self.tiles.iter().map(|&tile| self.by_tile[tile as usize].len()).sum()
+    /// What is in a tile, block by block.
+    pub fn of(&self, tile: u32) -> impl Iterator<Item = &[T]> + '_ {
+        let of_tile = self.by_tile.get(tile as usize).into_iter();
+        of_tile.flat_map(|Blocks { full, open }| full.iter().chain([open]).map(Vec::as_slice))
     }
 
-    /// Hands on what there is, tile by tile in ascending order, and is empty then.
-    pub fn drain(&mut self, mut take: impl FnMut(u32, &[T])) {
-        self.tiles.sort_unstable();
-        for tile in self.tiles.drain(..) {
-            let of_tile = &mut self.by_tile[tile as usize];
-            take(tile, of_tile);
-            of_tile.clear();
+    /// Whether there is nothing in a tile.
+    pub fn nothing_in(&self, tile: u32) -> bool {
+        self.by_tile.get(tile as usize).is_none_or(|of_tile| of_tile.open.is_empty())
+    }
+}
+
+impl<T> Default for Blocks<T> {
+    fn default() -> Self {
+        Self { open: Vec::new(), full: Vec::new() }
+    }
+}
+
+impl<T> Blocks<T> {
+    #[cold]
+    fn open_next(&mut self) {
+        let [least, most] = BLOCK;
+        let size = (4 * self.open.len()).clamp(least, most);
+        let full = std::mem::replace(&mut self.open, Vec::with_capacity(size));
+        if !full.is_empty() {
+            self.full.push(full);
         }
     }
 }
@@ -115,13 +146,20 @@ pub struct Fragments {
     pub samples: Tiles<Sample>,
 }
 
+impl Fragments {
+    /// Whether there are none in a tile.
+    pub fn nothing_in(&self, tile: u32) -> bool {
+        self.with_normals.nothing_in(tile) && self.samples.nothing_in(tile)
+    }
+}
+
 /// Small triangles that wait until there are eight.
 #[derive(Default)]
 struct Queue {
     count: usize,
     items: [u32; EIGHT],
-    /// Their vertices in the mesh.
-    corners: [[u32; 3]; EIGHT],
+    /// What their normals are found from, where they are asked for.
+    read: Read,
     /// As in [`Sampled`].
     first: [[i32; EIGHT]; 2],
     covered: [u32; EIGHT],
@@ -132,9 +170,17 @@ struct Queue {
 impl Queue {
     /// Adds one of eight triangles where there is room.
     #[inline(always)]
-    fn push(&mut self, sampled: &Sampled, lane: usize, (item, corners): (u32, [u32; 3])) {
+    fn push(
+        &mut self,
+        normals: Option<&RunNormals<'_>>,
+        (sampled, lane): (&Sampled, usize),
+        (item, corners): (u32, [u32; 3]),
+    ) {
         let to = self.count % EIGHT;
-        (self.items[to], self.corners[to]) = (item, corners);
+        self.items[to] = item;
+        if let Some(normals) = normals {
+            normals.read(to, corners, &mut self.read);
+        }
         self.covered[to] = sampled.covered[lane];
         for axis in 0..2 {
             self.first[axis][to] = sampled.first[axis][lane];
@@ -155,51 +201,100 @@ impl Queue {
         columns: i32,
         fragments: &mut Fragments,
     ) {
-        for lane in this.count..EIGHT {
-            // Nothing is made of these, but their vertices are read.
-            (this.covered[lane], this.corners[lane]) = (0, this.corners[0]);
-        }
-        this.count = 0;
-        // No closures, in which the SIMD level may be lost.
-        let planes = match normals {
-            Some(normals) => Some(normals.planes(simd, &this.corners)),
-            None => None,
-        };
-        let covered = u32x8::from_slice(simd, &this.covered);
-        let [first_x, first_y] = &this.first;
-        let first = [i32x8::from_slice(simd, first_x), i32x8::from_slice(simd, first_y)];
-        let none = f32x8::splat(simd, f32::NAN);
-        for pixel in 0..PIXELS {
-            let covers = (covered & (1 << pixel)).simd_ne(u32x8::splat(simd, 0));
-            let mut left = covers.to_bitmask();
-            if left == 0 {
-                continue;
-            }
-            let [column, row] = place_in_box(pixel);
-            let (x, y) = (first[0] + column, first[1] + row);
-            let place: [u32; EIGHT] = place(simd, x, y, columns).into();
-            let depth = depths(simd, [x, y], &this.origin, &this.depth);
-            let depth: [i32; EIGHT] = depth.bitcast::<i32x8<S>>().into();
-            let mut normal = [[0.0; EIGHT]; 3];
-            if let Some(planes) = &planes {
-                let [nx, ny, nz] = planes.at(simd, x, y);
-                planes.settled.select(nx, none).store_slice(&mut normal[0]);
-                ny.store_slice(&mut normal[1]);
-                nz.store_slice(&mut normal[2]);
+        let count = std::mem::take(&mut this.count);
+        this.covered[count..].fill(0);
+        let lines = this.lines(simd, normals);
+        let (halves, _) = this.covered.as_chunks::<{ EIGHT / 2 }>();
+        for (half, covered) in halves.iter().enumerate() {
+            // Which pixels of which triangles, one after the other: so many in one loop, for where it ends is not foreseen.
+            let mut left = 0;
+            for (i, &covered) in covered.iter().enumerate() {
+                left |= u64::from(covered) << (PIXELS * i);
             }
             while left != 0 {
-                let lane = left.trailing_zeros() as usize % EIGHT;
+                let at = left.trailing_zeros() as usize;
                 left &= left - 1;
-                let (place, depth, item) = (place[lane], depth[lane], this.items[lane]);
-                let sample = Sample { pixel: place % (1 << PIXEL_BITS), depth, item };
-                if planes.is_some() {
-                    let normal = [normal[0][lane], normal[1][lane], normal[2][lane]];
-                    fragments.with_normals.push(place, Fragment { sample, normal });
+                let (lane, pixel) = (EIGHT / 2 * half + at / PIXELS, at % PIXELS);
+                let lane = lane % EIGHT;
+                let found = lines.at(simd, lane, pixel);
+                let [column, row] = place_in_box(pixel);
+                let place = place(this.first[0][lane] + column, this.first[1][lane] + row, columns);
+                let (pixel, item) = (place % (1 << PIXEL_BITS), this.items[lane]);
+                if normals.is_some() {
+                    fragments.with_normals.push(place, Fragment { found, pixel, item });
                 } else {
-                    fragments.samples.push(place, sample);
+                    fragments.samples.push(place, Sample { pixel, item, depth: found[3] });
                 }
             }
         }
+    }
+
+    /// What the normals of eight triangles and their depths are found by.
+    #[inline(always)]
+    fn lines<S: Simd>(&self, simd: S, normals: Option<&RunNormals<'_>>) -> Lines {
+        let [first_x, first_y] = &self.first;
+        let first = [i32x8::from_slice(simd, first_x), i32x8::from_slice(simd, first_y)];
+        let none = f32x8::splat(simd, 0.0);
+        let [depth, depth_dx, depth_dy, least, largest] = &self.depth;
+        let depths = [depth, depth_dx, depth_dy].map(|of| f32x8::from_slice(simd, of));
+        let mut from = [[none; 2]; 2];
+        for (axis, from) in from.iter_mut().enumerate() {
+            from[1] = simd.cvt_f32_i32x8(first[axis] - i32x8::from_slice(simd, &self.origin[axis]));
+        }
+        let (mut planes, mut unknown) = ([[none; 3]; 3], [0; EIGHT]);
+        if let Some(normals) = normals {
+            let of_normals = normals.planes(simd, &self.read);
+            for (axis, from) in from.iter_mut().enumerate() {
+                from[0] = simd.cvt_f32_i32x8(first[axis] - of_normals.origins[axis]);
+            }
+            planes = of_normals.planes;
+            let nan = u32x8::splat(simd, f32::NAN.to_bits());
+            of_normals.settled.select(u32x8::splat(simd, 0), nan).store_slice(&mut unknown);
+        }
+        let [[x, x_of_depth], [y, y_of_depth]] = from;
+        let [[a, b, c], [d, e, f], [g, h, i]] = planes;
+        Lines {
+            from: [four_rows(simd, [x, x, x, x_of_depth]), four_rows(simd, [y, y, y, y_of_depth])],
+            planes: [
+                four_rows(simd, [a, b, c, depths[0]]),
+                four_rows(simd, [d, e, f, depths[1]]),
+                four_rows(simd, [g, h, i, depths[2]]),
+            ],
+            within: [*least, *largest],
+            unknown,
+        }
+    }
+}
+
+/// By what the normals of eight triangles and their depths are found, row by row; the fourth number of each is the depth's.
+struct Lines {
+    /// Where the boxes begin, counted from where the planes' constants are.
+    from: [[[f32; 4]; EIGHT]; 2],
+    /// Constants, changes along x and along y.
+    planes: [[[f32; 4]; EIGHT]; 3],
+    /// The least and the largest depths.
+    within: [[f32; EIGHT]; 2],
+    /// Bits that are set in normals that are not settled.
+    unknown: [u32; EIGHT],
+}
+
+impl Lines {
+    /// The normal and the depth of a triangle at a pixel of its box: bit for bit as they are found elsewhere.
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, lane: usize, pixel: usize) -> [f32; 4] {
+        let [column, row] = place_in_box(pixel);
+        let x = f32x4::from_slice(simd, &self.from[0][lane]) + column as f32;
+        let y = f32x4::from_slice(simd, &self.from[1][lane]) + row as f32;
+        let [constant, dx, dy] = &self.planes;
+        let (dx, dy) = (f32x4::from_slice(simd, &dx[lane]), f32x4::from_slice(simd, &dy[lane]));
+        let found = dx * x + dy * y + f32x4::from_slice(simd, &constant[lane]);
+        let [least, largest] = &self.within;
+        let (low, high) = (f32::NEG_INFINITY, f32::INFINITY);
+        let least: f32x4<S> = [low, low, low, least[lane]].simd_into(simd);
+        let largest: f32x4<S> = [high, high, high, largest[lane]].simd_into(simd);
+        let unknown: u32x4<S> = [self.unknown[lane], 0, 0, 0].simd_into(simd);
+        let found = found.max(least).min(largest).bitcast::<u32x4<S>>() | unknown;
+        found.bitcast::<f32x4<S>>().into()
     }
 }
 
@@ -218,8 +313,8 @@ impl<'f> Micropolygons<'f> {
     /// For a screen.
     pub fn new(screen: TileGrid, fragments: &'f mut Fragments) -> Self {
         let tiles = screen.count() as usize;
-        fragments.with_normals.by_tile.resize_with(tiles, Vec::new);
-        fragments.samples.by_tile.resize_with(tiles, Vec::new);
+        fragments.with_normals.by_tile.resize_with(tiles, Blocks::default);
+        fragments.samples.by_tile.resize_with(tiles, Blocks::default);
         let (fronts, backs) = (Queue::default(), Queue::default());
         Self { fronts, backs, fragments, columns: screen.columns }
     }
@@ -238,10 +333,10 @@ impl<'f> Micropolygons<'f> {
             let lane = which.trailing_zeros() as usize % EIGHT;
             which &= which - 1;
             let back = sampled.from_behind >> lane & 1 == 1;
-            let queue = if back { &mut self.backs } else { &mut self.fronts };
-            queue.push(sampled, lane, primitive(lane));
+            let (queue, normals) =
+                if back { (&mut self.backs, None) } else { (&mut self.fronts, normals) };
+            queue.push(normals, (sampled, lane), primitive(lane));
             if queue.count == EIGHT {
-                let normals = if back { None } else { normals };
                 Queue::make(simd, queue, normals, self.columns, self.fragments);
             }
         }
@@ -258,12 +353,12 @@ impl<'f> Micropolygons<'f> {
     }
 }
 
-/// Where pixels of the screen are: the tile, and in the lower bits the pixel in it.
+/// Where a pixel of the screen is: the tile, and in the lower bits the pixel in it.
 #[inline(always)]
-fn place<S: Simd>(simd: S, x: i32x8<S>, y: i32x8<S>, columns: i32) -> u32x8<S> {
+fn place(x: i32, y: i32, columns: i32) -> u32 {
     const SHIFT: u32 = TILE.trailing_zeros();
-    let within = i32x8::splat(simd, TILE - 1);
+    let within = TILE - 1;
     let tile = (y >> SHIFT) * columns + (x >> SHIFT);
     let pixel = ((y & within) << SHIFT) | (x & within);
-    ((tile << PIXEL_BITS) | pixel).bitcast()
+    ((tile << PIXEL_BITS) | pixel).cast_unsigned()
 }

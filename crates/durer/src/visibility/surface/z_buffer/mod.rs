@@ -35,6 +35,7 @@ use bins::{Bins, TileGrid, jobs};
 use blended::{Blended, light_blended};
 use fearless_simd::dispatch;
 use front_to_back::FrontToBack;
+use micropolygon::Fragments;
 use rasterize::{AllPass, FragmentTest, rasterize};
 use resolve::{Area, Codes, MaskTest, resolve};
 use tile::{SamplePlane, TILE, TILE_PIXELS};
@@ -118,9 +119,11 @@ pub fn render(
         level: options.level,
     };
     let prepared = start.elapsed().as_secs_f64();
-    let bins = crate::parallel::map_with(jobs(&runs), Default::default, |scratch, job| {
+    let make = bins::Scratch::default;
+    let (bins, scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
         Bins::new(&job, &lighting, filter, scratch)
     });
+    let fragments: Vec<Fragments> = scratch.into_iter().map(|of| of.fragments).collect();
     let mut report = Report::default();
     for bin in &bins {
         report.counts += bin.counts;
@@ -128,8 +131,9 @@ pub fn render(
     report.geometry_seconds = start.elapsed().as_secs_f64() - prepared;
 
     let triangle_count = scene.triangle_count() as u32;
-    let occupied = bins::occupied(&bins, view);
-    let frame = Frame { view, options, lighting, bins: &bins, occupied, triangle_count };
+    let occupied = bins::occupied(&bins, &fragments, view);
+    let (bins, fragments) = (bins.as_slice(), fragments.as_slice());
+    let frame = Frame { view, options, lighting, bins, fragments, occupied, triangle_count };
     let scratch = || Scratch::new(&frame);
     crate::parallel::map_with(bands(framebuffer), scratch, |scratch, band| {
         frame.render_band(band, scratch);
@@ -188,6 +192,8 @@ struct Frame<'a> {
     options: &'a Options,
     lighting: Lighting<'a>,
     bins: &'a [Bins],
+    /// What small triangles have left, in no order.
+    fragments: &'a [Fragments],
     /// Whether there is anything in each tile.
     occupied: Vec<bool>,
     /// Items from here on are lines and points, which the item plane does not show.
@@ -274,17 +280,14 @@ impl<'a> Frame<'a> {
         let mut any = false;
         // There are none where pixels have several samples.
         let [plane] = planes else { return any };
-        for (fragments, samples) in self.bins.iter().map(|bins| bins.fragments_of_tile(index)) {
-            for fragment in fragments {
-                match &mut known {
-                    Some(known) => fragment.draw(plane, known),
-                    None => _ = fragment.sample.draw(plane),
-                }
+        for fragments in self.fragments {
+            for block in fragments.with_normals.of(index) {
+                block.iter().for_each(|fragment| fragment.draw(plane, known.as_deref_mut()));
             }
-            for sample in samples {
-                sample.draw(plane);
+            for block in fragments.samples.of(index) {
+                block.iter().for_each(|sample| sample.draw(plane));
             }
-            any |= !fragments.is_empty() || !samples.is_empty();
+            any |= !fragments.nothing_in(index);
         }
         any
     }
@@ -333,7 +336,8 @@ impl<'a> Frame<'a> {
         let [tile, size] = area;
         let Scratch { planes, known, blended, batch, mixed, codes, lit, order, .. } = scratch;
         let wall = Wall::of_tile(self.bins, planes, area, index);
-        let alone = wall.and_then(|wall| wall.alone(self.bins, index));
+        let has_fragments = !self.fragments.iter().all(|fragments| fragments.nothing_in(index));
+        let alone = wall.filter(|_| !has_fragments).and_then(|wall| wall.alone(self.bins, index));
         known.clear();
         blended.clear();
         if let Some(item) = alone {

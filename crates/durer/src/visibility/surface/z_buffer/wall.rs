@@ -57,14 +57,11 @@ impl<'a> Wall<'a> {
         (farthest < FAR).then_some(Self { triangle, farthest })
     }
 
-    /// The item that all samples of the tile show, where all else is behind the wall.
+    /// The item that all samples of the tile show, where all other triangles are behind the wall.
     pub fn alone(&self, bins: &[Bins], index: u32) -> Option<u32> {
         let item = self.triangle.item;
         let is_behind = |t: &ScreenTriangle| t.depth_min > self.farthest || t.item == item;
-        let alone = bins.iter().all(|bins| {
-            let (fragments, samples) = bins.fragments_of_tile(index);
-            fragments.is_empty() && samples.is_empty() && bins.of_tile(index).all(is_behind)
-        });
+        let alone = bins.iter().all(|bins| bins.of_tile(index).all(is_behind));
         alone.then_some(item)
     }
 }
