@@ -1,4 +1,5 @@
-//! Which triangles touch which tiles: lists per job, joined in the order of the jobs.
+//! Which triangles touch which tiles: lists per job, joined in the order of the jobs. Fragments of small triangles have no
+//! order, and stay with the thread that made them.
 
 use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
 use super::tile::TILE;

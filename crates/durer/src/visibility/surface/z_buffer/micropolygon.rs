@@ -22,7 +22,7 @@ const PIXEL_BITS: u32 = 2 * TILE.trailing_zeros();
 /// Screens of more tiles have places that do not fit 32 bits; nothing is sampled there before its time.
 pub const MOST_TILES: u32 = 1 << (32 - PIXEL_BITS);
 
-/// What lies at a pixel of a tile by its depth bits: depth test and write; whether it is seen.
+/// Depth test and write of an item at a pixel of a tile; whether it is seen.
 #[inline(always)]
 fn draw(plane: &mut SamplePlane, pixel: usize, depth: f32, item: u32) -> bool {
     let depth = depth.to_bits().cast_signed();
