@@ -3,7 +3,7 @@
 use kurbo::{Affine, BezPath, PathEl, Point};
 
 use super::{Cap, Stroke};
-use crate::curve::{Path, PathElement};
+use crate::curve::{Path, PathElement, chain};
 use crate::math::DVec2;
 
 /// No path gets more dashes and gaps than this; with more the line is drawn solid.
@@ -103,8 +103,22 @@ pub(super) fn dashed(
 
 /// The curves as chains of chords.
 fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
-    let mut out = BezPath::new();
-    kurbo::flatten(path.iter(), tolerance.max(length * 1e-7), |element| out.push(element));
+    let tolerance = tolerance.max(length * 1e-7);
+    let (mut out, mut points) = (BezPath::new(), Vec::new());
+    let (mut start, mut at) = (Point::ORIGIN, Point::ORIGIN);
+    for &element in path.elements() {
+        match element {
+            PathEl::QuadTo(..) | PathEl::CurveTo(..) => {
+                chain(DVec2::new(at.x, at.y), &from_kurbo(element), tolerance, &mut points);
+                points.drain(..).for_each(|p| out.line_to((p.x, p.y)));
+            }
+            _ => out.push(element),
+        }
+        if let PathEl::MoveTo(p) = element {
+            start = p;
+        }
+        at = element.end_point().unwrap_or(start);
+    }
     out
 }
 
