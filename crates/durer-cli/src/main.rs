@@ -16,6 +16,7 @@ mod input;
 mod lights;
 mod messages;
 mod output;
+mod panics;
 mod pick;
 mod plot;
 mod progress;
@@ -35,7 +36,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     beside::clean_up_when_interrupted();
-    match parse().and_then(run) {
+    match panics::told_at_the_end(|| parse().and_then(run)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let message = failure.to_string();

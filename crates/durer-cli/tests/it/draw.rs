@@ -64,6 +64,20 @@ fn maps_beyond_all_measure_are_bad_data() {
 }
 
 #[test]
+fn drawings_beyond_all_measure_are_bad_data() {
+    let folder = folder();
+    let strokes = "<g transform='scale(-2 1)'><g transform='scale(1e20)'><g transform='rotate(30)'>
+        <path d='M1 1L9 9h-5v-3q2 2 3 0t1 1s2 2 3 3A5 3 20 1 0 9 9' stroke='lime'/></g></g></g>";
+    folder.write(
+        "far.svg",
+        format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{strokes}</svg>"),
+    );
+    let ended = folder.run("draw far.svg -o b.png");
+    ended.fails(1, "far.svg: the drawing cannot be laid out");
+    assert!(!ended.err.contains("panicked") && !folder.path("b.png").exists(), "{ended:?}");
+}
+
+#[test]
 fn windows_and_viewports_choose_the_part_and_its_place() {
     let folder = folder();
     folder.must("draw a.svg -o a.png --size 40x40 --window 5,0,15,10 --viewport 20,20,20,20 --background white");

@@ -92,7 +92,8 @@ impl Drawing {
     ///
     /// # Errors
     /// [`Error::Decode`] with line and column for what is not XML, and where there is no `svg` element
-    /// with a size.
+    /// with a size, or coordinates that overflow. Of the last usvg panics; that is caught here, but the panic hook
+    /// is called.
     pub fn read(bytes: &[u8], options: &ReadOptions<'_>) -> Result<Self> {
         let bytes = crate::text::utf8(bytes);
         let text = std::str::from_utf8(&bytes).map_err(|e| {
@@ -125,9 +126,8 @@ impl Drawing {
                 image_href_resolver: images(options, &told),
                 ..usvg::Options::default()
             };
-            let tree =
-                usvg::Tree::from_xmltree(amended.as_ref().unwrap_or(&document), &usvg_options)
-                    .map_err(wrong)?;
+            let document = amended.as_ref().unwrap_or(&document);
+            let tree = resolved(|| usvg::Tree::from_xmltree(document, &usvg_options))?;
             drop(usvg_options);
             (tree, told.take())
         };
@@ -203,6 +203,18 @@ fn not_xml(error: roxmltree::Error) -> Error {
     // The message repeats the place at its end.
     let message = text.split(" at ").next().unwrap_or_default();
     Error::line(at.row.into(), at.col.into(), format!("not well-formed XML: {message}"))
+}
+
+/// What usvg makes of a document. Where numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it may panic.
+fn resolved(
+    tree: impl FnOnce() -> std::result::Result<usvg::Tree, usvg::Error>,
+) -> Result<usvg::Tree> {
+    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(tree)) {
+        Ok(tree) => tree.map_err(wrong),
+        Err(_) => Err(Error::whole(
+            "the drawing cannot be laid out; coordinates must stay within ±10¹⁵ under all transforms",
+        )),
+    }
 }
 
 fn wrong(error: usvg::Error) -> Error {
@@ -312,7 +324,7 @@ fn nested(bytes: &[u8], options: &usvg::Options<'_>, told: &Told) -> Option<Imag
             return None;
         }
     }
-    let tree = usvg::Tree::from_data_nested(bytes, options);
+    let tree = resolved(|| usvg::Tree::from_data_nested(bytes, options));
     told.levels.store(around, Ordering::Relaxed);
     tree.ok().map(ImageKind::SVG)
 }

@@ -459,6 +459,20 @@ fn references_that_multiply_are_refused() {
     }
 }
 
+/// usvg panics there.
+#[test]
+fn coordinates_that_overflow_are_refused() {
+    let strokes = "<g transform='scale(-2 1)'><g transform='scale(1e20)'><g transform='rotate(30)'>
+        <path d='M1 1L9 9h-5v-3q2 2 3 0t1 1s2 2 3 3A5 3 20 1 0 9 9' stroke='lime'/></g></g></g>";
+    let text = |body: &str| {
+        format!("<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'>{body}</svg>")
+    };
+    let read = |body: &str| Drawing::read(text(body).as_bytes(), &ReadOptions::default());
+    let why = read(strokes).expect_err("an overflow").to_string();
+    assert!(why.contains("coordinates must stay within"), "{why}");
+    assert!(read(&strokes.replace("1e20", "1e10")).is_ok());
+}
+
 /// Drawings in images of a drawing are looked at like the drawing itself.
 #[test]
 fn images_that_are_drawings_cannot_fill_the_stack() {

@@ -1,0 +1,27 @@
+//! Panics, which are told where they end the command: one that a reader catches is an error of its file.
+
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind, set_hook};
+use std::sync::Mutex;
+
+/// Of the last panic the message, with the place, and the calls where they are asked for by `RUST_BACKTRACE`.
+static LAST: Mutex<String> = Mutex::new(String::new());
+
+/// Does the work; where it panics, tells so and unwinds on.
+pub fn told_at_the_end<T>(work: impl FnOnce() -> T) -> T {
+    set_hook(Box::new(|panic| {
+        let mut told = panic.to_string();
+        let calls = Backtrace::capture();
+        if calls.status() == BacktraceStatus::Captured {
+            told += &format!("\n{calls}");
+        }
+        *LAST.lock().unwrap_or_else(|e| e.into_inner()) = told;
+    }));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
+        let told = LAST.lock().unwrap_or_else(|e| e.into_inner());
+        let _ = writeln!(std::io::stderr().lock(), "durer: this is a fault of durer: {told}");
+        drop(told);
+        resume_unwind(payload)
+    })
+}
