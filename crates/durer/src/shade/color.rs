@@ -5,7 +5,7 @@
 
 use crate::math::{Vec3, Vec4};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Simd, f32x16, u32x16, u64x8};
 
 /// Linear value of each 8-bit sRGB code, correctly rounded from double precision.
 pub static LINEAR_FROM_SRGB: [f32; 256] = linear_table();
@@ -29,19 +29,23 @@ static BUCKET_CODE: [u8; BUCKETS] = bucket_table();
 
 /// Of each bucket the code of its lower end in the upper half, and in the lower half what has to be
 /// added to a number's bits below the bucket number to carry into the code where the next threshold
-/// is reached. As long as a power of two, so that no index is too large.
-static BUCKET_STEP: [u32; 2048] = step_table();
+/// is reached; all of it in the upper half of a word, as [`Encoding::look_up`] puts two into one. As
+/// long as a power of two, so that no index is too large.
+static BUCKET_STEP: [u64; 1 << INDEX_BITS] = step_table();
 
-const fn step_table() -> [u32; 2048] {
+/// Bits of a bucket's number.
+const INDEX_BITS: u32 = 11;
+
+const fn step_table() -> [u64; 1 << INDEX_BITS] {
     let (threshold, code) = (threshold_table(), bucket_table());
-    let mut table = [255 << 16; 2048];
+    let mut table = [255 << (32 + BUCKET_SHIFT); 1 << INDEX_BITS];
     let mut bucket = 0;
     while bucket < BUCKETS {
         let next = threshold[code[bucket] as usize].to_bits();
         let within = next >> BUCKET_SHIFT == bucket as u32 + FIRST_BUCKET;
         let carry =
             if within { (1 << BUCKET_SHIFT) - (next & ((1 << BUCKET_SHIFT) - 1)) } else { 0 };
-        table[bucket] = ((code[bucket] as u32) << BUCKET_SHIFT) + carry;
+        table[bucket] = (((code[bucket] as u64) << BUCKET_SHIFT) + carry as u64) << 32;
         bucket += 1;
     }
     table
@@ -143,22 +147,24 @@ pub fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32x16<S> 
 /// other: vectors that are stored are then long there when their numbers are read one by one, and the other way round.
 #[derive(Clone, Copy)]
 pub(crate) struct Encoding {
-    /// By channel the buckets, later the steps.
-    steps: [[u32; 16]; 3],
+    /// By channel the buckets, each in the highest bits of 32, later the steps. Two are in one word, so half as many
+    /// are read and written.
+    steps: [[u64; 8]; 3],
     /// By channel the bits below the buckets.
     below: [[u32; 16]; 3],
 }
 
 impl Encoding {
     /// None yet.
-    pub const NONE: Self = Self { steps: [[0; 16]; 3], below: [[0; 16]; 3] };
+    pub const NONE: Self = Self { steps: [[0; 8]; 3], below: [[0; 16]; 3] };
 
     /// The buckets of colours.
     #[inline(always)]
     pub fn new<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> Self {
         let (r, g, b) = (buckets_x16(simd, r), buckets_x16(simd, g), buckets_x16(simd, b));
+        let two = |of: u32x16<S>| of.bitcast::<u64x8<S>>().into();
         Self {
-            steps: [r[0].into(), g[0].into(), b[0].into()],
+            steps: [two(r[0]), two(g[0]), two(b[0])],
             below: [r[1].into(), g[1].into(), b[1].into()],
         }
     }
@@ -167,8 +173,10 @@ impl Encoding {
     #[inline(always)]
     pub fn look_up(&mut self) {
         for steps in &mut self.steps {
-            for step in steps {
-                *step = BUCKET_STEP[*step as usize % 2048];
+            for two in steps {
+                let first = *two as u32 >> (32 - INDEX_BITS);
+                let second = *two >> (64 - INDEX_BITS);
+                *two = BUCKET_STEP[first as usize] >> 32 | BUCKET_STEP[second as usize];
             }
         }
     }
@@ -177,8 +185,8 @@ impl Encoding {
     #[inline(always)]
     pub fn codes<S: Simd>(&self, simd: S) -> u32x16<S> {
         let [r, g, b] = &self.steps;
-        let (steps_r, steps_g) = (u32x16::from_slice(simd, r), u32x16::from_slice(simd, g));
-        let steps_b = u32x16::from_slice(simd, b);
+        let steps = |of: &[u64; 8]| u64x8::from_slice(simd, of).bitcast::<u32x16<S>>();
+        let (steps_r, steps_g, steps_b) = (steps(r), steps(g), steps(b));
         let [r, g, b] = &self.below;
         let (r, g) = (u32x16::from_slice(simd, r), u32x16::from_slice(simd, g));
         let b = u32x16::from_slice(simd, b);
@@ -188,7 +196,7 @@ impl Encoding {
     }
 }
 
-/// The buckets of linear values, and what is below in their bits.
+/// The buckets of linear values, each in the highest bits, and what is below in their bits.
 #[inline(always)]
 fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     // From the first bucket to the largest number below 1; NaN is not above the first.
@@ -197,7 +205,8 @@ fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
     let linear = linear.simd_gt(least).select(linear, least);
     let linear = linear.simd_lt(most).select(linear, most);
     let bits: u32x16<S> = linear.bitcast();
-    [(bits >> BUCKET_SHIFT) - FIRST_BUCKET, bits & ((1 << BUCKET_SHIFT) - 1)]
+    let bucket = (bits - (FIRST_BUCKET << BUCKET_SHIFT)) << (32 - INDEX_BITS - BUCKET_SHIFT);
+    [bucket, bits & ((1 << BUCKET_SHIFT) - 1)]
 }
 
 /// Linear RGBA to 8-bit sRGB with 8-bit linear alpha.

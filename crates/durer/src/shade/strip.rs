@@ -26,8 +26,8 @@ const TEXELS_OF_PATCH: usize = 32;
 /// Texels that are decoded at most.
 const MOST_TEXELS: usize = MOST_PATCHES * TEXELS_OF_PATCH;
 
-/// Rows of at most as many texels are copied in one go.
-const COPIED: usize = 16;
+/// Rows of at most as many texels are copied in one go, and of at most twice as many in a wider one.
+const COPIED: usize = 8;
 
 /// Points of one unlit material that shows a texture, and the texels around them.
 pub struct Strip {
@@ -245,14 +245,13 @@ impl PreparedTexture<'_> {
             let y = inside((top + i as i32).into(), height, self.sampler.wrap_v) as usize;
             let from = texels.get(y * width as usize..).unwrap_or(&[]);
             let to = &mut out[i * columns..];
-            if is_inside && columns <= COPIED {
-                // All in one width, though there are fewer: what is behind them comes later.
-                let from = from.get(left as usize..).unwrap_or(&[]);
-                if let (Some(from), Some(to)) = (from.first_chunk(), to.first_chunk_mut()) {
-                    let from: &[[u8; 4]; COPIED] = from;
-                    *to = *from;
-                    continue;
-                }
+            // All in one width, though there are fewer: what is behind them comes later.
+            let from_left = from.get(left as usize..).unwrap_or(&[]);
+            if is_inside
+                && (columns <= COPIED && copy_chunk::<COPIED>(from_left, to)
+                    || columns <= 2 * COPIED && copy_chunk::<{ 2 * COPIED }>(from_left, to))
+            {
+                continue;
             }
             for (x, to) in (left..).zip(to).take(columns) {
                 let texel = from.get(inside(x.into(), width, self.sampler.wrap_u) as usize);
@@ -274,6 +273,16 @@ impl PreparedTexture<'_> {
             }
         }
     }
+}
+
+/// Copies so many texels, if there is room for them on both sides.
+#[inline(always)]
+fn copy_chunk<const COUNT: usize>(from: &[[u8; 4]], to: &mut [[u8; 4]]) -> bool {
+    let (Some(from), Some(to)) = (from.first_chunk::<COUNT>(), to.first_chunk_mut()) else {
+        return false;
+    };
+    *to = *from;
+    true
 }
 
 #[cfg(test)]
