@@ -6,6 +6,9 @@
 //!
 //! Source: see [`Sampled`]. Cost: O(1) for each triangle.
 
+#[cfg(test)]
+mod tests;
+
 use super::bins::TileGrid;
 use super::tile::{SamplePlane, TILE};
 use crate::visibility::surface::gather::four_rows;
@@ -21,6 +24,30 @@ const PIXEL_BITS: u32 = 2 * TILE.trailing_zeros();
 
 /// Screens of more tiles have places that do not fit 32 bits; nothing is sampled there before its time.
 pub const MOST_TILES: u32 = 1 << (32 - PIXEL_BITS);
+
+/// Bits of an item's number that are kept with a sample of it; the items of a block have the others in common.
+const ITEM_BITS: u32 = 32 - PIXEL_BITS;
+
+/// The bits of an item's number that are kept with its samples.
+const LOW_BITS: u32 = (1 << ITEM_BITS) - 1;
+
+/// A pixel of a tile, and in the lower bits those of an item.
+#[derive(Debug, Clone, Copy)]
+struct Seen(u32);
+
+impl Seen {
+    /// An item at a place on the screen, as of [`place`].
+    #[inline(always)]
+    fn new(place: u32, item: u32) -> Self {
+        Self((place << ITEM_BITS) | (item & LOW_BITS))
+    }
+
+    /// The pixel in its tile, and the item; its block knows the upper bits.
+    #[inline(always)]
+    fn pixel_and_item(self, upper: u32) -> (usize, u32) {
+        ((self.0 >> ITEM_BITS) as usize, upper | (self.0 & LOW_BITS))
+    }
+}
 
 /// Depth test and write of an item at a pixel of a tile; whether it is seen.
 #[inline(always)]
@@ -39,17 +66,16 @@ fn draw(plane: &mut SamplePlane, pixel: usize, depth: f32, item: u32) -> bool {
 /// A sample that a small triangle covers.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
-    /// The pixel in its tile.
-    pixel: u32,
-    item: u32,
+    seen: Seen,
     depth: f32,
 }
 
 impl Sample {
-    /// Depth test and write.
+    /// Depth test and write; the block's items have these upper bits.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane) {
-        draw(plane, self.pixel as usize, self.depth, self.item);
+    pub fn draw(&self, plane: &mut SamplePlane, upper: u32) {
+        let (pixel, item) = self.seen.pixel_and_item(upper);
+        draw(plane, pixel, self.depth, item);
     }
 }
 
@@ -58,20 +84,18 @@ impl Sample {
 pub struct Fragment {
     /// The normal of the side that is seen, of any length, NaN where it is to be found when it is asked for; and the depth.
     found: [f32; 4],
-    /// The pixel in its tile.
-    pixel: u32,
-    item: u32,
+    seen: Seen,
 }
 
 impl Fragment {
-    /// Depth test and write; in `known` its normal.
+    /// Depth test and write; in `known` its normal. The block's items have these upper bits.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane, known: Option<&mut KnownNormals>) {
-        let (pixel, depth) = (self.pixel as usize, self.found[3]);
-        if draw(plane, pixel, depth, self.item)
+    pub fn draw(&self, plane: &mut SamplePlane, upper: u32, known: Option<&mut KnownNormals>) {
+        let (pixel, item) = self.seen.pixel_and_item(upper);
+        if draw(plane, pixel, self.found[3], item)
             && let Some(known) = known
         {
-            known.set(pixel, self.item, self.found);
+            known.set(pixel, item, self.found);
         }
     }
 }
@@ -85,7 +109,10 @@ pub struct Tiles<T> {
 struct Blocks<T> {
     /// Where the next comes to; full or without room when there is none.
     open: Vec<T>,
-    full: Vec<Vec<T>>,
+    /// The upper bits of items there.
+    upper: u32,
+    /// Those before, with the upper bits of their items.
+    full: Vec<(u32, Vec<T>)>,
 }
 
 /// The least and the most that a block holds: each next one four times as much.
@@ -99,18 +126,21 @@ impl<T> Default for Tiles<T> {
 
 impl<T> Tiles<T> {
     #[inline(always)]
-    fn push(&mut self, place: u32, thing: T) {
+    fn push(&mut self, place: u32, item: u32, thing: T) {
         let tile = &mut self.by_tile[(place >> PIXEL_BITS) as usize];
-        if tile.open.len() == tile.open.capacity() {
-            tile.open_next();
+        let upper = item & !LOW_BITS;
+        if tile.open.len() == tile.open.capacity() || tile.upper != upper {
+            tile.open_next(upper);
         }
         tile.open.push(thing);
     }
 
-    /// What is in a tile, block by block.
-    pub fn of(&self, tile: u32) -> impl Iterator<Item = &[T]> + '_ {
-        let of_tile = self.by_tile.get(tile as usize).into_iter();
-        of_tile.flat_map(|Blocks { full, open }| full.iter().chain([open]).map(Vec::as_slice))
+    /// What is in a tile, block by block, with the upper bits of its items.
+    pub fn of(&self, tile: u32) -> impl Iterator<Item = (u32, &[T])> + '_ {
+        self.by_tile.get(tile as usize).into_iter().flat_map(|Blocks { full, open, upper }| {
+            let full = full.iter().map(|(upper, block)| (*upper, block.as_slice()));
+            full.chain([(*upper, open.as_slice())])
+        })
     }
 
     /// Whether there is nothing in a tile.
@@ -121,18 +151,19 @@ impl<T> Tiles<T> {
 
 impl<T> Default for Blocks<T> {
     fn default() -> Self {
-        Self { open: Vec::new(), full: Vec::new() }
+        Self { open: Vec::new(), upper: 0, full: Vec::new() }
     }
 }
 
 impl<T> Blocks<T> {
     #[cold]
-    fn open_next(&mut self) {
+    fn open_next(&mut self, upper: u32) {
         let [least, most] = BLOCK;
         let size = (4 * self.open.len()).clamp(least, most);
         let full = std::mem::replace(&mut self.open, Vec::with_capacity(size));
+        let of_full = std::mem::replace(&mut self.upper, upper);
         if !full.is_empty() {
-            self.full.push(full);
+            self.full.push((of_full, full));
         }
     }
 }
@@ -219,11 +250,12 @@ impl Queue {
                 let found = lines.at(simd, lane, pixel);
                 let [column, row] = place_in_box(pixel);
                 let place = place(this.first[0][lane] + column, this.first[1][lane] + row, columns);
-                let (pixel, item) = (place % (1 << PIXEL_BITS), this.items[lane]);
+                let item = this.items[lane];
+                let seen = Seen::new(place, item);
                 if normals.is_some() {
-                    fragments.with_normals.push(place, Fragment { found, pixel, item });
+                    fragments.with_normals.push(place, item, Fragment { found, seen });
                 } else {
-                    fragments.samples.push(place, Sample { pixel, item, depth: found[3] });
+                    fragments.samples.push(place, item, Sample { seen, depth: found[3] });
                 }
             }
         }

@@ -281,11 +281,13 @@ impl<'a> Frame<'a> {
         // There are none where pixels have several samples.
         let [plane] = planes else { return any };
         for fragments in self.fragments {
-            for block in fragments.with_normals.of(index) {
-                block.iter().for_each(|fragment| fragment.draw(plane, known.as_deref_mut()));
+            for (upper, block) in fragments.with_normals.of(index) {
+                for fragment in block {
+                    fragment.draw(plane, upper, known.as_deref_mut());
+                }
             }
-            for block in fragments.samples.of(index) {
-                block.iter().for_each(|sample| sample.draw(plane));
+            for (upper, block) in fragments.samples.of(index) {
+                block.iter().for_each(|sample| sample.draw(plane, upper));
             }
             any |= !fragments.nothing_in(index);
         }
