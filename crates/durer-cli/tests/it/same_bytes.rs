@@ -1,8 +1,9 @@
 //! Same input, same bytes: every command that writes something, on one, two and four threads, and at each
-//! SIMD level.
+//! SIMD level; some of them on the processor that valgrind makes believe.
 
-use crate::harness::Folder;
+use crate::harness::{Ended, Folder};
 use std::path::Path;
+use std::process::Command;
 
 /// What comes after `durer`, and the file it writes; later ones read what earlier ones wrote.
 const COMMANDS: &[(&str, &str)] = &[
@@ -47,8 +48,22 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
 ];
 
+/// What of that runs under valgrind too: some fifty times as long.
+const UNDER_VALGRIND: &[&str] = &["textured.png", "lines.svg", "window.geojson", "drawn_svg.png"];
+
 /// Runs all commands; the bytes of everything in the folder, by name.
 fn written(how: &str) -> Vec<(String, Vec<u8>)> {
+    let folder = samples();
+    for (command, out) in COMMANDS {
+        folder.must(&format!("{} {how}", with_output(command, out)));
+        assert!(folder.path(out).exists(), "{command}");
+    }
+    let names = folder.names().into_iter();
+    names.map(|name| (name.clone(), folder.read(&name))).collect()
+}
+
+/// A folder with all samples.
+fn samples() -> Folder {
     let folder = Folder::new();
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples");
     for entry in std::fs::read_dir(samples).expect("samples are part of the repository") {
@@ -56,14 +71,14 @@ fn written(how: &str) -> Vec<(String, Vec<u8>)> {
         let name = path.file_name().expect("a name").to_string_lossy();
         folder.write(&name, std::fs::read(&path).expect("a sample"));
     }
-    for (command, out) in COMMANDS {
-        let pixels = command.starts_with("render") && out.ends_with(".png");
-        let size = if pixels { "--size 96x80" } else { "" };
-        folder.must(&format!("{command} {size} -o {out} {how}"));
-        assert!(folder.path(out).exists(), "{command}");
-    }
-    let names = folder.names().into_iter();
-    names.map(|name| (name.clone(), folder.read(&name))).collect()
+    folder
+}
+
+/// A command that writes a file; pictures of models are small.
+fn with_output(command: &str, out: &str) -> String {
+    let pixels = command.starts_with("render") && out.ends_with(".png");
+    let size = if pixels { "--size 96x80" } else { "" };
+    format!("{command} {size} -o {out}")
 }
 
 fn are_the_same_bytes(how: impl Iterator<Item = String>) {
@@ -86,4 +101,36 @@ fn all_commands_write_the_same_bytes_at_any_simd_level() {
     let levels = durer::simd::levels();
     assert!(!levels.is_empty());
     are_the_same_bytes(levels.iter().map(|&level| format!("--simd {}", durer::simd::name(level))));
+}
+
+/// valgrind has no AVX-512, counts cycles of its own and runs one thread at a time; it also tells what is read or written
+/// out of bounds.
+#[test]
+fn commands_write_the_same_bytes_under_valgrind() {
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        println!("skipped: there is no valgrind");
+        return;
+    }
+    let folder = samples();
+    let chosen = COMMANDS.iter().filter(|(_, out)| UNDER_VALGRIND.contains(out));
+    assert_eq!(chosen.clone().count(), UNDER_VALGRIND.len());
+    for (command, out) in chosen {
+        let arguments = with_output(command, out);
+        folder.must(&arguments);
+        let expected = folder.read(out);
+        std::fs::remove_file(folder.path(out)).expect("was there");
+        let direct = folder.command(&format!("{arguments} --threads 2"));
+        // Values that are not initialized are told falsely where both ways of a branch are taken ahead of it.
+        let valgrind = ["-q", "--undef-value-errors=no", "--error-exitcode=99"];
+        let ended = Command::new("valgrind")
+            .args(valgrind)
+            .arg(direct.get_program())
+            .args(direct.get_args())
+            .current_dir(folder.path(""))
+            .output()
+            .map(Ended::of)
+            .expect("valgrind is there");
+        assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
+        assert!(folder.read(out) == expected, "{out}");
+    }
 }
