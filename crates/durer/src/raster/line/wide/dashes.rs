@@ -58,20 +58,12 @@ pub(super) fn dashed(
     if period(stroke) <= 0.0 {
         return None;
     }
-    let mut at = None;
-    let source: BezPath = path
-        .map(|element| {
-            let element = to_kurbo(element);
-            let (end, start) = (element.end_point(), at);
-            at = end.or(at);
-            match (element, start, end) {
-                (PathEl::QuadTo(..) | PathEl::CurveTo(..), Some(start), Some(end))
-                    if chain_length(start, element) < SHORTEST =>
-                {
-                    PathEl::LineTo(end)
-                }
-                _ => element,
+    let source: BezPath = with_ends(path.map(to_kurbo))
+        .map(|(start, element, end)| match element {
+            PathEl::QuadTo(..) | PathEl::CurveTo(..) if chain_length(start, element) < SHORTEST => {
+                PathEl::LineTo(end)
             }
+            _ => element,
         })
         .collect();
     let source = with_dots(&source, (stroke.cap != Cap::Butt).then_some(stroke.width));
@@ -105,35 +97,40 @@ pub(super) fn dashed(
 fn chords(path: &BezPath, length: f64, tolerance: f64) -> BezPath {
     let tolerance = tolerance.max(length * 1e-7);
     let (mut out, mut points) = (BezPath::new(), Vec::new());
-    let (mut start, mut at) = (Point::ORIGIN, Point::ORIGIN);
-    for &element in path.elements() {
+    for (start, element, _) in with_ends(path.iter()) {
         match element {
             PathEl::QuadTo(..) | PathEl::CurveTo(..) => {
-                chain(DVec2::new(at.x, at.y), &from_kurbo(element), tolerance, &mut points);
+                chain(DVec2::new(start.x, start.y), &from_kurbo(element), tolerance, &mut points);
                 points.drain(..).for_each(|p| out.line_to((p.x, p.y)));
             }
             _ => out.push(element),
         }
-        if let PathEl::MoveTo(p) = element {
-            start = p;
-        }
-        at = element.end_point().unwrap_or(start);
     }
     out
 }
 
+/// Elements with the points where they start and where they end; every contour begins with its start.
+fn with_ends(
+    elements: impl Iterator<Item = PathEl>,
+) -> impl Iterator<Item = (Point, PathEl, Point)> {
+    let (mut first, mut at) = (Point::ORIGIN, Point::ORIGIN);
+    elements.map(move |element| {
+        if let PathEl::MoveTo(p) = element {
+            first = p;
+        }
+        let start = std::mem::replace(&mut at, element.end_point().unwrap_or(first));
+        (start, element, at)
+    })
+}
+
 /// The lengths of the lines through all control points, which are not less than those of the curves.
 fn control_length(path: &BezPath) -> f64 {
-    let (mut start, mut at, mut sum) = (Point::ORIGIN, Point::ORIGIN, 0.0);
-    for &element in path.elements() {
-        match element {
-            PathEl::MoveTo(p) => start = p,
-            PathEl::ClosePath => sum += at.distance(start),
-            _ => sum += chain_length(at, element),
-        }
-        at = element.end_point().unwrap_or(start);
-    }
-    sum
+    with_ends(path.iter())
+        .map(|(start, element, end)| match element {
+            PathEl::ClosePath => start.distance(end),
+            _ => chain_length(start, element),
+        })
+        .sum()
 }
 
 /// The same of one element that begins at a point; of what only moves or closes it is 0.

@@ -65,7 +65,7 @@ fn draw(plane: &mut SamplePlane, pixel: usize, depth: f32, item: u32) -> bool {
 
 /// A sample that a small triangle covers.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
+struct Sample {
     seen: Seen,
     depth: f32,
 }
@@ -73,7 +73,7 @@ pub struct Sample {
 impl Sample {
     /// Depth test and write; the block's items have these upper bits.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane, upper: u32) {
+    fn draw(&self, plane: &mut SamplePlane, upper: u32) {
         let (pixel, item) = self.seen.pixel_and_item(upper);
         draw(plane, pixel, self.depth, item);
     }
@@ -81,7 +81,7 @@ impl Sample {
 
 /// A sample with its normal.
 #[derive(Debug, Clone, Copy)]
-pub struct Fragment {
+struct Fragment {
     /// The normal of the side that is seen, of any length, NaN where it is to be found when it is asked for; and the depth.
     found: [f32; 4],
     seen: Seen,
@@ -90,7 +90,7 @@ pub struct Fragment {
 impl Fragment {
     /// Depth test and write; in `known` its normal. The block's items have these upper bits.
     #[inline(always)]
-    pub fn draw(&self, plane: &mut SamplePlane, upper: u32, known: Option<&mut KnownNormals>) {
+    fn draw(&self, plane: &mut SamplePlane, upper: u32, known: Option<&mut KnownNormals>) {
         let (pixel, item) = self.seen.pixel_and_item(upper);
         if draw(plane, pixel, self.found[3], item)
             && let Some(known) = known
@@ -101,7 +101,7 @@ impl Fragment {
 }
 
 /// Things by the tiles that they are in, in blocks that stay where they are.
-pub struct Tiles<T> {
+struct Tiles<T> {
     by_tile: Vec<Blocks<T>>,
 }
 
@@ -136,7 +136,7 @@ impl<T> Tiles<T> {
     }
 
     /// What is in a tile, block by block, with the upper bits of its items.
-    pub fn of(&self, tile: u32) -> impl Iterator<Item = (u32, &[T])> + '_ {
+    fn of(&self, tile: u32) -> impl Iterator<Item = (u32, &[T])> + '_ {
         self.by_tile.get(tile as usize).into_iter().flat_map(|Blocks { full, open, upper }| {
             let full = full.iter().map(|(upper, block)| (*upper, block.as_slice()));
             full.chain([(*upper, open.as_slice())])
@@ -144,7 +144,7 @@ impl<T> Tiles<T> {
     }
 
     /// Whether there is nothing in a tile.
-    pub fn nothing_in(&self, tile: u32) -> bool {
+    fn nothing_in(&self, tile: u32) -> bool {
         self.by_tile.get(tile as usize).is_none_or(|of_tile| of_tile.open.is_empty())
     }
 }
@@ -172,12 +172,24 @@ impl<T> Blocks<T> {
 #[derive(Default)]
 pub struct Fragments {
     /// Where normals were made.
-    pub with_normals: Tiles<Fragment>,
+    with_normals: Tiles<Fragment>,
     /// The others.
-    pub samples: Tiles<Sample>,
+    samples: Tiles<Sample>,
 }
 
 impl Fragments {
+    /// Draws those in a tile; in `known` the normals of what is seen.
+    pub fn draw(&self, plane: &mut SamplePlane, mut known: Option<&mut KnownNormals>, tile: u32) {
+        for (upper, block) in self.with_normals.of(tile) {
+            for fragment in block {
+                fragment.draw(plane, upper, known.as_deref_mut());
+            }
+        }
+        for (upper, block) in self.samples.of(tile) {
+            block.iter().for_each(|sample| sample.draw(plane, upper));
+        }
+    }
+
     /// Whether there are none in a tile.
     pub fn nothing_in(&self, tile: u32) -> bool {
         self.with_normals.nothing_in(tile) && self.samples.nothing_in(tile)

@@ -281,14 +281,7 @@ impl<'a> Frame<'a> {
         // There are none where pixels have several samples.
         let [plane] = planes else { return any };
         for fragments in self.fragments {
-            for (upper, block) in fragments.with_normals.of(index) {
-                for fragment in block {
-                    fragment.draw(plane, upper, known.as_deref_mut());
-                }
-            }
-            for (upper, block) in fragments.samples.of(index) {
-                block.iter().for_each(|sample| sample.draw(plane, upper));
-            }
+            fragments.draw(plane, known.as_deref_mut(), index);
             any |= !fragments.nothing_in(index);
         }
         any

@@ -51,12 +51,7 @@ fn nearest(
 ) -> Vec<(u32, i32)> {
     let mut planes = SamplePlane::of(&[[0; 2]]);
     planes[0].clear(None);
-    for (upper, block) in fragments.with_normals.of(tile) {
-        block.iter().for_each(|fragment| fragment.draw(&mut planes[0], upper, None));
-    }
-    for (upper, block) in fragments.samples.of(tile) {
-        block.iter().for_each(|sample| sample.draw(&mut planes[0], upper));
-    }
+    fragments.draw(&mut planes[0], None, tile);
     let size = [0, 1].map(|axis| TILE.min(SIZE[axis] - at[axis]));
     dispatch!(level, simd =>
         rasterize(simd, &mut planes, [at, size], bins.of_tile(tile), None::<&mut AllPass>));
