@@ -75,6 +75,26 @@ pub struct Material {
     pub specular_texture: Option<TextureRef>,
     /// Phong: the exponent of Blinn's halfway form.
     pub shininess: f32,
+    /// Metallic-roughness: refractive index of the dielectric part, at least 1; 1.5 reflects 4 % of
+    /// the light that falls on it straight (KHR_materials_ior).
+    pub ior: f32,
+    /// Metallic-roughness: strength of the dielectric part's reflection, 0 … 1 (KHR_materials_specular).
+    pub specular_strength: f32,
+    /// Metallic-roughness: linear colour of the dielectric part's reflection straight on
+    /// (KHR_materials_specular).
+    pub specular_tint: Vec3,
+    /// Metallic-roughness: strength of a clear layer over the surface, 0 … 1 (KHR_materials_clearcoat).
+    pub clearcoat: f32,
+    /// Perceptual roughness of the clear layer.
+    pub clearcoat_roughness: f32,
+    /// Metallic-roughness: linear colour of light that fibres scatter at grazing angles; black = none
+    /// (KHR_materials_sheen).
+    pub sheen_color: Vec3,
+    /// Perceptual roughness of the fibres.
+    pub sheen_roughness: f32,
+    /// Metallic-roughness: part of the light that the dielectric lets through instead of scattering it
+    /// diffusely, 0 … 1 (KHR_materials_transmission).
+    pub transmission: f32,
     /// What alpha means.
     pub alpha_mode: AlphaMode,
     /// Whether back faces are seen, with the normal turned over.
@@ -101,6 +121,14 @@ impl Default for Material {
             specular: Vec3::splat(0.2),
             specular_texture: None,
             shininess: 32.0,
+            ior: 1.5,
+            specular_strength: 1.0,
+            specular_tint: Vec3::ONE,
+            clearcoat: 0.0,
+            clearcoat_roughness: 0.0,
+            sheen_color: Vec3::ZERO,
+            sheen_roughness: 0.0,
+            transmission: 0.0,
             alpha_mode: AlphaMode::Opaque,
             double_sided: true,
         }
