@@ -10,7 +10,7 @@ use durer::view::layout::Layout;
 use durer::view::projection::{FitOptions, Lens, NamedView, ViewDirection};
 
 /// Angle of view of a fitted camera, degrees: like a lens of 70 mm on a full frame.
-const FOV: f64 = 30.0;
+pub const FOV: f64 = 30.0;
 
 /// The part of the picture that a fitted model leaves free at each border.
 const MARGIN: f64 = 0.03;

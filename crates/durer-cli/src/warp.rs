@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::messages::Messages;
 use crate::output::{self, Name};
 use crate::values::{self, Size};
-use crate::{color, input, report};
+use crate::{camera, color, input, report};
 use clap::{Args, ValueHint};
 use durer::math::DVec3;
 use durer::scene::{Camera, Projection};
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 pub const EXAMPLES: &str = "\
 Examples:
   durer render part.stl -o a.png --depth a_depth.png --eye 8,3,9 --target 0,0,0 --near 4 --far 20
-  durer warp a.png a_depth.png -o b.png --eye 8,3,9 --target 0,0,0 --fov 30 --near 4 --far 20 \\
+  durer warp a.png a_depth.png -o b.png --eye 8,3,9 --target 0,0,0 --near 4 --far 20 \\
     --to-eye 8.5,3,8.6
   `durer render --json` tells the camera of each picture. Holes are what the picture does not show;
   --fill names a second picture that may.
@@ -49,8 +49,8 @@ pub struct WarpArgs {
     /// What was up in the picture
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,1,0", value_parser = values::direction)]
     pub up: DVec3,
-    /// Its vertical angle of view in degrees
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::angle_of_view, required_unless_present = "ortho", conflicts_with = "ortho")]
+    /// Its vertical angle of view in degrees [default: 30, as of `render`]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::angle_of_view, conflicts_with = "ortho")]
     pub fov: Option<f64>,
     /// For a parallel projection: the height of the view in world units
     #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = values::positive)]
@@ -169,7 +169,7 @@ fn tell(
 fn camera(args: &WarpArgs) -> Camera {
     let projection = match args.ortho {
         Some(height) => Projection::Orthographic { height },
-        None => Projection::Perspective { fov_y: args.fov.unwrap_or(30.0).to_radians() },
+        None => Projection::Perspective { fov_y: args.fov.unwrap_or(camera::FOV).to_radians() },
     };
     let WarpArgs { eye, target, up, near, far, .. } = *args;
     Camera { eye, target, up, projection, near, far }

@@ -8,7 +8,11 @@
 //! all pictures + pixels lit); memory O(pixels of the new picture).
 //!
 //! Limits: what no picture shows is a hole; colours are those seen from the old eye; pixels that become
-//! larger than [`LARGEST`] are left out. What lies at depth 1 is background and moves with the far plane.
+//! larger than [`LARGEST`] are left out. At depth 1 nothing is: such pixels are taken to be endlessly far,
+//! and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the
+//! surface whose depth they have.
+
+mod unmixed;
 
 use crate::info::{Class, Info};
 use crate::math::{DMat4, DVec2, DVec3, DVec4};
@@ -76,8 +80,11 @@ pub enum Step {
         to: DVec2,
         /// Its depth there.
         depth: f64,
+        /// Its colour, without that of others at a smoothed outline.
+        color: [u8; 4],
     },
-    /// The pixel moved last is the nearest so far at a pixel of the new picture.
+    /// The pixel moved last is the nearest so far at a pixel of the new picture. What is nearest in an
+    /// earlier picture stays, and surfaces hide what has depth 1 in all of them.
     Write {
         /// Column and row.
         at: [u32; 2],
@@ -98,8 +105,8 @@ pub struct Warped {
 /// The source of a pixel that no picture shows.
 pub const HOLE: u32 = u32::MAX;
 
-/// Makes the view of a camera from pictures: the first where it shows something, holes from the second,
-/// and so on.
+/// Makes the view of a camera from pictures: the surfaces of the first, where it shows none those of the
+/// second, and so on; then, where no picture has a surface, what is behind everything.
 ///
 /// # Errors
 /// [`Error::Parameter`] where a picture's depth has another size than its colours, or a camera cannot
@@ -115,15 +122,19 @@ pub fn warp(
     let mut framebuffer = Framebuffer::new(width, height).with_depth();
     framebuffer.color.data_mut().fill(options.hole);
     let mut chosen = Pixels::new(width, height, HOLE);
-    for (index, source) in sources.iter().enumerate() {
-        let mut layer = Layer::new(width, height);
-        layer.splat_all(index, source, &view, t)?;
+    let layers: Vec<Layer> = (0..)
+        .zip(sources)
+        .map(|(index, source)| Layer::of(index, source, &view, t))
+        .collect::<Result<_>>()?;
+    let surfaces = layers.iter().map(|layer| &layer.nearest);
+    let nothing = layers.iter().map(|layer| &layer.nothing);
+    for (index, found) in (0..).zip(surfaces).chain((0..).zip(nothing)) {
         let depths = framebuffer.depth.iter_mut().flat_map(|d| d.data_mut());
         let colors = framebuffer.color.data_mut().iter_mut();
         let planes = chosen.data_mut().iter_mut().zip(depths).zip(colors);
-        for (((chosen, depth), color), found) in planes.zip(&layer.nearest) {
+        for (((chosen, depth), color), found) in planes.zip(found) {
             if let (HOLE, Some((z, rgba))) = (*chosen, found) {
-                (*chosen, *depth, *color) = (index as u32, *z as f32, *rgba);
+                (*chosen, *depth, *color) = (index, *z as f32, *rgba);
             }
         }
     }
@@ -135,22 +146,18 @@ pub fn warp(
 struct Layer {
     width: u32,
     height: u32,
-    /// Depth and colour of the nearest so far.
+    /// Depth and colour of the nearest surface so far.
     nearest: Vec<Option<(f64, [u8; 4])>>,
+    /// The colour of what is behind everything.
+    nothing: Vec<Option<(f64, [u8; 4])>>,
 }
 
 impl Layer {
-    fn new(width: u32, height: u32) -> Self {
-        Self { width, height, nearest: vec![None; width as usize * height as usize] }
-    }
-
-    fn splat_all(
-        &mut self,
-        index: usize,
-        source: &Source<'_>,
-        view: &View,
-        t: &mut impl Tracer<Step>,
-    ) -> Result<()> {
+    /// What the picture of an index shows.
+    fn of(index: u32, source: &Source<'_>, view: &View, t: &mut impl Tracer<Step>) -> Result<Self> {
+        let (width, height) = (view.width(), view.height());
+        let none = vec![None; width as usize * height as usize];
+        let mut layer = Self { width, height, nearest: none.clone(), nothing: none };
         let (w, h) = (source.color.width(), source.color.height());
         if (source.depth.width(), source.depth.height()) != (w, h) {
             let size = format!("{}x{}", source.depth.width(), source.depth.height());
@@ -161,31 +168,40 @@ impl Layer {
         if !new_from_old.is_finite() {
             return Err(Error::parameter("camera", "one of the pictures'", "able to be inverted"));
         }
+        let endless = endless(&old, view);
+        let colors = unmixed::unmixed(source);
         for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
             let depth = f64::from(source.depth.get(x, y).unwrap_or(1.0));
-            let Some(rgba) = source.color.get(x, y).filter(|_| (0.0..=1.0).contains(&depth)) else {
+            let Some(color) = colors.get(x, y).filter(|_| (0.0..=1.0).contains(&depth)) else {
                 continue;
             };
-            let slope = slope(source.depth, x, y);
             let center = DVec3::new(f64::from(x) + 0.5, f64::from(y) + 0.5, depth);
-            let Some(to) = moved(&new_from_old, center) else { continue };
+            let is_nothing = depth >= 1.0;
+            let slope = if is_nothing { DVec2::ZERO } else { slope(source.depth, x, y) };
+            let moving = if is_nothing { &endless } else { &new_from_old };
+            let Some(mut to) = moved(moving, center) else { continue };
+            if is_nothing {
+                to.z = 1.0;
+            }
             t.step(|| {
                 let (to, depth) = (to.truncate(), to.z);
-                Step::Move { source: index, from: [x, y], to, depth }
+                Step::Move { source: index as usize, from: [x, y], to, depth, color }
             });
-            if let Some(mut corners) = corners(&new_from_old, center, slope) {
-                if depth >= 1.0 {
-                    // Background stays background, wherever the new far plane is.
-                    corners.iter_mut().for_each(|c| c.z = 1.0);
-                }
-                self.splat(&corners, rgba, t);
+            if let Some(corners) = corners(moving, center, slope) {
+                layer.splat(&corners, color, is_nothing, t);
             }
         }
-        Ok(())
+        Ok(layer)
     }
 
     /// Lights the pixels whose centres lie in a square, where it is nearer than what is there.
-    fn splat(&mut self, corners: &[DVec3; 4], rgba: [u8; 4], t: &mut impl Tracer<Step>) {
+    fn splat(
+        &mut self,
+        corners: &[DVec3; 4],
+        rgba: [u8; 4],
+        is_nothing: bool,
+        t: &mut impl Tracer<Step>,
+    ) {
         let flat = corners.map(|c| c.truncate());
         let (lo, hi) = flat.iter().fold((flat[0], flat[0]), |(l, h), &p| (l.min(p), h.max(p)));
         let size = DVec2::new(f64::from(self.width), f64::from(self.height));
@@ -205,8 +221,9 @@ impl Layer {
             let Some(z) = depth_in([a, b, c], p).or_else(|| depth_in([a, c, d], p)) else {
                 continue;
             };
-            let Some(place) = self.nearest.get_mut(y as usize * self.width as usize + x as usize)
-            else {
+            let z = if is_nothing { 1.0 } else { z };
+            let plane = if is_nothing { &mut self.nothing } else { &mut self.nearest };
+            let Some(place) = plane.get_mut(y as usize * self.width as usize + x as usize) else {
                 continue;
             };
             if (0.0..=1.0).contains(&z) && place.is_none_or(|(kept, _)| z < kept) {
@@ -215,6 +232,25 @@ impl Layer {
             }
         }
     }
+}
+
+/// Takes pixels of the old screen to the new one as if they were endlessly far: by the turn of the
+/// camera alone. Where projection lines are parallel, they stay where they are in the picture.
+fn endless(old: &View, new: &View) -> DMat4 {
+    let size = |view: &View| DVec2::new(f64::from(view.width()), f64::from(view.height()));
+    let parallel = |view: &View| {
+        matches!(view.camera().projection, crate::scene::Projection::Orthographic { .. })
+    };
+    if parallel(old) || parallel(new) {
+        return DMat4::from_scale((size(new) / size(old)).extend(1.0));
+    }
+    let world_from_old = old.screen_from_world().inverse();
+    // A point at homogeneous depth 1 less the eye, which is the same for all w, is a direction.
+    let eye = old.camera().eye;
+    let from_eye = DMat4::from_translation(-eye) * world_from_old;
+    let direction =
+        DMat4::from_cols_array_2d(&from_eye.to_cols_array_2d().map(|[x, y, z, _]| [x, y, z, 0.0]));
+    new.screen_from_world() * direction
 }
 
 /// A point of the old screen on the new one; `None` behind the eye.

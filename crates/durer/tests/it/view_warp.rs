@@ -113,6 +113,62 @@ fn a_second_picture_fills_holes() {
     assert_eq!(magenta as u64, both.holes);
 }
 
+/// A red square in front of nothing, in a picture whose pixels at its outline are `mixed`.
+fn square(mixed: [u8; 4]) -> (Pixels<[u8; 4]>, Pixels<f32>) {
+    let (mut color, mut depth) = (Pixels::new(SIDE, SIDE, [255; 4]), Pixels::new(SIDE, SIDE, 1.0));
+    for (x, y) in (40..80).flat_map(|y| (40..80).map(move |x| (x, y))) {
+        color.set(x, y, [200, 0, 0, 255]);
+        depth.set(x, y, 0.6);
+    }
+    for i in 39..=80 {
+        // Half of the mixed pixels have the depth of the square, half that of nothing.
+        for (x, y) in [(39, i), (79, i), (i, 39), (i, 79)] {
+            color.set(x, y, mixed);
+        }
+    }
+    (color, depth)
+}
+
+#[test]
+fn nothing_is_no_wall() {
+    let (color, depth) = square([200, 0, 0, 255]);
+    let from = camera(DVec3::new(0.0, 0.0, 5.0), false);
+    let source = Source { color: &color, depth: &depth, camera: from };
+    let to = DVec3::new(0.8, 0.0, 0.0);
+    let to = Camera { target: to, ..camera(to + DVec3::new(0.0, 0.0, 5.0), false) };
+    let found = warp(&[source], &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
+    // A camera that is moved, not turned, sees the endless where it was: only what the square hid is
+    // a hole, and no border of the picture.
+    let border = (0..SIDE).flat_map(|i| [(0, i), (SIDE - 1, i), (i, 0), (i, SIDE - 1)]);
+    for (x, y) in border {
+        assert_eq!(found.framebuffer.color.get(x, y), Some([255; 4]), "{x} {y}");
+    }
+    assert!(found.holes > 0 && found.holes < 42 * 42, "{}", found.holes);
+    // What one picture has nothing of, another may show a surface in.
+    let far = Pixels::new(SIDE, SIDE, 0.9);
+    let green = Pixels::new(SIDE, SIDE, [0, 200, 0, 255]);
+    let second = Source { color: &green, depth: &far, camera: to };
+    let both = [source, second];
+    let found = warp(&both, &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
+    assert_eq!(found.framebuffer.color.get(2, 2), Some([0, 200, 0, 255]));
+    assert_eq!(found.holes, 0);
+}
+
+#[test]
+fn smoothed_outlines_leave_no_ghosts() {
+    let (color, depth) = square([228, 128, 128, 255]);
+    let from = camera(DVec3::new(0.0, 0.0, 5.0), false);
+    let source = Source { color: &color, depth: &depth, camera: from };
+    for x in [0.0, 0.7, -0.4] {
+        let to = camera(DVec3::new(x, 0.0, 5.0), false);
+        let found =
+            warp(&[source], &to, [SIDE; 2], &Options::default(), &mut NoTrace).expect("view");
+        let mixed = found.framebuffer.color.data().iter().filter(|c| c[1] == 128).count();
+        // The corners have neighbours that are mixed too.
+        assert!(mixed <= 8, "{x}: {mixed}");
+    }
+}
+
 #[test]
 fn the_view_is_rebuilt_from_its_steps_and_listening_changes_nothing() {
     let from = camera(DVec3::new(0.0, 0.0, 5.0), false);
@@ -122,11 +178,11 @@ fn the_view_is_rebuilt_from_its_steps_and_listening_changes_nothing() {
     let found = warp(&sources, &to, [SIDE; 2], &options, &mut steps).expect("warped");
     assert_eq!(steps.dropped(), 0);
     let mut rebuilt = Pixels::new(SIDE, SIDE, options.hole);
-    let mut color = options.hole;
+    let mut latest = options.hole;
     for step in steps.steps() {
         match *step {
-            Step::Move { from: [x, y], .. } => color = picture.color.get(x, y).expect("pixel"),
-            Step::Write { at: [x, y] } => rebuilt.set(x, y, color),
+            Step::Move { color, .. } => latest = color,
+            Step::Write { at: [x, y] } => rebuilt.set(x, y, latest),
         }
     }
     assert!(rebuilt == found.framebuffer.color);

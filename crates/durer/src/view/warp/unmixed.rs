@@ -1,0 +1,65 @@
+//! Colours of smoothed outlines, taken back to those of one surface.
+//!
+//! Where several samples make a pixel, those along an outline are mixed from both sides, but their
+//! depth is that of one. Moved with it, the other side's colour would stay behind as a ghost.
+
+use super::Source;
+use crate::target::Pixels;
+
+/// Depths of 16 bits are rounded by half of this; smaller steps say nothing.
+const ROUNDING: f32 = 4.0 / 65_535.0;
+
+/// Colours closer than this are the same.
+const SAME: u8 = 2;
+
+/// Returns the source's colours where pixels at a jump of depth have the colour of their own side, if
+/// theirs lies between those of both sides. Cost: O(pixels).
+pub(super) fn unmixed(source: &Source<'_>) -> Pixels<[u8; 4]> {
+    let mut colors = source.color.clone();
+    for y in 0..colors.height() {
+        for x in 0..colors.width() {
+            if let Some(own) = own_color(source, [x, y]) {
+                colors.set(x, y, own);
+            }
+        }
+    }
+    colors
+}
+
+/// The colour that a pixel would have without the other side's, where it is mixed.
+fn own_color(source: &Source<'_>, at: [u32; 2]) -> Option<[u8; 4]> {
+    let pixel = |steps: i32, [dx, dy]: [i32; 2]| {
+        let x = at[0].checked_add_signed(dx * steps)?;
+        let y = at[1].checked_add_signed(dy * steps)?;
+        Some((source.depth.get(x, y)?, source.color.get(x, y)?))
+    };
+    let (depth, color) = pixel(0, [0, 0])?;
+    [[1, 0], [-1, 0], [0, 1], [0, -1]].into_iter().find_map(|way| {
+        let (beyond, _) = pixel(1, way)?;
+        let (before, own) = pixel(-1, way)?;
+        if !jumps(depth, beyond, before) || jumps(depth, before, beyond) {
+            return None;
+        }
+        let (_, other) = pixel(2, way).or(pixel(1, way))?;
+        let mixed = !is_near(color, own) && is_between(color, own, other);
+        mixed.then_some(own)
+    })
+}
+
+/// Whether depth jumps from a pixel to the next one, by the step to the one on its other side: on one
+/// plane both are equal, for window depth is linear on the screen.
+fn jumps(here: f32, next: f32, opposite: f32) -> bool {
+    let nothing = |depth: f32| depth >= 1.0;
+    nothing(here) != nothing(next) || (next - here).abs() > 3.0 * (here - opposite).abs() + ROUNDING
+}
+
+fn is_near(a: [u8; 4], b: [u8; 4]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= SAME)
+}
+
+fn is_between(c: [u8; 4], a: [u8; 4], b: [u8; 4]) -> bool {
+    let between = |c: u8, a: u8, b: u8| {
+        (a.min(b).saturating_sub(SAME)..=a.max(b).saturating_add(SAME)).contains(&c)
+    };
+    c.iter().zip(a).zip(b).all(|((c, a), b)| between(*c, a, b))
+}
