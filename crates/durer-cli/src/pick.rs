@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
 use crate::report;
-use durer::scene::Scene;
+use durer::scene::{Scene, Topology};
 use durer::view::View;
 use durer::view::pick::{Area, Hit, objects, pick};
 use serde::Serialize;
@@ -20,6 +20,10 @@ struct Picked {
     objects: Vec<Object>,
     /// Nearest first.
     triangles: Vec<Triangle>,
+    /// Nearest first.
+    lines: Vec<Mark>,
+    /// Nearest first.
+    points: Vec<Mark>,
 }
 
 #[derive(Debug, Serialize)]
@@ -30,6 +34,8 @@ struct Object {
     depth: f64,
     /// How many of its triangles were hit.
     triangles: usize,
+    /// How many of its lines or points were hit.
+    marks: usize,
 }
 
 #[derive(Debug, Serialize)]
@@ -39,6 +45,19 @@ struct Triangle {
     instance: usize,
     /// Index in the mesh.
     triangle: usize,
+    depth: f64,
+    /// In the world.
+    position: [f64; 3],
+}
+
+/// A line or a point of the model.
+#[derive(Debug, Serialize)]
+struct Mark {
+    /// Counted on from the triangles.
+    item: u32,
+    instance: usize,
+    /// Index in the mesh.
+    index: usize,
     depth: f64,
     /// In the world.
     position: [f64; 3],
@@ -74,16 +93,35 @@ fn describe(model: String, scene: &Scene, hits: &[Hit]) -> Picked {
         instance: o.instance,
         name: scene.instances[o.instance].name.clone(),
         depth: o.nearest.depth,
-        triangles: o.triangles,
+        triangles: if o.nearest.topology == Topology::Triangles { o.primitives } else { 0 },
+        marks: if o.nearest.topology == Topology::Triangles { 0 } else { o.primitives },
     });
-    let triangles = hits.iter().map(|h| Triangle {
+    let triangles = of(hits, Topology::Triangles).map(|h| Triangle {
         item: h.item,
         instance: h.instance,
-        triangle: h.triangle,
+        triangle: h.primitive,
         depth: h.depth,
         position: h.position.to_array(),
     });
-    Picked { model, objects: objects.collect(), triangles: triangles.collect() }
+    Picked {
+        model,
+        objects: objects.collect(),
+        triangles: triangles.collect(),
+        lines: of(hits, Topology::Lines).map(Mark::from).collect(),
+        points: of(hits, Topology::Points).map(Mark::from).collect(),
+    }
+}
+
+/// The hits of one kind.
+fn of(hits: &[Hit], topology: Topology) -> impl Iterator<Item = &Hit> {
+    hits.iter().filter(move |h| h.topology == topology)
+}
+
+impl From<&Hit> for Mark {
+    fn from(h: &Hit) -> Self {
+        let Hit { item, instance, primitive: index, depth, .. } = *h;
+        Self { item, instance, index, depth, position: h.position.to_array() }
+    }
 }
 
 /// One line per object.
@@ -94,8 +132,14 @@ fn text(picked: &Picked) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "object {} ({name}): {} triangles, nearest at depth {:.6}",
-            o.instance, o.triangles, o.depth
+            "object {} ({name}): {}, nearest at depth {:.6}",
+            o.instance,
+            if o.marks > 0 {
+                format!("{} lines or points", o.marks)
+            } else {
+                format!("{} triangles", o.triangles)
+            },
+            o.depth
         );
     }
     if picked.objects.is_empty() {

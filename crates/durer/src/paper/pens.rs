@@ -28,17 +28,18 @@ const THINNEST_DASHED: f64 = 0.18;
 const HIDDEN_GREY: u8 = 0x90;
 
 impl Default for Pens {
-    /// Outlines 0.5 mm, edges 0.35 mm, what lies on surfaces 0.18 mm, hidden lines 0.25 mm; black.
+    /// Outlines 0.5 mm, edges and the model's own lines 0.35 mm, what lies on surfaces 0.18 mm, hidden lines 0.25 mm; black.
     fn default() -> Self {
-        let mut pens = Self { widths: [0.25; 12], hidden: 0.25, color: [0, 0, 0, 255] };
+        let mut pens =
+            Self { widths: [0.25; LineClass::ALL.len()], hidden: 0.25, color: [0, 0, 0, 255] };
         for &class in LineClass::ALL {
             use LineClass::{
-                Axis, Border, Crease, Grid, Hatch, Intersection, Material, NonManifold, Section,
-                Shadow, Silhouette, Wire,
+                Axis, Border, Crease, Grid, Hatch, Intersection, Mark, Material, NonManifold,
+                Section, Shadow, Silhouette, Wire,
             };
             let width = match class {
                 Silhouette | Border | Section => 0.5,
-                Crease | NonManifold | Intersection => 0.35,
+                Crease | NonManifold | Intersection | Mark => 0.35,
                 Material | Grid | Axis => 0.25,
                 Wire | Shadow | Hatch => 0.18,
             };

@@ -28,6 +28,8 @@ fn by_phong(shading: Shading) -> bool {
 pub struct PreparedMaterials<'a> {
     materials: Vec<PreparedMaterial<'a>>,
     default: PreparedMaterial<'a>,
+    /// For lines and points without a material.
+    ink: PreparedMaterial<'a>,
 }
 
 impl<'a> PreparedMaterials<'a> {
@@ -39,7 +41,22 @@ impl<'a> PreparedMaterials<'a> {
         let mut prepare = |m: &Material| PreparedMaterial::new(m, &mut chains);
         let materials = scene.materials.iter().map(&mut prepare).collect();
         let default = prepare(&Material::default());
-        Self { materials, default }
+        let ink = default.clone();
+        Self { materials, default, ink }
+    }
+
+    /// The same where lines and points that have no material are drawn in a linear colour, unlit.
+    #[must_use]
+    pub fn with_ink(mut self, color: Vec3) -> Self {
+        self.ink.model = ShadingModel::Unlit;
+        self.ink.base_color = color.extend(1.0);
+        self
+    }
+
+    /// The material of lines or points: as [`Self::get`], but for `None` the ink.
+    #[inline]
+    pub fn of_marks(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
+        index.map_or(&self.ink, |_| self.get(index))
     }
 
     /// The material of this index; for `None`, or where there is none, the default material.

@@ -30,6 +30,8 @@ pub enum LineClass {
     Grid,
     /// An axis, its ticks, or a frame.
     Axis,
+    /// A line or a point that the model itself has.
+    Mark,
 }
 
 impl LineClass {
@@ -47,6 +49,7 @@ impl LineClass {
         Self::Hatch,
         Self::Grid,
         Self::Axis,
+        Self::Mark,
     ];
 
     /// The name used on the command line, for layers and in GeoJSON.
@@ -64,6 +67,7 @@ impl LineClass {
             Self::Hatch => "hatch",
             Self::Grid => "grid",
             Self::Axis => "axis",
+            Self::Mark => "mark",
         }
     }
 }

@@ -5,9 +5,10 @@
 //! functions in homogeneous screen space (M. Olano, T. Greer, *Triangle scan conversion using 2D
 //! homogeneous coordinates*, 1997), so that triangles that reach behind the eye need no cutting; the
 //! function of an edge has the same value, but for its sign, in both of its triangles, so no point
-//! falls between them. Object space. Cost: O(triangles of the instances whose boxes are met).
+//! falls between them. Lines and points, which have no area, are hit within [`REACH`] of the point.
+//! Object space. Cost: O(triangles of the instances whose boxes are met).
 
-use crate::clip::volume::{ClipVertex, Options, clip_polygon};
+use crate::clip::volume::{ClipVertex, Options, clip_polygon, clip_segment};
 use crate::info::{Class, Info};
 use crate::math::{DMat4, DVec2, DVec3, DVec4, Rect};
 use crate::scene::{Aabb, Mesh, Scene, Topology};
@@ -24,8 +25,11 @@ pub const INFO: Info = Info {
     source: "Triangle scan conversion using 2D homogeneous coordinates, Graphics Hardware",
     class: Class::ObjectSpace,
     cost: "O(t): t triangles of the instances whose boxes are met",
-    limits: "triangles; what is transparent is met like all else",
+    limits: "what is transparent is met like all else",
 };
+
+/// How far from a picked point lines and points of a model may be, in pixels.
+pub const REACH: f64 = 3.0;
 
 /// A part of the screen, in pixels, x right and y down; pixel (0, 0) is the square from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,14 +40,17 @@ pub enum Area {
     Rect(Rect),
 }
 
-/// A triangle that was hit.
+/// A triangle, a line or a point that was hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Index into [`Scene::instances`].
     pub instance: usize,
-    /// Index of the triangle in the instance's mesh.
-    pub triangle: usize,
-    /// Its place in the sequence of all triangles, as in item planes.
+    /// What it is.
+    pub topology: Topology,
+    /// Index of the triangle, line or point in the instance's mesh.
+    pub primitive: usize,
+    /// Its place in the sequence of all triangles, as in item planes; lines and points come after all
+    /// triangles.
     pub item: u32,
     /// Window depth, 0 (near plane) … 1 (far plane), of its nearest point in the area.
     pub depth: f64,
@@ -51,20 +58,20 @@ pub struct Hit {
     pub position: DVec3,
 }
 
-/// An instance of which triangles were hit.
+/// An instance of which triangles, lines or points were hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Object {
     /// Index into [`Scene::instances`].
     pub instance: usize,
-    /// Its nearest triangle in the area.
+    /// Its nearest triangle, line or point in the area.
     pub nearest: Hit,
-    /// How many of its triangles are in the area.
-    pub triangles: usize,
+    /// How many of its triangles, lines or points are in the area.
+    pub primitives: usize,
 }
 
-/// The triangles behind an area of the screen, whether others hide them or not, from either side;
-/// nearest first, of equally near ones the lower item. Lines and points are not picked, nor triangles
-/// that are seen edge on under a point.
+/// The triangles, lines and points behind an area of the screen, whether others hide them or not, from
+/// either side; nearest first, of equally near ones the lower item. Triangles that are seen edge on
+/// under a point are not picked.
 pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
     let Some(around) = window(area) else { return Vec::new() };
     let pick_from_world = pick_from_screen(&around) * view.screen_from_world();
@@ -75,11 +82,8 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
         .collect();
     let mut hits = Vec::new();
     let mut next_item = 0;
-    for (instance, placed) in scene.instances.iter().enumerate() {
-        let mesh = &scene.meshes[placed.mesh];
-        if mesh.topology != Topology::Triangles {
-            continue;
-        }
+    for (instance, mesh) in in_item_order(scene) {
+        let placed = &scene.instances[instance];
         let first_item = next_item;
         next_item += mesh.material_runs().map(|(range, _)| range.len() as u32).sum::<u32>();
         let frustum =
@@ -90,22 +94,43 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
         }
         let screen_from_mesh = view.screen_from_world() * placed.world_from_mesh;
         let pick_from_mesh = pick_from_world * placed.world_from_mesh;
-        let triangles = mesh.material_runs().flat_map(|(range, _)| range);
-        for (item, triangle) in (first_item..).zip(triangles) {
-            let corners = corners(mesh, triangle as usize);
-            let found = match area {
-                Area::Point(p) => at_point(&corners, &screen_from_mesh, p),
-                Area::Rect(_) => in_window(&corners, &pick_from_mesh),
+        let primitives = mesh.material_runs().flat_map(|(range, _)| range);
+        for (item, primitive) in (first_item..).zip(primitives) {
+            let primitive = primitive as usize;
+            let found = if mesh.topology == Topology::Triangles {
+                let corners = corners(mesh, primitive);
+                match area {
+                    Area::Point(p) => at_point(&corners, &screen_from_mesh, p),
+                    Area::Rect(_) => in_window(&corners, &pick_from_mesh),
+                }
+            } else {
+                let ends = mesh.line_or_point(primitive);
+                let ends = ends.map(|v| mesh.positions[v as usize].as_dvec3());
+                match area {
+                    Area::Point(p) => near_point(&ends, &pick_from_mesh, &screen_from_mesh, p),
+                    Area::Rect(_) => mark_in_window(&ends, &pick_from_mesh),
+                }
             };
             if let Some((depth, position)) = found {
                 let position = placed.world_from_mesh.transform_point3(position);
-                let triangle = triangle as usize;
-                hits.push(Hit { instance, triangle, item, depth, position });
+                let topology = mesh.topology;
+                hits.push(Hit { instance, topology, primitive, item, depth, position });
             }
         }
     }
     hits.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.item.cmp(&b.item)));
     hits
+}
+
+/// The instances with their meshes in the order of items: those of triangles first.
+fn in_item_order(scene: &Scene) -> impl Iterator<Item = (usize, &Mesh)> {
+    let of = |triangles: bool| {
+        let mesh = |(i, placed): (usize, &crate::scene::Instance)| (i, &scene.meshes[placed.mesh]);
+        let wanted =
+            move |(_, m): &(usize, &Mesh)| (m.topology == Topology::Triangles) == triangles;
+        scene.instances.iter().enumerate().map(mesh).filter(wanted)
+    };
+    of(true).chain(of(false))
 }
 
 /// The instances of hits, nearest first.
@@ -117,7 +142,7 @@ pub fn objects(hits: &[Hit]) -> Vec<Object> {
         .map(|same| {
             let (place, nearest) = same[0];
             let instance = nearest.instance;
-            (place, Object { instance, nearest: *nearest, triangles: same.len() })
+            (place, Object { instance, nearest: *nearest, primitives: same.len() })
         })
         .collect();
     found.sort_by_key(|(place, _)| *place);
@@ -128,7 +153,7 @@ pub fn objects(hits: &[Hit]) -> Vec<Object> {
 fn window(area: Area) -> Option<Rect> {
     match area {
         // Wide enough to be free of rounding.
-        Area::Point(p) => Rect::new(p - DVec2::ONE, p + DVec2::ONE).ok(),
+        Area::Point(p) => Rect::new(p - DVec2::splat(REACH), p + DVec2::splat(REACH)).ok(),
         Area::Rect(rect) => (rect.size().x > 0.0 && rect.size().y > 0.0).then_some(rect),
     }
 }
@@ -179,4 +204,48 @@ fn at_point(corners: &[DVec3; 3], screen_from_mesh: &DMat4, p: DVec2) -> Option<
     let depth = weights[0] * h[0].z + weights[1] * h[1].z + weights[2] * h[2].z;
     let at = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
     (0.0..=1.0).contains(&depth).then(|| (depth, at / sum))
+}
+
+/// The nearest point of a line's part in a frustum: its depth, and where it is in the mesh.
+fn mark_in_window(ends: &[DVec3; 2], pick_from_mesh: &DMat4) -> Option<(f64, DVec3)> {
+    let ends =
+        ends.map(|p| ClipVertex { position: *pick_from_mesh * p.extend(1.0), attributes: p });
+    let inside = clip_segment(ends, &Options::default(), &mut NoTrace)?;
+    let depth = |v: &ClipVertex<DVec3>| 0.5 + 0.5 * v.position.z / v.position.w;
+    inside
+        .iter()
+        .map(|v| (depth(v), v.attributes))
+        .filter(|(depth, _)| depth.is_finite())
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The point of a line that is nearest to a point of the screen, within [`REACH`]: its depth, and where
+/// it is in the mesh.
+fn near_point(
+    ends: &[DVec3; 2],
+    pick_from_mesh: &DMat4,
+    screen_from_mesh: &DMat4,
+    p: DVec2,
+) -> Option<(f64, DVec3)> {
+    // What is left in the square around the point has a place on the screen.
+    let ends =
+        ends.map(|p| ClipVertex { position: *pick_from_mesh * p.extend(1.0), attributes: p });
+    let [a, b] = clip_segment(ends, &Options::default(), &mut NoTrace)?.map(|v| v.attributes);
+    let on_screen = |q: DVec3| {
+        let v = *screen_from_mesh * q.extend(1.0);
+        (v.truncate() / v.w, v.w)
+    };
+    let ((sa, wa), (sb, wb)) = (on_screen(a), on_screen(b));
+    let along = (sb - sa).truncate();
+    let squared = along.length_squared();
+    let t = if squared > 0.0 {
+        ((p - sa.truncate()).dot(along) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let at = sa + (sb - sa) * t;
+    // Depth is linear on the screen, places in the mesh are in 1/w.
+    let weight = t * wa / ((1.0 - t) * wb + t * wa);
+    let near = at.truncate().distance(p) <= REACH && (0.0..=1.0).contains(&at.z);
+    near.then(|| (at.z, a + (b - a) * weight))
 }

@@ -14,7 +14,7 @@ use durer::visibility::surface::a_buffer::{self, Mask, Options, Step};
 use durer::visibility::surface::input::SurfaceInput;
 use durer::visibility::surface::setup::Filter;
 
-const FILTER: Filter = Filter { cull: durer::pipeline::Cull::None, sample_reach: 128 };
+const FILTER: Filter = Filter::new(durer::pipeline::Cull::None, 128);
 
 fn flat(rgba: Vec4) -> Material {
     let alpha_mode = if rgba.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };

@@ -18,7 +18,7 @@ use durer::visibility::surface::setup::{Filter, ScreenTriangle};
 use proptest::prelude::*;
 
 fn input<'a>(scene: &'a Scene, view: &'a View, cull: Cull) -> SurfaceInput<'a> {
-    SurfaceInput::new(scene, view, Filter { cull, sample_reach: 128 }).expect("input")
+    SurfaceInput::new(scene, view, Filter::new(cull, 128)).expect("input")
 }
 
 /// Whether rounding its corners to the grid can have turned a triangle over: each corner moves by half

@@ -26,7 +26,7 @@ fn turned(scene: &Scene, degrees: f64) -> View {
 }
 
 fn input<'a>(scene: &'a Scene, view: &'a View) -> SurfaceInput<'a> {
-    let filter = Filter { cull: Cull::None, sample_reach: 128 };
+    let filter = Filter::new(Cull::None, 128);
     SurfaceInput::new(scene, view, filter).expect("input")
 }
 

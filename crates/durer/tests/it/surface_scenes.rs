@@ -126,13 +126,13 @@ impl<'a> Prepared<'a> {
     }
 
     pub fn input(&self) -> SurfaceInput<'_> {
-        let filter = Filter { cull: Cull::None, sample_reach: 0 };
+        let filter = Filter::new(Cull::None, 0);
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 
     /// For anti-aliasing: also triangles that miss all centres.
     pub fn fine_input(&self) -> SurfaceInput<'_> {
-        let filter = Filter { cull: Cull::None, sample_reach: 128 };
+        let filter = Filter::new(Cull::None, 128);
         SurfaceInput::new(self.scene, &self.view, filter).expect("input")
     }
 

@@ -102,7 +102,7 @@ fn objects_come_nearest_first() {
     let p = Prepared::new(&scene, 60, 60);
     let middle = Rect::new(DVec2::splat(0.0), DVec2::splat(60.0)).expect("rectangle");
     let hits = pick(&scene, &p.view, Area::Rect(middle));
-    let found: Vec<_> = objects(&hits).iter().map(|o| (o.instance, o.triangles)).collect();
+    let found: Vec<_> = objects(&hits).iter().map(|o| (o.instance, o.primitives)).collect();
     assert_eq!(found, [(1, 1), (2, 1), (0, 1)]);
     assert_eq!(hits.iter().map(|h| h.item).collect::<Vec<_>>(), [1, 2, 0]);
 }

@@ -83,7 +83,7 @@ fn amid(width: u32, height: u32) -> View {
     View::new(camera, width, height).expect("view")
 }
 
-const FILTER: Filter = Filter { cull: durer::pipeline::Cull::None, sample_reach: 128 };
+const FILTER: Filter = Filter::new(durer::pipeline::Cull::None, 128);
 
 fn planes(view: &View) -> Framebuffer {
     Framebuffer::new(view.width(), view.height()).with_depth().with_items().with_normals()

@@ -13,7 +13,7 @@ use durer::visibility::surface::setup::Filter;
 
 /// Nearest item and its depth at each pixel's centre.
 fn by_the_book(scene: &Scene, view: &View) -> (Vec<u32>, Vec<f32>) {
-    let filter = Filter { cull: Cull::None, sample_reach: 0 };
+    let filter = Filter::new(Cull::None, 0);
     let input = SurfaceInput::new(scene, view, filter).expect("triangles");
     let (width, height) = (view.width(), view.height());
     let options = Options { clip: PixelRect::of_size(width, height).expect("size") };

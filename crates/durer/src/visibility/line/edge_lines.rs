@@ -34,7 +34,8 @@ impl ClassSet {
 }
 
 impl Default for ClassSet {
-    /// What a technical drawing shows: all that an edge can be but [`LineClass::Wire`].
+    /// What a technical drawing shows: all that an edge can be but [`LineClass::Wire`],
+    /// and the lines and points of the model.
     fn default() -> Self {
         Self::NONE
             .with(LineClass::Silhouette)
@@ -44,6 +45,7 @@ impl Default for ClassSet {
             .with(LineClass::Material)
             .with(LineClass::Intersection)
             .with(LineClass::Section)
+            .with(LineClass::Mark)
     }
 }
 

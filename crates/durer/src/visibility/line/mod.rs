@@ -8,6 +8,7 @@ mod facing;
 pub mod floating_horizon;
 pub mod hidden_line;
 mod intersection;
+mod marks;
 mod method;
 mod overlap;
 mod page;

@@ -258,6 +258,11 @@ impl Around {
             let ring = plane.clip_face(&corners.map(|p| plane.view_from_world(p)), volume);
             ring.iter().for_each(|p| depths.add(plane.plane_from_view(*p)));
         }
+        for ends in faces.marks() {
+            let ends = ends.map(|v| plane.view_from_world(faces.points()[v as usize]));
+            let inside = plane.clip_segment(ends, volume);
+            inside.into_iter().flatten().for_each(|p| depths.add(plane.plane_from_view(p)));
+        }
         let (lo, hi) = (window.min() * GUARD, window.max() * GUARD);
         Self {
             min: lo.max(depths.min.truncate()).extend(depths.min.z),

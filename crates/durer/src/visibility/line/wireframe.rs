@@ -6,6 +6,7 @@
 
 use super::arrange::{How, arrange};
 use super::edge_lines::NO_ITEM;
+use super::marks::marks;
 use super::overlap::Piece;
 use super::page::Page;
 use crate::Result;
@@ -76,7 +77,7 @@ fn piece(ends: [super::page::GridPoint; 2]) -> Piece {
     Piece { ends, class: LineClass::Wire, invisibility: 0, smooth: false }
 }
 
-/// Draws all edges of a scene's faces. Edges inside a polygon that was read as several triangles are
+/// Draws all edges of a scene's faces, and its lines and points. Edges inside a polygon that was read as several triangles are
 /// none; edges that lie on each other in the picture are drawn once.
 ///
 /// # Errors
@@ -96,6 +97,11 @@ pub fn draw(
             let Some(ends) = projected.edge(faces, ends).filter(|e| e[0].at != e[1].at) else {
                 continue;
             };
+            let ends = ends.map(|v| v.at);
+            t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
+            pieces.push(piece(ends));
+        }
+        for ends in marks(faces, projected) {
             let ends = ends.map(|v| v.at);
             t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
             pieces.push(piece(ends));

@@ -1,7 +1,7 @@
 //! Triangles in item order, with their vertices welded by position, in world space.
 
 use super::weld::{Welded, weld};
-use crate::math::{DVec3, by_coordinates};
+use crate::math::{DMat4, DVec3, Vec3, by_coordinates};
 use crate::scene::{Mesh, Scene, Topology};
 use crate::visibility::surface::setup::runs;
 use crate::{Error, Result};
@@ -22,7 +22,7 @@ pub struct FaceRun {
     pub material: Option<usize>,
 }
 
-/// The triangles of a scene.
+/// The triangles of a scene, and its lines and points.
 ///
 /// Vertices of one mesh that lie at one place are one vertex (two coordinates are equal where they
 /// differ by no more than 2⁻²⁶ of the mesh's extent), so neighbours are found even where the file
@@ -36,6 +36,7 @@ pub struct Faces {
     triangles: Vec<[u32; 3]>,
     runs: Vec<FaceRun>,
     polygons: Option<Vec<u32>>,
+    marks: Vec<[u32; 2]>,
 }
 
 /// In place of the vertices of a triangle that has no area or no place.
@@ -69,8 +70,35 @@ impl Faces {
                 faces.add(mesh, welded, to_world);
             }
         }
+        for instance in &scene.instances {
+            let mesh = &scene.meshes[instance.mesh];
+            if mesh.topology != Topology::Triangles {
+                faces.add_marks(mesh, &instance.world_from_mesh);
+            }
+        }
         faces.polygons = polygons(scene);
         Ok(faces)
+    }
+
+    /// Adds the lines or points of a mesh; those with a coordinate that is not finite are left out.
+    fn add_marks(&mut self, mesh: &Mesh, world_from_mesh: &DMat4) {
+        let offset = self.points.len() as u32;
+        let to_world = |p: &Vec3| world_from_mesh.transform_point3(p.as_dvec3());
+        self.points.extend(mesh.positions.iter().map(to_world));
+        for i in 0..mesh.primitive_count() {
+            let ends = mesh.line_or_point(i).map(|v| v + offset);
+            if ends.iter().all(|&v| self.points[v as usize].is_finite()) {
+                self.marks.push(ends);
+            }
+        }
+        self.forget_infinite(offset);
+    }
+
+    /// Moves the points from `offset` on that are not finite, which no face or mark has, to the origin.
+    fn forget_infinite(&mut self, offset: u32) {
+        for p in self.points[offset as usize..].iter_mut().filter(|p| !p.is_finite()) {
+            *p = DVec3::ZERO;
+        }
     }
 
     fn add(&mut self, mesh: &Mesh, welded: &Welded, to_world: impl Fn(&u32) -> DVec3) {
@@ -89,10 +117,7 @@ impl Faces {
             self.triangles.push(if whole { [a, b, c] } else { NONE });
         }
         if lost {
-            // Nobody asks for these, but nothing non-finite is to be found here.
-            for p in self.points[offset as usize..].iter_mut().filter(|p| !p.is_finite()) {
-                *p = DVec3::ZERO;
-            }
+            self.forget_infinite(offset);
         }
     }
 
@@ -122,7 +147,8 @@ impl Faces {
         let runs = self.runs.iter().map(run).collect();
         let polygon = |&item: &u32| self.polygons.as_ref().map_or(item, |p| p[item as usize]);
         let polygons = Some(origins.iter().map(polygon).collect());
-        (Self { points, triangles, runs, polygons }, origins)
+        let marks = self.marks.clone();
+        (Self { points, triangles, runs, polygons, marks }, origins)
     }
 
     /// The number of triangles: one more than the largest item.
@@ -146,6 +172,12 @@ impl Faces {
     #[inline]
     pub fn triangle(&self, item: u32) -> Option<[u32; 3]> {
         self.triangles.get(item as usize).copied().filter(|t| *t != NONE)
+    }
+
+    /// The lines of the scene, and its points as lines from a vertex to itself: indices into
+    /// [`Self::points`], in scene order.
+    pub fn marks(&self) -> &[[u32; 2]] {
+        &self.marks
     }
 
     /// All triangles that have three vertices, with their items, in item order.

@@ -122,7 +122,8 @@ impl Options {
 
     fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
         let Self { samples, shading, background, level, .. } = *self;
-        z_buffer::Options { samples, cull: filter.cull, shading, background, level }
+        let Filter { cull, marks, .. } = filter;
+        z_buffer::Options { samples, cull, marks, shading, background, level }
     }
 }
 

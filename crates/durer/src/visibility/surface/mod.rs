@@ -2,6 +2,7 @@
 
 pub mod a_buffer;
 pub(crate) mod active;
+pub mod ambient_occlusion;
 pub(crate) mod attributes;
 pub(crate) mod background;
 pub mod cover;
@@ -30,7 +31,8 @@ pub mod z_buffer;
 
 pub use method::{SurfaceMethod, render_with};
 
-use crate::math::Vec4;
+use crate::math::{Vec3, Vec4};
+use crate::shade::color::luminance;
 
 /// Blended surfaces that let through less than this hide what is behind them: it is the last bit of a
 /// colour's sum.
@@ -106,6 +108,27 @@ const fn sixteenths<const N: usize>(mut offsets: [[i32; 2]; N]) -> [[i32; 2]; N]
     offsets
 }
 
+/// How large the lines and points of models are on the screen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Marks {
+    /// Width of lines in pixels, above 0.
+    pub line_width: f64,
+    /// Side of the square that a point becomes, in pixels, above 0.
+    pub point_size: f64,
+}
+
+impl Marks {
+    /// Lines of 1.5 pixels, points of 3.
+    pub const USUAL: Self = Self { line_width: 1.5, point_size: 3.0 };
+}
+
+impl Default for Marks {
+    /// [`Self::USUAL`].
+    fn default() -> Self {
+        Self::USUAL
+    }
+}
+
 /// What is behind everything; colours are linear RGBA with straight alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Background {
@@ -114,3 +137,23 @@ pub enum Background {
     /// From the top row to the bottom row.
     Gradient(Vec4, Vec4),
 }
+
+impl Background {
+    /// The linear colour in which lines and points without a material are seen against it: dark on
+    /// light, light on dark. What is transparent is taken to be light.
+    pub fn ink(&self) -> Vec3 {
+        let mean = match *self {
+            Self::Color(color) => color,
+            Self::Gradient(top, bottom) => (top + bottom) * 0.5,
+        };
+        let seen = luminance(mean.truncate() * mean.w) + 1.0 - mean.w;
+        // About where black and white have the same contrast (WCAG 2.1: √(1.05 · 0.05) − 0.05).
+        if seen > 0.18 { DARK_INK } else { LIGHT_INK }
+    }
+}
+
+/// sRGB (38, 41, 48).
+const DARK_INK: Vec3 = Vec3::new(0.0194, 0.0222, 0.0296);
+
+/// sRGB (231, 231, 231): what a surface without a material has.
+const LIGHT_INK: Vec3 = Vec3::splat(0.8);

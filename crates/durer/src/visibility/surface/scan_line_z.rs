@@ -75,7 +75,7 @@ pub fn render(
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
 ) {
-    let materials = PreparedMaterials::new(input.scene);
+    let materials = PreparedMaterials::new(input.scene).with_ink(options.background.ink());
     let (width, height) = (input.view.width(), input.view.height());
     let mut picture = Picture::new(input, &materials, lights, (options, 0), framebuffer);
     let masked = Masked::new(input);

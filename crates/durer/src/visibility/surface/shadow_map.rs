@@ -159,7 +159,7 @@ fn maps(
 
 /// The depth of what throws shadows: triangles that are opaque, or masked and there.
 fn depths(scene: &Scene, view: &View, lights: &PreparedLights) -> Result<Pixels<f32>> {
-    let filter = Filter { cull: Cull::None, sample_reach: 0 };
+    let filter = Filter::new(Cull::None, 0);
     let mut input = SurfaceInput::new(scene, view, filter)?;
     let count = scene.triangle_count() as u32;
     let throws = |item: u32| item < count && input.run_of(item).coverage != Coverage::Blended;

@@ -108,7 +108,7 @@ pub fn with_lighting<R>(
     look: &picture::Options,
     f: impl FnOnce(Lighting<'_>) -> R,
 ) -> R {
-    let materials = PreparedMaterials::new(input.scene);
+    let materials = PreparedMaterials::new(input.scene).with_ink(look.background.ink());
     f(Lighting {
         scene: input.scene,
         view: input.view,

@@ -30,6 +30,7 @@ use super::edge_lines::{
 };
 use super::facing::Facing;
 use super::intersection::intersections;
+use super::marks::marks;
 use super::overlap::Piece;
 use super::page::{GridPoint, Page, Projected, Vertex, arranged, on_page};
 use super::smooth_silhouette::{Whole, divided};
@@ -129,7 +130,9 @@ impl Options {
 
     /// Stubs are known by what they do not touch, so only where everything is drawn.
     fn how(&self) -> How {
-        let edges = |set: ClassSet| set.with(LineClass::Wire).with(LineClass::Section);
+        let edges = |set: ClassSet| {
+            set.with(LineClass::Wire).with(LineClass::Section).with(LineClass::Mark)
+        };
         let all = edges(self.classes) == edges(ClassSet::default());
         let stubs = if all { self.stubs } else { 0.0 };
         How { tolerance: self.tolerance, stubs, pen_order: self.pen_order }
@@ -242,7 +245,8 @@ struct Lines<'a> {
     faces: &'a Faces,
     projected: &'a Projected,
     edges: Vec<EdgeLine>,
-    meetings: Vec<FeatureLine>,
+    /// Where faces penetrate each other, and the lines and points of the model.
+    loose: Vec<FeatureLine>,
 }
 
 impl<'a> Lines<'a> {
@@ -269,29 +273,33 @@ impl<'a> Lines<'a> {
         let of_edges = connected(edge_lines(&rules), faces.points(), rules.wire());
         drop(rules);
         drop(edges);
-        let meetings = if options.classes.contains(LineClass::Intersection) {
+        let mut loose = if options.classes.contains(LineClass::Intersection) {
             meeting_lines(faces, bodies, options.intersections, projected)
         } else {
             Vec::new()
         };
-        Self { faces, projected, edges: of_edges, meetings }
+        if options.classes.contains(LineClass::Mark) {
+            let line = |ends| FeatureLine::new(ends, LineClass::Mark, [NO_ITEM; 2]);
+            loose.extend(marks(faces, projected).filter_map(line));
+        }
+        Self { faces, projected, edges: of_edges, loose }
     }
 
     /// How many there are, with those that are points in the picture.
     fn len(&self) -> usize {
-        self.edges.len() + self.meetings.len()
+        self.edges.len() + self.loose.len()
     }
 
     /// Those of a range that have an extent in the picture.
     fn some(&self, range: Range<usize>) -> impl Iterator<Item = FeatureLine> + Clone {
         let split = self.edges.len();
         let edges = &self.edges[range.start.min(split)..range.end.min(split)];
-        let meetings = &self.meetings[range.start.max(split) - split..range.end.max(split) - split];
+        let loose = &self.loose[range.start.max(split) - split..range.end.max(split) - split];
         let line = |l: &EdgeLine| {
             let ends = self.projected.edge(self.faces, l.ends)?;
             Some(FeatureLine { smooth: l.smooth, ..FeatureLine::new(ends, l.class, l.items)? })
         };
-        edges.iter().filter_map(line).chain(meetings.iter().copied())
+        edges.iter().filter_map(line).chain(loose.iter().copied())
     }
 }
 

@@ -157,7 +157,7 @@ pub fn render(
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
 ) {
-    let materials = PreparedMaterials::new(input.scene);
+    let materials = PreparedMaterials::new(input.scene).with_ink(options.background.ink());
     let (width, height) = (input.view.width(), input.view.height());
     let Options { shading, background, level, .. } = *options;
     let of_picture = picture::Options { shading, background, level };

@@ -73,8 +73,13 @@ impl<'a> Lighting<'a> {
     fn run_info(&self, index: usize) -> RunInfo<'a> {
         let run = &self.runs[index];
         let mesh = &self.scene.meshes[run.mesh];
-        let material = self.materials.get(run.material);
-        let without_sides = mesh.topology != Topology::Triangles && mesh.normals.is_empty();
+        let is_marks = mesh.topology != Topology::Triangles;
+        let material = if is_marks {
+            self.materials.of_marks(run.material)
+        } else {
+            self.materials.get(run.material)
+        };
+        let without_sides = is_marks && mesh.normals.is_empty();
         let shading = match self.shading {
             _ if without_sides => Shading::Unlit,
             Some(shading) => shading,

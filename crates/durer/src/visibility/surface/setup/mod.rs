@@ -26,7 +26,7 @@ use crate::scene::{Mesh, Scene, Topology};
 use crate::simd::Level;
 use crate::trace::NoTrace;
 use crate::view::View;
-use crate::visibility::surface::Cull;
+use crate::visibility::surface::{Cull, Marks};
 use eight::{Eight, Rules};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, u32x16};
@@ -126,14 +126,23 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Which triangles [`Assembler`] lets through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Which triangles [`Assembler`] lets through, and how large it makes lines and points.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Filter {
     /// Which faces seen from behind are left out.
     pub cull: Cull,
     /// How far samples lie from the pixel's centre, in 1/256 pixel: triangles that cannot reach a
     /// sample are left out.
     pub sample_reach: i32,
+    /// The size of lines and points.
+    pub marks: Marks,
+}
+
+impl Filter {
+    /// A filter with lines and points of the usual size.
+    pub const fn new(cull: Cull, sample_reach: i32) -> Self {
+        Self { cull, sample_reach, marks: Marks::USUAL }
+    }
 }
 
 /// Takes triangles as they come.
@@ -168,12 +177,6 @@ impl Sink for Vec<ScreenTriangle> {
 /// Triangles without indices whose vertices are transformed at a time.
 const UNINDEXED: u32 = 512;
 
-/// Width in pixels at which lines of a model are drawn.
-pub const LINE_WIDTH: f64 = 1.5;
-
-/// Side in pixels of the square that a point of a model is drawn as.
-pub const POINT_SIZE: f64 = 3.0;
-
 /// Transforms, clips and sets up the triangles of runs.
 pub struct Assembler<'a> {
     scene: &'a Scene,
@@ -202,7 +205,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// Hands the screen triangles of primitives `range` of a run to `sink`, in order. Lines become
-    /// strips of [`LINE_WIDTH`], points squares of [`POINT_SIZE`].
+    /// strips and points squares, of the size of [`Filter::marks`].
     pub fn primitives(&mut self, run: &Run, range: Range<u32>, sink: &mut impl Sink) {
         let mesh = &self.scene.meshes[run.mesh];
         let world_from_mesh = self.scene.instances[run.instance].world_from_mesh;
@@ -351,10 +354,11 @@ impl<'a> Assembler<'a> {
             return;
         };
         let [(pa, za), (pb, zb)] = inside.map(|v| transform.to_screen(&v));
+        let Marks { line_width, point_size } = self.filter.marks;
         let along = (pb - pa).normalize_or_zero();
         let (back, side) = match along == DVec2::ZERO {
-            true => (DVec2::X * (0.5 * POINT_SIZE), DVec2::Y * (0.5 * POINT_SIZE)),
-            false => (DVec2::ZERO, along.perp() * (0.5 * LINE_WIDTH)),
+            true => (DVec2::X * (0.5 * point_size), DVec2::Y * (0.5 * point_size)),
+            false => (DVec2::ZERO, along.perp() * (0.5 * line_width)),
         };
         let corners = [pa - back - side, pa - back + side, pb + back + side, pb + back - side];
         let z = [za, za, zb, zb];

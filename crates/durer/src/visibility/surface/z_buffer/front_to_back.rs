@@ -145,7 +145,7 @@ mod tests {
             (PreparedMaterials::new(&scene), PreparedLights::auto(view.camera()));
         for samples in [Samples::One, Samples::Four] {
             let level = Level::new();
-            let filter = Filter { cull: Cull::None, sample_reach: 128 };
+            let filter = Filter::new(Cull::None, 128);
             let drawn = (&scene, &view, runs.as_slice());
             let lighting =
                 Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);

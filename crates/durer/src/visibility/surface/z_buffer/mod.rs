@@ -30,7 +30,7 @@ use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
-use crate::visibility::surface::{Background, Cull, Samples};
+use crate::visibility::surface::{Background, Cull, Marks, Samples};
 use bins::{Bins, TileGrid, jobs};
 use blended::{Blended, light_blended};
 use fearless_simd::dispatch;
@@ -60,6 +60,8 @@ pub struct Options {
     pub samples: Samples,
     /// Which faces are left out.
     pub cull: Cull,
+    /// The size of lines and points.
+    pub marks: Marks,
     /// `None` = by material.
     pub shading: Option<Shading>,
     /// What is behind everything.
@@ -74,6 +76,7 @@ impl Default for Options {
         Self {
             samples: Samples::Four,
             cull: Cull::None,
+            marks: Marks::default(),
             shading: None,
             background: Background::Color(Vec4::ONE),
             level: default_level(),
@@ -106,8 +109,8 @@ pub fn render(
     let start = std::time::Instant::now();
     let runs = runs(scene)?;
     let reach = options.samples.reach();
-    let filter = Filter { cull: options.cull, sample_reach: reach };
-    let materials = PreparedMaterials::new(scene);
+    let filter = Filter { cull: options.cull, sample_reach: reach, marks: options.marks };
+    let materials = PreparedMaterials::new(scene).with_ink(options.background.ink());
     let lighting = Lighting {
         scene,
         view,

@@ -162,7 +162,7 @@ mod tests {
             .flat_map(|samples| [[64, 64], [37, 50]].map(|size| (samples, size)))
         {
             let view = View::new(camera, size[0] as u32, size[1] as u32).expect("view");
-            let filter = Filter { cull: Cull::None, sample_reach: 128 };
+            let filter = Filter::new(Cull::None, 128);
             let drawn = (&scene, &view, runs.as_slice());
             let lighting =
                 Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);

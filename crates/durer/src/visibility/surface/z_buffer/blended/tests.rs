@@ -69,7 +69,7 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         .into_iter()
         .flat_map(|s| levels().into_iter().map(move |l| (s, l)))
     {
-        let filter = Filter { cull: Cull::None, sample_reach: 128 };
+        let filter = Filter::new(Cull::None, 128);
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
         let (jobs, mut scratch) = (jobs(&runs), Default::default());

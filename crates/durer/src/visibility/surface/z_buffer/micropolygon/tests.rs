@@ -75,8 +75,7 @@ fn fragments_are_what_rasterizing_and_normal_planes_give() {
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), 0, level);
         let bins_for = |sample_reach: i32| {
-            let (mut scratch, filter) =
-                (Scratch::default(), Filter { cull: Cull::None, sample_reach });
+            let (mut scratch, filter) = (Scratch::default(), Filter::new(Cull::None, sample_reach));
             (Bins::new(&jobs(&runs)[0], &lighting, filter, &mut scratch), scratch.fragments)
         };
         // Where samples lie off pixels' centres nothing is sampled before its time.
