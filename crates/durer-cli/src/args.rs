@@ -3,6 +3,7 @@
 use crate::drawing::args::DrawingArgs;
 use crate::output::Kind;
 use crate::section::SectionArgs;
+use crate::staging::StageArgs;
 use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
@@ -66,7 +67,7 @@ pub enum Command {
     Fill(Box<crate::fill::FillArgs>),
     /// Say what is in a model
     Info(InfoArgs),
-    /// Say which objects and triangles lie behind a point or a rectangle of the picture
+    /// Say which objects, triangles, lines and points lie behind a point or a rectangle of the picture
     Pick(Box<PickArgs>),
     /// Make a new view from a picture and its depths, for a camera near by
     #[command(after_long_help = crate::warp::EXAMPLES, after_help = "--help shows more, and examples.")]
@@ -129,6 +130,9 @@ pub struct RenderArgs {
     /// How surfaces look.
     #[command(flatten)]
     pub look: LookArgs,
+    /// What is around the model.
+    #[command(flatten)]
+    pub stage: StageArgs,
     /// Planes that cut the model.
     #[command(flatten)]
     pub section: SectionArgs,
@@ -150,7 +154,9 @@ pub struct RenderArgs {
     /// Write a report on standard output, in JSON
     ///
     /// Seconds per stage (read, geometry, raster, encode), triangles (in, clipped, culled, drawn,
-    /// not finite), warnings, and the peak memory of the process where the system tells it.
+    /// not finite), warnings, the peak memory of the process where the system tells it, and of each
+    /// picture its `status`: `ok`, `empty` where the model has nothing to draw, `invisible` where nothing
+    /// of it is seen.
     #[arg(long, help_heading = "Running")]
     pub json: bool,
 }
@@ -277,8 +283,18 @@ pub struct LookArgs {
     #[arg(long, value_name = "LIGHT", allow_hyphen_values = true, long_help = lights::SYNTAX, value_parser = lights::light)]
     pub light: Vec<Light>,
     /// Which faces are left out
-    #[arg(long, value_name = "WHICH", default_value = "none")]
+    #[arg(long, value_name = "WHICH", default_value = "material")]
     pub cull: Cull,
+    /// Width of a model's lines in pixels
+    #[arg(long, value_name = "PIXELS", allow_hyphen_values = true, default_value = "1.5", value_parser = values::pixels)]
+    pub line_width: f64,
+    /// Side of a model's points in pixels
+    #[arg(long, value_name = "PIXELS", allow_hyphen_values = true, default_value = "3", value_parser = values::pixels)]
+    pub point_size: f64,
+    /// The colour of what has no material [default: light grey; of lines and points what is seen
+    /// against the background]
+    #[arg(long, value_name = "COLOR", value_parser = color::color)]
+    pub color: Option<durer::math::Vec4>,
     /// Whether surfaces keep light from others
     #[arg(long, value_name = "HOW", default_value = "none")]
     pub shadows: Shadows,

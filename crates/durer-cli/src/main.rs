@@ -24,6 +24,7 @@ mod render;
 mod report;
 mod resources;
 mod section;
+mod staging;
 mod values;
 mod warp;
 

@@ -10,9 +10,11 @@ use crate::messages::Messages;
 use crate::output::{self, Kind, Name, Target};
 use crate::report::{self, Failed, ModelReport, PictureReport, Report};
 use crate::section;
+use crate::staging;
 use crate::values::{Algorithm, Size};
-use durer::pipeline::{self, Lighting, Mask, RenderOptions, SurfaceMethod};
-use durer::scene::Scene;
+use durer::math::Vec4;
+use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
+use durer::scene::{AlphaMode, Material, Scene};
 use durer::target::Framebuffer;
 use durer::view::layout::Layout;
 use durer_formats::{Model, png};
@@ -213,7 +215,11 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     if let Some(axis) = args.view.up_axis {
         model.scene.up_axis = axis.into();
     }
+    if let Some(color) = args.look.color {
+        model.scene.give_material(colored(color));
+    }
     messages.warnings(&name, &model.warnings);
+    staging::give_materials(&args.stage, &mut model.scene);
     let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
     messages.detail(|| {
         format!(
@@ -223,6 +229,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         )
     });
     let mut pictures = Vec::new();
+    let mut unseen_of_all = None;
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));
         let report = if drawing::is_wanted(args, kind(args)) {
@@ -232,13 +239,20 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         } else {
             render_picture(args, &model.scene, picture)
         };
-        let report = report.map_err(|failure| with_file(&name, failure))?;
+        let (report, unseen) = report.map_err(|failure| with_file(&name, failure))?;
+        if let Some(why) = unseen {
+            messages.warning(&name, &why);
+            unseen_of_all.get_or_insert(why);
+        }
         tell_differing(&name, &report, messages);
         messages.detail(|| describe(&report));
         messages.progress.advance();
         pictures.push(report);
     }
     tell_non_finite(&name, &mut model, &pictures, messages);
+    if let Some(why) = unseen_of_all {
+        model.warn(durer_formats::Place::Whole, why);
+    }
     Ok(ModelReport {
         model: name,
         format: model.format,
@@ -246,6 +260,12 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
         pictures,
     })
+}
+
+/// The default material in another colour.
+fn colored(color: Vec4) -> Material {
+    let alpha_mode = if color.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
+    Material { base_color: color, alpha_mode, ..Material::default() }
 }
 
 /// All algorithms find the same surfaces; where they do not, that is worth a word.
@@ -323,30 +343,44 @@ fn viewports(layout: &Layout, size: Size) -> Result<Vec<Cell>, String> {
     viewports.into_iter().map(cell).collect()
 }
 
-/// Renders one picture and writes its files.
+/// Renders one picture and writes its files; tells why nothing of the model is seen, where that is so.
 fn render_picture(
     args: &RenderArgs,
     scene: &Scene,
     picture: &Picture,
-) -> Result<PictureReport, Failure> {
+) -> Result<(PictureReport, Option<String>), Failure> {
     let Size { width, height } = args.picture.size;
     let mut report = PictureReport { width, height, ..PictureReport::default() };
-    let mut cells = Vec::new();
+    let (mut cells, mut statuses) = (Vec::new(), Vec::new());
+    let staged = staging::staged(&args.stage, scene)?;
+    let model = scene;
+    let framed = staged.as_ref().map_or(model, |s| &s.framed);
+    let scene = staged.as_ref().map_or(model, |s| &s.whole);
     let algorithm = algorithm(args, scene);
     for cell in shots(args, picture.frame)? {
-        let options = render_options(args, scene, picture, &cell.shot, algorithm)?;
+        let options = render_options(args, [model, framed, scene], picture, &cell.shot, algorithm)?;
         report.cameras.push((&options.camera).into());
-        let framebuffer = match algorithm {
+        let mut framebuffer = match algorithm {
             Algorithm::Surfaces(_) => {
                 let (framebuffer, stages) = pipeline::render(scene, &options).map_err(usage)?;
                 report.add(&stages);
                 framebuffer
             }
             Algorithm::Wireframe => compare::wireframe(scene, &options).map_err(usage)?,
-            Algorithm::All => compare::sheet(scene, &options, &mut report)?,
+            Algorithm::All => {
+                // A sheet has labels; what the z-buffer shows of the model, all methods do.
+                let (alone, _) = pipeline::render(scene, &options).map_err(usage)?;
+                statuses.push(pipeline::status(scene, &options, &alone).map_err(usage)?);
+                compare::sheet(scene, &options, &mut report)?
+            }
         };
+        if algorithm != Algorithm::All {
+            statuses.push(pipeline::status(scene, &options, &framebuffer).map_err(usage)?);
+            staging::draw_edges(&args.stage, model, &options, &mut framebuffer)?;
+        }
         cells.push((cell, framebuffer));
     }
+    let unseen = report.set_status(&statuses);
     report.algorithm = match algorithm {
         Algorithm::Surfaces(method) => method.name().to_owned(),
         Algorithm::Wireframe => durer::visibility::wireframe::INFO.name.to_owned(),
@@ -357,7 +391,7 @@ fn render_picture(
     let start = Instant::now();
     report.files = write(args, picture, &framebuffer)?;
     report.encode_seconds = start.elapsed().as_secs_f64();
-    Ok(report)
+    Ok((report, unseen))
 }
 
 /// Options that the renderer refuses.
@@ -365,13 +399,15 @@ fn usage(e: durer::Error) -> Failure {
     Failure::Usage(e.to_string())
 }
 
+/// The options for the picture of a model, of what the view is fitted to, and of all there is.
 fn render_options(
     args: &RenderArgs,
-    scene: &Scene,
+    [model, framed, scene]: [&Scene; 3],
     picture: &Picture,
     shot: &Shot,
     algorithm: Algorithm,
 ) -> Result<RenderOptions, Failure> {
+    let camera = camera::camera(&args.view, framed, shot)?;
     let lighting = match &args.look.light[..] {
         [] => Lighting::Auto,
         lights => Lighting::Given(lights.to_vec()),
@@ -387,6 +423,7 @@ fn render_options(
         lighting,
         background: args.picture.background,
         cull: args.look.cull.into(),
+        marks: Marks { line_width: args.look.line_width, point_size: args.look.point_size },
         samples: args.picture.aa.into(),
         mask: match args.picture.aa {
             Samples::SixtyFour => Mask::M64,
@@ -399,7 +436,12 @@ fn render_options(
         item: picture.item.is_some(),
         normal: picture.normal.is_some(),
         max_pixels: args.picture.max_pixels,
-        ..RenderOptions::new(camera::camera(&args.view, scene, shot)?)
+        ambient_occlusion: staging::occlusion(&args.stage, model),
+        ..RenderOptions::new(if std::ptr::eq(framed, scene) {
+            camera
+        } else {
+            staging::with_depths(&args.view, &camera, scene)
+        })
     })
 }
 

@@ -1,6 +1,6 @@
 //! What `durer render --json` says.
 
-use durer::pipeline;
+use durer::pipeline::{self, Status, Unseen};
 use durer::scene::{Camera, Projection};
 use serde::Serialize;
 
@@ -39,6 +39,8 @@ pub struct ModelReport {
 pub struct PictureReport {
     /// Where it went; `-` is standard output.
     pub files: Vec<String>,
+    /// `ok`, `empty` or `invisible`: whether anything of the model is seen.
+    pub status: &'static str,
     /// In pixels; 0 for vectors.
     pub width: u32,
     /// In pixels; 0 for vectors.
@@ -134,6 +136,19 @@ pub struct Failed {
 }
 
 impl PictureReport {
+    /// Sets the status from those of all viewports: something of the model is seen if one shows it.
+    /// Returns why nothing is seen, in words.
+    pub fn set_status(&mut self, of_cells: &[Status]) -> Option<String> {
+        let shown = of_cells.iter().find(|s| **s == Status::Ok);
+        let status = shown.or(of_cells.first()).copied().unwrap_or(Status::Ok);
+        self.status = status.name();
+        match status {
+            Status::Ok => None,
+            Status::Empty => Some("there is nothing to draw in it".to_owned()),
+            Status::Invisible(why) => Some(format!("nothing of it is seen: {why}{}", hint(why))),
+        }
+    }
+
     /// Adds what the renderer says about one viewport.
     pub fn add(&mut self, report: &pipeline::Report) {
         self.triangles.given += report.triangles_in;
@@ -143,6 +158,18 @@ impl PictureReport {
         self.triangles.drawn += report.drawn;
         self.geometry_seconds += report.geometry_seconds;
         self.raster_seconds += report.raster_seconds;
+    }
+}
+
+/// What may be done about a model of which nothing is seen.
+fn hint(why: Unseen) -> &'static str {
+    match why {
+        Unseen::Culled => "; --cull none shows them",
+        Unseen::LikeBackground => "; --background or --color makes it seen",
+        Unseen::BeforeNear => "; --near is the distance of that plane",
+        Unseen::BeyondFar => "; --far is the distance of that plane",
+        Unseen::BehindEye | Unseen::Beside => "; without a camera the view is fitted to the model",
+        _ => "",
     }
 }
 

@@ -60,6 +60,12 @@ pub fn kind() -> impl TypedValueParser<Value = Kind> {
         .map(|name| name.parse::<DrawingFormat>().map_or(Kind::Png, Kind::Drawing))
 }
 
+/// A size on the screen in pixels: above 0, and no larger than a picture.
+pub fn pixels(text: &str) -> Result<f64, String> {
+    let size = positive(text)?;
+    if size <= 16_384.0 { Ok(size) } else { Err("at most 16384 pixels".to_owned()) }
+}
+
 /// A finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

@@ -68,6 +68,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &visibility::back_face::INFO,
     &visibility::surface::z_buffer::INFO,
     &visibility::surface::a_buffer::INFO,
+    &visibility::surface::ambient_occlusion::INFO,
     &visibility::surface::scan_line_z::INFO,
     &visibility::surface::spanning_scan_line::INFO,
     &visibility::surface::depth_sort::INFO,

@@ -127,7 +127,8 @@
 //! by [Weiler–Atherton](visibility::region::weiler_atherton); [hatching](visibility::region::hatch) for pens.
 //!
 //! [Back-face removal](visibility::back_face) leaves out what looks away before anything else is done;
-//! [wireframe](visibility::wireframe) draws all edges, hidden ones too.
+//! [wireframe](visibility::wireframe) draws all edges, hidden ones too. [`pipeline::status`] tells why nothing
+//! of a scene is seen.
 //!
 //! **How does a drawing come onto paper?** [`paper`]: page, scale, pens, dashes, sheets of four views;
 //! letters from the [single-stroke font](curve::stroke_font).
@@ -137,7 +138,8 @@
 //!
 //! **What colour does it have?** [`shade`]: [flat](shade::flat), [Gouraud](shade::gouraud),
 //! [Phong](shade::phong), [metallic-roughness](shade::metallic_roughness), [unlit](shade::unlit);
-//! [textures](shade::texture); [shadow maps](shade::shadow).
+//! [textures](shade::texture); [shadow maps](shade::shadow);
+//! [ambient occlusion](visibility::surface::ambient_occlusion) from the depths of a picture.
 //!
 //! **What happens before a pixel changes?** [`fragment`]: scissor, alpha test, stencil, depth,
 //! blending, dithering, logic operation, write masks; colour indices with a

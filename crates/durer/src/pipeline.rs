@@ -1,8 +1,14 @@
 //! The order of the stages; nothing else knows it.
 
 mod draw;
+mod edges;
+mod floor;
+mod status;
 
 pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes};
+pub use edges::{EdgeStyle, draw_edges};
+pub use floor::{add_axes, add_grid, add_ground};
+pub use status::{Status, Unseen, drawing_status, status};
 
 use crate::math::Vec4;
 use crate::scene::{Camera, Light, Scene};
@@ -13,10 +19,11 @@ use crate::target::Framebuffer;
 use crate::trace::NoTrace;
 use crate::view::View;
 pub use crate::visibility::surface::a_buffer::Mask;
+pub use crate::visibility::surface::ambient_occlusion;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::method::{self, render_with};
 use crate::visibility::surface::setup::Filter;
-pub use crate::visibility::surface::{Background, Cull, Samples, SurfaceMethod};
+pub use crate::visibility::surface::{Background, Cull, Marks, Samples, SurfaceMethod};
 use crate::visibility::surface::{shadow_map, z_buffer};
 use crate::{Error, Result};
 
@@ -62,6 +69,8 @@ pub struct RenderOptions {
     pub background: Background,
     /// Which faces are left out.
     pub cull: Cull,
+    /// The size of lines and points.
+    pub marks: Marks,
     /// Samples per pixel of the colour plane, where the algorithm takes several; the other planes always have one, at the centre.
     pub samples: Samples,
     /// How fine the A-buffer's masks are; it takes no samples.
@@ -73,6 +82,8 @@ pub struct RenderOptions {
     /// How often rays may be reflected by mirrors and refracted by what blends; above 0 for
     /// [`SurfaceMethod::Ray`] only.
     pub bounces: u32,
+    /// How far what is seen keeps light from all around from each other; `None` = not at all.
+    pub ambient_occlusion: Option<ambient_occlusion::Options>,
     /// Whether the framebuffer gets a depth plane.
     pub depth: bool,
     /// Whether the framebuffer gets an item plane.
@@ -97,11 +108,13 @@ impl RenderOptions {
             lighting: Lighting::Auto,
             background: Background::Color(Vec4::ONE),
             cull: Cull::None,
+            marks: Marks::default(),
             samples: Samples::Four,
             mask: Mask::M16,
             shadows: Shadows::None,
             shadow_map_side: shadow_map::Options::default().side,
             bounces: 0,
+            ambient_occlusion: None,
             depth: false,
             item: false,
             normal: false,
@@ -221,6 +234,7 @@ pub fn render_into(
             let z_options = z_buffer::Options {
                 samples: options.samples,
                 cull: options.cull,
+                marks: options.marks,
                 shading: options.shading,
                 background: options.background,
                 level: options.level,
@@ -229,6 +243,9 @@ pub fn render_into(
         }
         _ => from_screen_triangles(scene, &view, &lights, options, framebuffer)?,
     };
+    let start = std::time::Instant::now();
+    darken(&view, options, framebuffer);
+    let darken_seconds = start.elapsed().as_secs_f64();
     Ok(Report {
         triangles_in: scene.triangle_count(),
         non_finite: report.counts.non_finite,
@@ -236,8 +253,23 @@ pub fn render_into(
         culled: report.counts.culled,
         drawn: report.counts.drawn,
         geometry_seconds: report.geometry_seconds + shadow_seconds,
-        raster_seconds: report.raster_seconds,
+        raster_seconds: report.raster_seconds + darken_seconds,
     })
+}
+
+/// Applies ambient occlusion, where it is asked for, and drops the planes that were there for it alone.
+fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
+    let Some(occlusion) = &options.ambient_occlusion else { return };
+    let Framebuffer { color, depth, normal, .. } = framebuffer;
+    if let (Some(depth), Some(normal)) = (&depth, &normal) {
+        ambient_occlusion::apply(view, depth, normal, occlusion, color);
+    }
+    if !options.depth {
+        *depth = None;
+    }
+    if !options.normal {
+        *normal = None;
+    }
 }
 
 /// Gives a framebuffer the planes that are asked for. Its colours stay where their number is right, for every method
@@ -250,13 +282,14 @@ fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) {
     } else {
         Framebuffer::new(options.width, options.height)
     };
-    if options.depth {
+    let occlusion = options.ambient_occlusion.is_some();
+    if options.depth || occlusion {
         ready = ready.with_depth();
     }
     if options.item {
         ready = ready.with_items();
     }
-    if options.normal {
+    if options.normal || occlusion {
         ready = ready.with_normals();
     }
     *framebuffer = ready;
@@ -310,7 +343,7 @@ fn from_screen_triangles(
 ) -> Result<z_buffer::Report> {
     let start = std::time::Instant::now();
     let sample_reach = options.algorithm.sample_reach();
-    let filter = Filter { cull: options.cull, sample_reach };
+    let filter = Filter { cull: options.cull, sample_reach, marks: options.marks };
     let input = SurfaceInput::new(scene, view, filter)?;
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = std::time::Instant::now();

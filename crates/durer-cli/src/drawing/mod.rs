@@ -41,6 +41,15 @@ const PAINTED_SIDE: f64 = 190.0;
 const OF_PIXELS: &[(&str, &str)] = &[
     ("algorithm", "it finds the surfaces of pixels; --style says what a drawing shows"),
     ("aa", "vectors have no samples; leave it out, or write a .png"),
+    ("look", "--style says what a drawing shows"),
+    ("ambient_occlusion", "areas of drawings have one colour each; leave it out"),
+    ("ground", "--style shadows draws shadows exactly"),
+    ("edges", "--style regions+lines draws areas with edges"),
+    ("grid", "it is for pictures; leave it out"),
+    ("axes", "it is for pictures; leave it out"),
+    ("line_width", "--pen says how wide lines are; leave it out"),
+    ("point_size", "points of drawings are small crosses; leave it out"),
+    ("color", "pens and materials say what drawings look like; leave it out"),
     ("shading", "areas of drawings have one colour each; leave it out, and give lights by --light"),
     ("shadows", "--style shadows draws them exactly"),
     ("shadow_map", "--style shadows draws shadows exactly, without a map"),
@@ -153,31 +162,36 @@ pub struct Subject<'a> {
     pub cap_material: Option<usize>,
 }
 
-/// Draws one picture of a model and writes its file.
+/// Draws one picture of a model and writes its file; tells why nothing of the model is seen, where that
+/// is so.
 pub fn render(
     args: &RenderArgs,
     subject: &Subject,
     frame: Option<u32>,
     target: &Target,
     kind: Kind,
-) -> Result<PictureReport, Failure> {
+) -> Result<(PictureReport, Option<String>), Failure> {
     let start = Instant::now();
     let style = args.drawing.style.unwrap_or_default();
     let cameras = match args.drawing.sheet {
         Some(_) => sheet_cameras(subject.scene).to_vec(),
         None => vec![single_camera(args, subject.scene, frame)?],
     };
-    let mut drawings = Vec::new();
+    let (mut drawings, mut statuses) = (Vec::new(), Vec::new());
     let seen_from = cameras.iter().map(CameraReport::from).collect();
     let mut report = PictureReport { cameras: seen_from, ..PictureReport::default() };
     for camera in cameras {
         let cap_material = subject.cap_material;
         let shown = with_tones(style, args.drawing.hatch);
         let options = DrawOptions { cap_material, ..draw_options(args, kind, shown, camera) };
-        let drawing =
-            pipeline::draw(subject.scene, &options).map_err(|e| Failure::Usage(e.to_string()))?;
+        let usage = |e: durer::Error| Failure::Usage(e.to_string());
+        let drawing = pipeline::draw(subject.scene, &options).map_err(usage)?;
+        let DrawOptions { camera, aspect, .. } = &options;
+        let status = pipeline::drawing_status(subject.scene, camera, *aspect, &drawing);
+        statuses.push(status.map_err(usage)?);
         drawings.push(drawing);
     }
+    let unseen = report.set_status(&statuses);
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut laid = lay_out(args, kind, subject, frame, &drawings)?;
@@ -196,7 +210,7 @@ pub fn render(
     report.drawing = Some(DrawingReport::new(style.name(), &all, &laid));
     write(args, kind, target, &laid, &drawings, &mut report, start)?;
     report.files = vec![target.to_string()];
-    Ok(report)
+    Ok((report, unseen))
 }
 
 /// Whoever wants lines hatched by shade needs to know the areas between them.

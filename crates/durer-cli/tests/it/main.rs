@@ -20,4 +20,5 @@ mod plot;
 mod readme;
 mod resources;
 mod same_bytes;
+mod seen;
 mod streams;

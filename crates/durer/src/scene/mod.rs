@@ -104,6 +104,21 @@ impl Scene {
         Some(BoundingSphere { center, radius: radius2.sqrt() })
     }
 
+    /// Gives a material to all parts that have none.
+    pub fn give_material(&mut self, material: Material) {
+        let number = self.materials.len();
+        for mesh in &mut self.meshes {
+            if mesh.parts.is_empty() {
+                let range = 0..mesh.primitive_count() as u32;
+                mesh.parts.push(Part { range, material: None, name: String::new() });
+            }
+            for part in &mut mesh.parts {
+                part.material.get_or_insert(number);
+            }
+        }
+        self.materials.push(material);
+    }
+
     /// Checks that every index refers to something that exists.
     ///
     /// # Errors

@@ -1,0 +1,165 @@
+//! What is put around a model, and how light falls on it: floor, grid, axes, edges, occlusion.
+
+use crate::args::ViewArgs;
+use crate::failure::Failure;
+use crate::fit;
+use crate::values;
+use clap::{Args, ValueEnum};
+use durer::math::Vec4;
+use durer::pipeline::{
+    self, EdgeStyle, RenderOptions, add_axes, add_grid, add_ground, ambient_occlusion,
+};
+use durer::scene::{Camera, Material, Scene, ShadingModel};
+use durer::target::Framebuffer;
+use durer::view::projection::drawn_bounds;
+
+/// How far away, as a part of the model's radius, things take light from each other.
+const OCCLUSION_RADIUS: f64 = 0.25;
+
+/// The options.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Stage")]
+pub struct StageArgs {
+    /// A set of the options below
+    #[arg(long, value_name = "NAME", default_value = "plain")]
+    pub look: Look,
+    /// Darken what little light from all around gets to; how much, 0 to 1 [default without a number: 0.8]
+    #[arg(long, value_name = "STRENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "0.8", value_parser = strength)]
+    pub ambient_occlusion: Option<f64>,
+    /// A soft shadow on the floor that the model stands on
+    #[arg(long)]
+    pub ground: bool,
+    /// Draw visible outlines, creases and borders over the picture, exactly; how wide, in pixels
+    /// [default without a number: 1.5]
+    #[arg(long, value_name = "PIXELS", num_args = 0..=1, require_equals = true, default_missing_value = "1.5", value_parser = values::pixels)]
+    pub edges: Option<f64>,
+    /// A grid on the floor; its lines are 1, 2 or 5 times a power of ten apart
+    #[arg(long)]
+    pub grid: bool,
+    /// The axes of the world: x red, y green, z blue
+    #[arg(long)]
+    pub axes: bool,
+}
+
+/// `--look`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Look {
+    /// The materials in plain light
+    Plain,
+    /// With a shadow on the floor and occlusion
+    Studio,
+    /// All surfaces of one matte clay, with a shadow on the floor and occlusion
+    Clay,
+    /// All surfaces nearly white, with edges
+    Technical,
+}
+
+fn strength(text: &str) -> Result<f64, String> {
+    let value = values::not_negative(text)?;
+    if value <= 1.0 { Ok(value) } else { Err("it is a part of the light, 0 to 1".to_owned()) }
+}
+
+impl StageArgs {
+    fn has_studio(&self) -> bool {
+        matches!(self.look, Look::Studio | Look::Clay)
+    }
+
+    fn occlusion(&self) -> Option<f64> {
+        self.ambient_occlusion.or(self.has_studio().then_some(0.8))
+    }
+
+    fn edges(&self) -> Option<f64> {
+        self.edges.or((self.look == Look::Technical).then_some(1.5))
+    }
+
+    fn has_ground(&self) -> bool {
+        self.ground || self.has_studio()
+    }
+}
+
+/// Gives all surfaces the material of the look, if it has one.
+pub fn give_materials(args: &StageArgs, scene: &mut Scene) {
+    let (color, roughness) = match args.look {
+        Look::Plain | Look::Studio => return,
+        Look::Clay => (Vec4::new(0.62, 0.52, 0.44, 1.0), 0.9),
+        Look::Technical => (Vec4::new(0.9, 0.9, 0.9, 1.0), 1.0),
+    };
+    for material in &mut scene.materials {
+        *material = Material {
+            name: std::mem::take(&mut material.name),
+            model: ShadingModel::MetallicRoughness,
+            base_color: color,
+            roughness,
+            double_sided: material.double_sided,
+            ..Material::default()
+        };
+    }
+    for mesh in &mut scene.meshes {
+        mesh.colors.clear();
+    }
+    scene.give_material(Material {
+        model: ShadingModel::MetallicRoughness,
+        base_color: color,
+        roughness,
+        ..Material::default()
+    });
+}
+
+/// A model with what is put around it.
+pub struct Staged {
+    /// What the view is fitted to: all but the shadow on the floor, which fades out.
+    pub framed: Scene,
+    /// All of it.
+    pub whole: Scene,
+}
+
+/// Returns the scene with what is put around the model; `None` where nothing is.
+pub fn staged(args: &StageArgs, scene: &Scene) -> Result<Option<Staged>, Failure> {
+    if !(args.has_ground() || args.grid || args.axes) {
+        return Ok(None);
+    }
+    let Some(model) = drawn_bounds(scene) else { return Ok(None) };
+    let mut framed = scene.clone();
+    if args.grid {
+        add_grid(&mut framed, &model);
+    }
+    if args.axes {
+        add_axes(&mut framed, &model);
+    }
+    let mut whole = framed.clone();
+    if args.has_ground() {
+        let usage = |e: durer::Error| Failure::Usage(e.to_string());
+        add_ground(&mut whole, scene, &model).map_err(usage)?;
+    }
+    Ok(Some(Staged { framed, whole }))
+}
+
+/// Returns what darkens the picture of a model, if anything is to.
+pub fn occlusion(args: &StageArgs, model: &Scene) -> Option<ambient_occlusion::Options> {
+    let strength = args.occlusion().filter(|s| *s > 0.0)? as f32;
+    let radius = model.bounding_sphere()?.radius * OCCLUSION_RADIUS;
+    (radius > 0.0).then_some(ambient_occlusion::Options { radius, strength })
+}
+
+/// Draws the edges of a model over its picture, where they are asked for.
+pub fn draw_edges(
+    args: &StageArgs,
+    model: &Scene,
+    options: &RenderOptions,
+    picture: &mut Framebuffer,
+) -> Result<(), Failure> {
+    let Some(width) = args.edges() else { return Ok(()) };
+    let style = EdgeStyle { width, ..EdgeStyle::default() };
+    pipeline::draw_edges(model, options, &style, picture).map_err(|e| Failure::Usage(e.to_string()))
+}
+
+/// Moves near and far plane of a fitted camera, so that what is put around the model is between them.
+pub fn with_depths(view: &ViewArgs, camera: &Camera, staged: &Scene) -> Camera {
+    let (near, far) = fit::depth_range(camera, staged);
+    let fitted = view.camera.is_none();
+    Camera {
+        near: if fitted && view.near.is_none() { near } else { camera.near },
+        far: if fitted && view.far.is_none() { far } else { camera.far },
+        ..*camera
+    }
+}
