@@ -1,8 +1,11 @@
 //! What can be said on the command line.
 
+use crate::config::ConfigArgs;
 use crate::drawing::args::DrawingArgs;
-use crate::output::Kind;
+use crate::encoding::EncodingArgs;
+use crate::kind::Kind;
 use crate::section::SectionArgs;
+use crate::sides::{Sides, sides};
 use crate::staging::StageArgs;
 use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
@@ -24,10 +27,13 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 const RENDER_EXAMPLES: &str = "\
 Examples:
   durer render bunny.obj -o bunny.png
+  durer render bunny.obj -o wide.png --size 800x
   durer render part.stl -o part.png --size 1920x1080 --view front --background transparent
   durer render scene.glb -o scene.png --camera Overview --aa 16
   durer render scene.glb -o scene.png --eye -3.4,1.2,-1.3 --target 0,0.5,0 --fov 35
   durer render part.stl -o sheet.png --viewports front,top,right,iso --size 1600x1200
+  durer render part.stl -o part.jpg --quality 80
+  durer render part.stl -o turn.webp --turntable 72 --duration 4
   durer render part.stl -o frames/part_%03d.png --turntable 72
   durer render *.stl -o thumbnails/ --size 256x256 --skip-failures
   durer render bunny.obj -o compare.png --algorithm all
@@ -43,23 +49,26 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 
 /// Renders 3D models to pictures, on the CPU.
 #[derive(Debug, Parser)]
-#[command(name = "durer", version, about = ABOUT, after_help = EXIT_CODES, max_term_width = 100)]
+#[command(name = "durer", version, about = ABOUT, after_help = EXIT_CODES, after_long_help = format!("{}\n\n{EXIT_CODES}", crate::config::HELP), max_term_width = 100)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// Where further options are.
+    #[command(flatten)]
+    pub config: ConfigArgs,
 }
 
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render models to PNG pictures, or draw them as SVG, PDF, DXF, HPGL or GeoJSON
+    /// Render models to pictures (PNG, JPEG, WebP, animations), or draw them as SVG, PDF, DXF, HPGL or GeoJSON
     #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
     Clip(Box<crate::clip::ClipArgs>),
-    /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a PNG picture
+    /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a picture
     #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
     Draw(Box<crate::draw::DrawArgs>),
     /// Fill what is connected with a pixel of a PNG or JPEG, by seed fill
@@ -75,6 +84,9 @@ pub enum Command {
     /// Plot a surface y = f(x, z): a formula or a height map
     #[command(after_long_help = crate::plot::EXAMPLES, after_help = "--help shows more, and examples.")]
     Plot(Box<crate::plot::PlotArgs>),
+    /// Write what lets file managers show models as small pictures
+    #[command(after_help = crate::thumbnailer::HELP)]
+    Thumbnailer(crate::thumbnailer::ThumbnailerArgs),
     /// Write a completion script for a shell to standard output
     Completions {
         /// The shell
@@ -102,20 +114,21 @@ pub struct InfoArgs {
 }
 
 /// The options of `durer render`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct RenderArgs {
     /// Models: glTF, GLB, OBJ, STL, PLY, 3MF; `-` reads one from standard input
     #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
     /// Where the picture goes
     ///
-    /// A .png file, or a drawing as .svg, .pdf, .dxf, .hpgl or .geojson; `-` for standard output; a
-    /// folder (existing, or ending in `/`) for NAME.png of each model; for --turntable also a file
-    /// name with a place for the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is made. A
+    /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl or .geojson; `-` for standard
+    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into
+    /// one .png, .webp or .gif, which is animated; or into a file for each frame: in a folder, or by a name with a
+    /// place for the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is made. A
     /// file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
-    /// The format of the output [default: by its suffix, else png]
+    /// The format of the output, also where the name has another ending or none [default: by its suffix, else png]
     #[arg(long, value_name = "FORMAT", value_parser = values::kind())]
     pub format: Option<Kind>,
     /// The options that were given, by their names in the parser.
@@ -175,9 +188,9 @@ pub struct PickArgs {
     /// A rectangle of the picture, in pixels: two opposite corners
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = values::rect)]
     pub rect: Option<Rect>,
-    /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
-    pub size: Size,
+    /// Width and height of the picture in pixels, as for `render`
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = sides)]
+    pub size: Sides,
     /// Write JSON
     #[arg(long)]
     pub json: bool,
@@ -193,11 +206,17 @@ pub struct PickArgs {
 }
 
 /// The shape of the output.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureArgs {
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = values::size)]
+    /// Width and height in pixels, or one number for a square
+    ///
+    /// One side may be left out, `640x` or `x480`, and follows from the shape of what is seen: the model's
+    /// outline, where the view fits it; the aspect ratio of a camera of the file; square cells of --viewports.
+    #[arg(id = "size", long = "size", value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = sides)]
+    pub sides: Sides,
+    /// The same, found where a side was open.
+    #[arg(skip)]
     pub size: Size,
     /// How visible surfaces are found [default: z-buffer, or a-buffer where a material blends or
     /// --aa is 64, or ray where --shadows rays or --bounces asks for it]
@@ -219,12 +238,18 @@ pub struct PictureArgs {
     /// and rows may be given first: `3x1:front,right,iso`. Each view fits the model.
     #[arg(long, value_name = "LAYOUT", value_parser = crate::camera::layout, conflicts_with_all = ["view", "azimuth", "elevation", "eye", "camera"])]
     pub viewports: Option<Layout>,
-    /// N pictures around the up axis
+    /// N pictures around the up axis, in one animated file or in one file each
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub turntable: Option<u32>,
-    /// How small the PNG is to be: `fast` or `small`
-    #[arg(long, value_name = "HOW", default_value = "fast")]
-    pub compression: Compression,
+    /// Frames a second, where a turntable goes into one file [default: 24]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable")]
+    pub fps: Option<f64>,
+    /// Seconds of a whole turn, where it goes into one file [default: by --fps]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable", conflicts_with = "fps")]
+    pub duration: Option<f64>,
+    /// How the picture is put into bytes.
+    #[command(flatten)]
+    pub encoding: EncodingArgs,
     /// Refuse pictures of more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,
@@ -267,13 +292,13 @@ pub struct ViewArgs {
     /// A camera of the file, by its name; `durer info` lists them
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
-    /// Which axis is up [default: by the format]
-    #[arg(long, value_name = "AXIS", ignore_case = true)]
+    /// Which axis is up: x, y, z, -x, -y or -z [default: by the format]
+    #[arg(long, value_name = "AXIS", ignore_case = true, allow_hyphen_values = true)]
     pub up_axis: Option<UpAxis>,
 }
 
 /// Light and surfaces.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Look")]
 pub struct LookArgs {
     /// How surfaces are shaded [default: by the material]
@@ -307,7 +332,7 @@ pub struct LookArgs {
 }
 
 /// Pictures of other planes than colour.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Further pictures")]
 pub struct PlaneArgs {
     /// The visible triangle of each pixel
@@ -332,7 +357,7 @@ pub struct PlaneArgs {
 }
 
 /// What is read of a model, and how much.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Reading")]
 pub struct ReadingArgs {
     /// Pose the model at this animation, by name or number [default: the first, given --time]
@@ -350,7 +375,7 @@ pub struct ReadingArgs {
 }
 
 /// How the command runs.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Running")]
 pub struct RunningArgs {
     /// Work on so many threads [default: as many as there are processors]; the pictures are the same
@@ -428,15 +453,17 @@ pub enum UpAxis {
     Y,
     /// STL, 3MF
     Z,
-}
-
-/// `--compression`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Compression {
-    /// Some twenty times faster than `small`
-    Fast,
-    /// Files a quarter to a half smaller
-    Small,
+    /// Seen from +z
+    X,
+    /// Seen from +z, as pictures whose rows count downwards
+    #[value(name = "-y")]
+    NegY,
+    /// Seen from -y
+    #[value(name = "-z")]
+    NegZ,
+    /// Seen from +z
+    #[value(name = "-x")]
+    NegX,
 }
 
 impl From<Samples> for pipeline::Samples {
@@ -487,15 +514,10 @@ impl From<UpAxis> for scene::UpAxis {
         match axis {
             UpAxis::Y => Self::Y,
             UpAxis::Z => Self::Z,
-        }
-    }
-}
-
-impl From<Compression> for durer_formats::png::Compression {
-    fn from(compression: Compression) -> Self {
-        match compression {
-            Compression::Fast => Self::Fast,
-            Compression::Small => Self::Small,
+            UpAxis::X => Self::X,
+            UpAxis::NegY => Self::NegY,
+            UpAxis::NegZ => Self::NegZ,
+            UpAxis::NegX => Self::NegX,
         }
     }
 }

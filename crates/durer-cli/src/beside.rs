@@ -45,6 +45,11 @@ impl Beside {
         Err(io::ErrorKind::AlreadyExists.into())
     }
 
+    /// The file, for who keeps what writes to it: both write at the same place in it.
+    pub fn file(&self) -> io::Result<File> {
+        self.file.try_clone()
+    }
+
     /// Puts the file in its place; permissions of the old one stay.
     pub fn commit(mut self) -> io::Result<()> {
         if let Ok(old) = fs::metadata(&self.place) {

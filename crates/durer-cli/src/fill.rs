@@ -1,8 +1,10 @@
 //! `durer fill`.
 
-use crate::args::{Compression, RunningArgs};
+use crate::args::RunningArgs;
+use crate::encoding::{self, PictureFileArgs};
 use crate::failure::Failure;
 use crate::input::{self, display_name};
+use crate::kind::Wanted;
 use crate::messages::Messages;
 use crate::output::{self, Name, Target};
 use crate::{color, report, values};
@@ -12,6 +14,7 @@ use durer::raster::seed_fill::{self, PixelValue, SeedFill, boundary_fill, flood_
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 use durer_formats::image::Orientation;
+use durer_formats::picture::PictureFormat;
 use durer_formats::png::Channels;
 use durer_formats::{Limits, image, png};
 use serde::Serialize;
@@ -26,7 +29,7 @@ Examples:
   durer fill ink.png -o red.png --at 64,64 --color red --boundary black --tolerance 100
 
 A pixel is as different from another as the channel (red, green, blue, alpha) that differs most. A PNG of 16 bits
-per channel stays one: a step of 8 bits is 257 of its steps.
+per channel stays one, unless it becomes a JPEG or WebP: a step of 8 bits is 257 of its steps.
 
 Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
 
@@ -38,7 +41,7 @@ pub struct FillArgs {
     pub image: PathBuf,
     /// Where the picture goes
     ///
-    /// A .png file, or `-` for standard output. A file is replaced only by a whole picture.
+    /// A .png, .jpg or .webp file, or `-` for standard output. A file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// A pixel to start from, counted from 0 at the upper left of the picture as viewers show it; may be given several times
@@ -63,9 +66,9 @@ pub struct FillArgs {
     /// The algorithm; all fill the same pixels
     #[arg(long, value_name = "NAME", default_value = "spans", value_parser = method)]
     pub algorithm: SeedFill,
-    /// How small the PNG is to be: `fast` or `small`
-    #[arg(long, value_name = "HOW", default_value = "fast")]
-    pub compression: Compression,
+    /// How the picture is put into bytes.
+    #[command(flatten)]
+    pub file: PictureFileArgs,
     /// Refuse images that are, or unpack to, more bytes; k, M, G are understood
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true, default_value = "4G", value_parser = values::bytes)]
     pub max_bytes: u64,
@@ -123,7 +126,9 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
         .into_iter()
         .map(|stem| Name { stem, frame: None })
         .collect();
-    let target = output::plan_pictures("--output", &args.output, &names)?.into_iter().next();
+    let wanted = Wanted::picture(&args.output, args.file.format);
+    args.file.encoding.check(wanted.kind)?;
+    let target = output::plan("--output", &args.output, &names, &wanted)?.into_iter().next();
     let target = target.ok_or_else(|| Failure::Usage("nothing to fill".to_owned()))?;
     if args.json && target == Target::Stdout {
         let message = "--json: the report goes to standard output, where the picture goes too";
@@ -143,13 +148,7 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     }
     let fill_seconds = filling.elapsed().as_secs_f64();
     messages.progress.stage(|| format!("writing {target}"));
-    let compression = args.compression.into();
-    output::deliver(&target, |out| match &picture {
-        Picture::Eight(pixels) => png::write_color(out, pixels, compression),
-        Picture::Sixteen(pixels, channels) => {
-            png::write_deep_color(out, pixels, *channels, compression)
-        }
-    })?;
+    picture.write(args, &target, wanted.kind.picture(), &messages)?;
     for Fill { x, y, pixels } in &fills {
         messages.detail(|| format!("{name}: {pixels} pixels from {x},{y}"));
     }
@@ -209,6 +208,36 @@ impl Picture {
         }
     }
 
+    /// Writes the picture, with as many bits per channel as the format has.
+    fn write(
+        &self,
+        args: &FillArgs,
+        target: &Target,
+        format: PictureFormat,
+        messages: &Messages,
+    ) -> Result<(), Failure> {
+        let encoding = &args.file.encoding;
+        let warn = |text: &str| messages.warning(&target.to_string(), text);
+        let flattened = match (self, format) {
+            (Self::Eight(pixels), _) => encoding.deliver(target, format, pixels)?,
+            (Self::Sixteen(pixels, channels), PictureFormat::Png) => {
+                let compression = encoding.compression.into();
+                output::deliver(target, |out| {
+                    png::write_deep_color(out, pixels, *channels, compression)
+                })?;
+                false
+            }
+            (Self::Sixteen(pixels, _), _) => {
+                warn("16 bits per channel become 8; a PNG keeps them");
+                encoding.deliver(target, format, &eight_bits(pixels)?)?
+            }
+        };
+        if flattened {
+            warn(encoding::FLATTENED);
+        }
+        Ok(())
+    }
+
     /// Fills from a pixel; returns how many it reaches.
     fn fill(&mut self, args: &FillArgs, seed: (u32, u32)) -> u64 {
         // 255 steps of 257 are the whole range of 16 bits.
@@ -223,6 +252,14 @@ impl Picture {
             }
         }
     }
+}
+
+/// The nearest colours of eight bits per channel.
+fn eight_bits(pixels: &Pixels<[u16; 4]>) -> Result<Pixels<[u8; 4]>, Failure> {
+    let nearest = |v: u16| ((u32::from(v) + 128) / 257) as u8;
+    let data = pixels.data().iter().map(|p| p.map(nearest)).collect();
+    Pixels::from_data(pixels.width(), pixels.height(), data)
+        .map_err(|e| Failure::Data(e.to_string()))
 }
 
 /// The pixel in which a point lies.

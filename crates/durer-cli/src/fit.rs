@@ -1,6 +1,6 @@
 //! What cameras have to see of a scene.
 
-use durer::math::DVec3;
+use durer::math::{DVec2, DVec3};
 use durer::scene::{Camera, Mesh, Projection, Scene, UpAxis};
 use durer::view::projection::{
     FitOptions, NamedView, ViewDirection, drawn_bounds, drawn_ends, fit_points, fit_scene,
@@ -39,12 +39,16 @@ pub fn turning(
     direction: &ViewDirection,
     options: &FitOptions,
 ) -> durer::Result<Camera> {
+    fit_points(rims(scene, direction.to_eye(), direction.up()), direction, options)
+}
+
+/// Points of the discs that a turning model is taken for, seen from a direction with another one up.
+fn rims(scene: &Scene, to_eye: DVec3, up: DVec3) -> Vec<DVec3> {
     let axis = NamedView::Front.direction(scene.up_axis).up();
     // Level directions, to the viewer and to the right: rims begin there, so that they look the same
     // from all azimuths.
-    let outward = direction.to_eye() * axis.dot(direction.up())
-        - direction.up() * axis.dot(direction.to_eye());
-    let side = direction.right();
+    let outward = to_eye * axis.dot(up) - up * axis.dot(to_eye);
+    let side = up.cross(to_eye);
     let center = center(scene).unwrap_or(DVec3::ZERO);
     let mut points = Vec::new();
     for (radius, height) in circles(scene, center, axis) {
@@ -52,7 +56,33 @@ pub fn turning(
             points.push(center + axis * height + (outward * cos + side * sin) * radius);
         }
     }
-    fit_points(points, direction, options)
+    points
+}
+
+/// Width over height of what a camera sees of the model, or of all its frames; no number where that is nothing.
+pub fn aspect(camera: &Camera, scene: &Scene, turning: bool) -> f64 {
+    let back = (camera.eye - camera.target).normalize_or_zero();
+    let up = camera.up.reject_from(back).normalize_or_zero();
+    let right = up.cross(back);
+    let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let mut see = |p: DVec3| {
+        let p = p - camera.eye;
+        let distance = match camera.projection {
+            Projection::Perspective { .. } => -p.dot(back),
+            Projection::Orthographic { .. } => 1.0,
+        };
+        if distance > 0.0 {
+            let seen = DVec2::new(p.dot(right), p.dot(up)) / distance;
+            (least, most) = (least.min(seen), most.max(seen));
+        }
+    };
+    if turning {
+        rims(scene, back, up).into_iter().for_each(see);
+    } else {
+        for_each_point(scene, &mut see);
+    }
+    let extent = most - least;
+    extent.x / extent.y
 }
 
 /// Radii and heights of circles around an axis; the model, turned around it, stays within their hull.

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
 use crate::report;
-use durer::scene::{LightKind, Material, Scene, ShadingModel, UpAxis};
+use durer::scene::{LightKind, Material, Scene, ShadingModel};
 use durer::view::topology::mesh_topology;
 use durer_formats::Model;
 use serde::Serialize;
@@ -100,7 +100,7 @@ fn of_model(name: String, model: &Model) -> Info {
         instances: scene.instances.len(),
         bounds: bounds(scene),
         closed: closed(scene),
-        up_axis: if scene.up_axis == UpAxis::Y { "y" } else { "z" },
+        up_axis: scene.up_axis.name(),
         materials: scene.materials.iter().map(material).collect(),
         textures: textures(scene),
         cameras: scene.cameras.iter().map(|c| c.name.clone()).collect(),

@@ -6,13 +6,17 @@ mod camera;
 mod clip;
 mod color;
 mod compare;
+mod config;
 mod draw;
 mod drawing;
+mod encoding;
 mod failure;
 mod fill;
+mod film;
 mod fit;
 mod info;
 mod input;
+mod kind;
 mod lights;
 mod messages;
 mod output;
@@ -24,20 +28,26 @@ mod render;
 mod report;
 mod resources;
 mod section;
+mod shape;
+mod sides;
 mod staging;
+mod thumbnailer;
 mod values;
 mod warp;
 
 use args::{Cli, Command, RunningArgs};
 use clap::parser::ValueSource;
 use clap::{CommandFactory, FromArgMatches};
+use config::Configured;
+use encoding::EncodingArgs;
 use failure::Failure;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     beside::clean_up_when_interrupted();
-    match panics::told_at_the_end(|| parse().and_then(run)) {
+    match panics::told_at_the_end(parse_and_run) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let message = failure.to_string();
@@ -50,16 +60,55 @@ fn main() -> ExitCode {
     }
 }
 
-/// The command line; `render` also gets to know which options were given.
-fn parse() -> Result<Command, Failure> {
-    let matches = Cli::command().try_get_matches().map_err(answered)?;
+/// What is wrong with options may be wrong in the file of options, which is then named.
+fn parse_and_run() -> Result<(), Failure> {
+    let (command, file) = parse()?;
+    run(command).map_err(|failure| match (failure, file) {
+        (Failure::Usage(what), Some(file)) => {
+            Failure::Usage(format!("{what} (options of {} count, too)", file.display()))
+        }
+        (other, _) => other,
+    })
+}
+
+/// The command line, with the options of a file; what was given by hand is noted where that matters.
+fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
+    let Configured { command, line, file } =
+        config::configured(Cli::command(), std::env::args_os().collect())?;
+    let matches = command.try_get_matches_from(line).map_err(answered)?;
     let mut cli = Cli::from_arg_matches(&matches).map_err(answered)?;
-    if let (Command::Render(args), Some((_, given))) = (&mut cli.command, matches.subcommand()) {
-        let by_hand =
-            |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
-        args.given = given.ids().filter(by_hand).map(ToString::to_string).collect();
+    let Some((_, given)) = matches.subcommand() else { return Ok((cli.command, file)) };
+    let by_hand =
+        |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
+    let names: Vec<String> = given.ids().filter(by_hand).map(ToString::to_string).collect();
+    if let Some(encoding) = encoding(&mut cli.command) {
+        encoding.quality_given = names.iter().any(|name| name == "quality");
     }
-    Ok(cli.command)
+    if let Some(file) = file.as_ref().filter(|_| is_verbose(given)) {
+        let message = format!("durer: options are taken from {} too", file.display());
+        // As for errors: nobody is there to be told that it failed.
+        let _ = writeln!(std::io::stderr().lock(), "{message}");
+    }
+    if let Command::Render(args) = &mut cli.command {
+        args.given = names;
+    }
+    Ok((cli.command, file))
+}
+
+/// How a command's pictures are put into bytes, where it makes any.
+fn encoding(command: &mut Command) -> Option<&mut EncodingArgs> {
+    match command {
+        Command::Render(args) => Some(&mut args.picture.encoding),
+        Command::Draw(args) => Some(&mut args.picture.file.encoding),
+        Command::Fill(args) => Some(&mut args.file.encoding),
+        Command::Warp(args) => Some(&mut args.file.encoding),
+        Command::Plot(args) => Some(&mut args.look.encoding),
+        _ => None,
+    }
+}
+
+fn is_verbose(given: &clap::ArgMatches) -> bool {
+    given.ids().any(|id| id == "verbose") && given.get_flag("verbose")
 }
 
 /// Ends with what clap has to say: help and version, or what is wrong with the command line. A failure is what keeps it
@@ -84,6 +133,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),
         Command::Pick(args) => on_threads(&args.running, || pick::run(&args)),
         Command::Plot(args) => on_threads(&args.running, || plot::run(&args)),
+        Command::Thumbnailer(args) => thumbnailer::run(&args),
         Command::Completions { shell } => completions(shell),
         Command::Man => manual(),
     }

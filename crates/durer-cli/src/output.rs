@@ -3,7 +3,7 @@
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
-use durer_formats::drawing::DrawingFormat;
+use crate::kind::{Kind, Wanted};
 use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
@@ -27,30 +27,6 @@ impl std::fmt::Display for Target {
     }
 }
 
-/// What kind of file a picture becomes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Pixels.
-    Png,
-    /// Vectors.
-    Drawing(DrawingFormat),
-}
-
-impl Kind {
-    /// The kind that a file's name asks for; pixels where it does not say.
-    pub fn of(path: &Path) -> Self {
-        let suffix = path.extension().unwrap_or_default().to_string_lossy();
-        DrawingFormat::of_suffix(&suffix).map_or(Self::Png, Self::Drawing)
-    }
-
-    fn suffix(self) -> &'static str {
-        match self {
-            Self::Png => "png",
-            Self::Drawing(format) => format.name(),
-        }
-    }
-}
-
 /// What a picture is called where there are several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
@@ -60,24 +36,12 @@ pub struct Name {
     pub frame: Option<u32>,
 }
 
-/// One target for each name, of a command that writes pictures and drawings; creates missing folders for
-/// what is to be several files.
-pub fn plan(option: &str, path: &Path, names: &[Name], kind: Kind) -> Result<Vec<Target>, Failure> {
-    plan_with(option, path, names, kind, ALL_KINDS)
-}
-
-/// The same of a command that writes pictures only.
-pub fn plan_pictures(option: &str, path: &Path, names: &[Name]) -> Result<Vec<Target>, Failure> {
-    plan_with(option, path, names, Kind::Png, PNG_ONLY)
-}
-
-/// `suffixes` says what names may end in.
-fn plan_with(
+/// One target for each name; creates missing folders for what is to be several files.
+pub fn plan(
     option: &str,
     path: &Path,
     names: &[Name],
-    kind: Kind,
-    suffixes: &str,
+    wanted: &Wanted,
 ) -> Result<Vec<Target>, Failure> {
     let many = names.len() != 1;
     if is_stream(path) {
@@ -91,6 +55,7 @@ fn plan_with(
         if names.iter().any(|n| n.stem != names[0].stem) {
             return Err(usage(option, path, "frames of several models need a folder"));
         }
+        wanted.check_name(option, path)?;
         make_folder(path.parent().unwrap_or(Path::new("")))?;
         return Ok(names
             .iter()
@@ -99,14 +64,17 @@ fn plan_with(
     }
     if path.is_dir() || ends_in_separator(path) || (many && path.extension().is_none()) {
         make_folder(path)?;
-        return Ok(names.iter().map(|n| Target::File(path.join(n.file_name(kind)))).collect());
+        return Ok(names
+            .iter()
+            .map(|n| Target::File(path.join(n.file_name(wanted.kind))))
+            .collect());
     }
     if many {
         let frames = names.iter().any(|n| n.frame.is_some());
         let hint = if frames { " or a name such as frame_%04d.png" } else { "" };
         return Err(usage(option, path, &format!("several pictures need a folder{hint}")));
     }
-    single(option, path, kind, suffixes).map(|t| vec![t])
+    single(option, path, wanted).map(|t| vec![t])
 }
 
 /// Refuses two pictures in one place.
@@ -138,20 +106,19 @@ fn stdout_target(option: &str) -> Result<Target, Failure> {
     Ok(Target::Stdout)
 }
 
-const PNG_ONLY: &str = "pictures are written as PNG; end the name in .png";
-const ALL_KINDS: &str = "pictures are written as PNG; end the name in .png (drawings: .svg, .pdf, .dxf, \
-                         .hpgl, .geojson)";
-
 /// One file, named as its kind, in a folder that is there; or something special such as a device.
-fn single(option: &str, path: &Path, kind: Kind, suffixes: &str) -> Result<Target, Failure> {
+fn single(option: &str, path: &Path, wanted: &Wanted) -> Result<Target, Failure> {
     if is_special(path) {
         return Ok(Target::File(path.to_owned()));
     }
-    let suffix = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    if kind == Kind::Png && suffix.as_deref() != Some("png") {
-        return Err(usage(option, path, suffixes));
-    }
+    wanted.check_name(option, path)?;
     in_its_folder(path)
+}
+
+/// Whether a name stands for one file: for no folder, for no stream, and not for one file per frame.
+pub fn is_one_file(path: &Path) -> bool {
+    let folder = path.is_dir() || ends_in_separator(path) || path.extension().is_none();
+    !is_stream(path) && !folder && Pattern::of(path).is_none()
 }
 
 /// One file of any format, or `-` for standard output; nothing is read or written yet.

@@ -6,6 +6,8 @@ use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
 use crate::report;
+use crate::shape;
+use durer::math::DVec2;
 use durer::scene::{Scene, Topology};
 use durer::view::View;
 use durer::view::pick::{Area, Hit, objects, pick};
@@ -75,9 +77,14 @@ pub fn run(args: &PickArgs) -> Result<(), Failure> {
     messages.warnings(&name, &model.warnings);
     drop(messages);
     let usage = |e: durer::Error| Failure::Usage(e.to_string());
-    let shot = Shot { view: None, size: args.size, turn: None };
+    let natural = match args.size.is_open() {
+        true => shape::of_view(&args.view, &model.scene, None)?,
+        false => DVec2::ONE,
+    };
+    let size = args.size.of_shape(natural);
+    let shot = Shot { view: None, size, turn: None };
     let camera = camera::camera(&args.view, &model.scene, &shot)?;
-    let view = View::new(camera, args.size.width, args.size.height).map_err(usage)?;
+    let view = View::new(camera, size.width, size.height).map_err(usage)?;
     let area = match (args.at, args.rect) {
         (_, Some(rect)) => Area::Rect(rect),
         (Some(point), None) => Area::Point(point),

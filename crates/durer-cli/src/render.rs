@@ -4,15 +4,18 @@ use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::{self, Subject};
+use crate::encoding;
 use crate::failure::Failure;
+use crate::film::{self, Film, Sink};
 use crate::input;
+use crate::kind::Wanted;
 use crate::messages::Messages;
-use crate::output::{self, Kind, Name, Target};
+use crate::output::{self, Name, Target};
 use crate::report::{self, Failed, ModelReport, PictureReport, Report};
 use crate::section;
 use crate::staging;
 use crate::values::{Algorithm, Size};
-use durer::math::Vec4;
+use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::{AlphaMode, Material, Scene};
 use durer::target::Framebuffer;
@@ -24,6 +27,7 @@ use std::time::Instant;
 /// Renders all models, each to its pictures.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let start = Instant::now();
+    let args = &sized(args, DVec2::ONE);
     check(args)?;
     let jobs = plan(args)?;
     let pictures = jobs.iter().map(|job| job.pictures.len() as u64).sum();
@@ -52,12 +56,34 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
+/// The options with both sides of the picture; an open one as in a picture of a given shape.
+fn sized(args: &RenderArgs, natural: DVec2) -> RenderArgs {
+    let mut args = args.clone();
+    args.picture.size = args.picture.sides.of_shape(natural);
+    args
+}
+
 /// What the parser does not know to be wrong, before anything is read.
 fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
-    drawing::check(args, kind(args))?;
+    drawing::check(args, wanted(args).kind)?;
+    args.picture.encoding.check(wanted(args).kind)?;
+    check_size(args)?;
+    check_algorithm(args)?;
+    shots(args, None).map(|_| ())
+}
+
+/// Whether the picture is not too large.
+fn check_size(args: &RenderArgs) -> Result<(), Failure> {
     let Size { width, height } = args.picture.size;
+    let (kind, side) = (wanted(args).kind, width.max(height));
+    if side > kind.max_side() {
+        let (most, suffix) = (kind.max_side(), kind.suffix());
+        let message =
+            format!("--size {width}x{height}: a .{suffix} has room for {most} pixels along a side");
+        return Err(Failure::Usage(message));
+    }
     let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);
     if pixels > limit {
         let message = format!(
@@ -66,8 +92,7 @@ fn check(args: &RenderArgs) -> Result<(), Failure> {
         );
         return Err(Failure::Usage(message));
     }
-    check_algorithm(args)?;
-    shots(args, None).map(|_| ())
+    Ok(())
 }
 
 /// Whether the algorithm that is asked for can do what is asked of it.
@@ -133,8 +158,8 @@ fn algorithm(args: &RenderArgs, scene: &Scene) -> Algorithm {
 }
 
 /// What is written: what --format says, or the name of the output.
-fn kind(args: &RenderArgs) -> Kind {
-    args.format.unwrap_or_else(|| Kind::of(&args.output))
+fn wanted(args: &RenderArgs) -> Wanted {
+    Wanted::any(&args.output, args.format)
 }
 
 /// A model and what is to be made of it.
@@ -142,21 +167,36 @@ struct Job<'a> {
     model: &'a Path,
     /// Its name without folder and suffix.
     stem: String,
+    /// How all frames go into one file, where they do.
+    film: Option<film::Plan>,
     pictures: Vec<Picture>,
 }
 
 /// Where a picture and its further planes go.
 struct Picture {
     frame: Option<u32>,
+    /// One place for all frames of a film.
     color: Target,
     item: Option<Target>,
     depth: Option<Target>,
     normal: Option<Target>,
 }
 
-impl Picture {
+impl Job<'_> {
+    /// The file that all frames go into, where there is one.
+    fn film(&self) -> Option<Film<'_>> {
+        let plan = self.film?;
+        match self.pictures.first().map(|p| &p.color) {
+            Some(Target::File(path)) => Some(Film::new(path, plan)),
+            _ => None,
+        }
+    }
+
     fn targets(&self) -> impl Iterator<Item = &Target> {
-        std::iter::once(&self.color).chain(&self.item).chain(&self.depth).chain(&self.normal)
+        let places = if self.film.is_some() { 1 } else { self.pictures.len() };
+        let colors = self.pictures.iter().take(places).map(|p| &p.color);
+        let planes = self.pictures.iter().flat_map(|p| [&p.item, &p.depth, &p.normal]);
+        colors.chain(planes.flatten())
     }
 }
 
@@ -173,11 +213,16 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
         .collect();
     let optional = |option: &str, path: &Option<PathBuf>| match path {
         Some(path) => {
-            Ok(output::plan_pictures(option, path, &names)?.into_iter().map(Some).collect())
+            let targets = output::plan(option, path, &names, &Wanted::plane())?;
+            Ok(targets.into_iter().map(Some).collect())
         }
         None => Ok(vec![None; names.len()]),
     };
-    let color = output::plan("--output", &args.output, &names, kind(args))?;
+    let film = film::wanted(args, wanted(args).kind)?;
+    let color = match film {
+        Some(_) => film::targets(&args.output, &stems, frames.len(), &wanted(args))?,
+        None => output::plan("--output", &args.output, &names, &wanted(args))?,
+    };
     let item = optional("--item", &args.planes.item)?;
     let depth = optional("--depth", &args.planes.depth)?;
     let normal = optional("--normal", &args.planes.normal)?;
@@ -193,10 +238,11 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
         .map(|(model, stem)| Job {
             model,
             stem,
+            film,
             pictures: pictures.by_ref().take(frames.len()).collect(),
         })
         .collect();
-    let targets = || jobs.iter().flat_map(|j| &j.pictures).flat_map(Picture::targets);
+    let targets = || jobs.iter().flat_map(Job::targets);
     output::check_distinct(targets())?;
     if args.json && targets().any(|t| *t == Target::Stdout) {
         let message = "--json: the report goes to standard output, where the picture goes too";
@@ -228,16 +274,27 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
             model.scene.triangle_count()
         )
     });
+    let found;
+    let args = if args.picture.sides.is_open() {
+        found = sized(args, drawing::shape(args, &model.scene)?);
+        check_size(&found)?;
+        &found
+    } else {
+        args
+    };
     let mut pictures = Vec::new();
     let mut unseen_of_all = None;
+    let mut film = job.film();
+    let kind = wanted(args).kind;
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));
-        let report = if drawing::is_wanted(args, kind(args)) {
+        let mut sink = film.as_mut().map_or(Sink::File(&picture.color), Sink::Film);
+        let report = if drawing::is_wanted(args, kind) {
             let (scene, format) = (&model.scene, model.format.as_str());
             let subject = Subject { scene, name: &job.stem, format, cap_material };
-            drawing::render(args, &subject, picture.frame, &picture.color, kind(args))
+            drawing::render(args, &subject, picture.frame, &mut sink, kind)
         } else {
-            render_picture(args, &model.scene, picture)
+            render_picture(args, &model.scene, picture, &mut sink)
         };
         let (report, unseen) = report.map_err(|failure| with_file(&name, failure))?;
         if let Some(why) = unseen {
@@ -249,10 +306,12 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         messages.progress.advance();
         pictures.push(report);
     }
+    film.map_or(Ok(()), Film::finish)?;
     tell_non_finite(&name, &mut model, &pictures, messages);
     if let Some(why) = unseen_of_all {
         model.warn(durer_formats::Place::Whole, why);
     }
+    tell_flattened(&name, &mut model, &pictures, messages);
     Ok(ModelReport {
         model: name,
         format: model.format,
@@ -286,6 +345,16 @@ fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], me
     let message = format!("{count} triangles with a coordinate that is not finite are left out");
     model.warn(durer_formats::Place::Whole, message);
     messages.warnings(name, &model.warnings[known..]);
+}
+
+/// What is transparent is known when it has been painted.
+fn tell_flattened(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
+    if pictures.iter().any(|p| p.flattened) {
+        let known = model.warnings.len();
+        let message = format!("{}; --background gives it another colour", encoding::FLATTENED);
+        model.warn(durer_formats::Place::Whole, message);
+        messages.warnings(name, &model.warnings[known..]);
+    }
 }
 
 fn describe(report: &PictureReport) -> String {
@@ -348,6 +417,7 @@ fn render_picture(
     args: &RenderArgs,
     scene: &Scene,
     picture: &Picture,
+    sink: &mut Sink,
 ) -> Result<(PictureReport, Option<String>), Failure> {
     let Size { width, height } = args.picture.size;
     let mut report = PictureReport { width, height, ..PictureReport::default() };
@@ -389,7 +459,11 @@ fn render_picture(
     let framebuffer = assemble(cells, args.picture.size);
     (report.width, report.height) = (framebuffer.width(), framebuffer.height());
     let start = Instant::now();
-    report.files = write(args, picture, &framebuffer)?;
+    report.files = write_planes(args, picture, &framebuffer)?;
+    // The picture comes last: where it is new, so is the rest.
+    let format = wanted(args).kind.picture();
+    report.flattened = sink.put(&framebuffer.color, format, &args.picture.encoding)?;
+    report.files.push(sink.name());
     report.encode_seconds = start.elapsed().as_secs_f64();
     Ok((report, unseen))
 }
@@ -480,16 +554,15 @@ fn paste<T: Copy>(
     }
 }
 
-/// Writes all planes that are asked for; gives the names of the files.
-fn write(
+/// Writes the planes beside colour that are asked for; gives the names of the files.
+fn write_planes(
     args: &RenderArgs,
     picture: &Picture,
     planes: &Framebuffer,
 ) -> Result<Vec<String>, Failure> {
-    let compression = args.picture.compression.into();
+    let compression = args.picture.encoding.compression.into();
     let mut files = Vec::new();
     let mut done = |target: &Target| files.push(target.to_string());
-    // The picture comes last: where it is new, so is the rest.
     if let (Some(target), Some(items)) = (&picture.item, &planes.item) {
         output::deliver(target, |out| png::write_items(out, items, compression))?;
         done(target);
@@ -502,7 +575,5 @@ fn write(
         output::deliver(target, |out| png::write_normals(out, normals, compression))?;
         done(target);
     }
-    output::deliver(&picture.color, |out| png::write_color(out, &planes.color, compression))?;
-    done(&picture.color);
     Ok(files)
 }

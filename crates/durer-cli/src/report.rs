@@ -61,6 +61,9 @@ pub struct PictureReport {
     pub algorithm: String,
     /// The eye of each viewport.
     pub cameras: Vec<CameraReport>,
+    /// Whether it was not opaque, and had to become so.
+    #[serde(skip)]
+    pub flattened: bool,
     /// For `all`: each algorithm beside the z-buffer.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compared: Vec<ComparedReport>,

@@ -10,7 +10,7 @@ use durer::scene::Scene;
 use durer::view::section::{self, Options};
 
 /// The planes that models are cut by.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Section")]
 pub struct SectionArgs {
     /// Cut the model by a plane: what lies where NX·x + NY·y + NZ·z + D > 0 stays

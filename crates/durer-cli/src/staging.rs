@@ -17,7 +17,7 @@ use durer::view::projection::drawn_bounds;
 const OCCLUSION_RADIUS: f64 = 0.25;
 
 /// The options.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Stage")]
 pub struct StageArgs {
     /// A set of the options below

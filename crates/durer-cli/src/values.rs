@@ -1,15 +1,15 @@
 //! Numbers and vectors as options take them; every message says what would be right.
 
-use crate::output::Kind;
+use crate::kind::Kind;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::SurfaceMethod;
 use durer::simd::{self, Level};
 use durer::visibility::wireframe;
-use durer_formats::drawing::DrawingFormat;
+use durer_formats::picture::PictureFormat;
 
-/// Width and height of a picture, in pixels, each at least 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Width and height of a picture, in pixels, each at least 1 where it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Size {
     /// Columns.
     pub width: u32,
@@ -55,9 +55,19 @@ pub fn algorithm() -> impl TypedValueParser<Value = Algorithm> {
 
 /// The name of an output format.
 pub fn kind() -> impl TypedValueParser<Value = Kind> {
-    let names = DrawingFormat::ALL.iter().map(|f| f.name());
-    PossibleValuesParser::new(std::iter::once("png").chain(names))
-        .map(|name| name.parse::<DrawingFormat>().map_or(Kind::Png, Kind::Drawing))
+    PossibleValuesParser::new(Kind::names().map(named)).map(|name| Kind::of_name(&name))
+}
+
+/// The name of a format of pictures.
+pub fn picture_format() -> impl TypedValueParser<Value = PictureFormat> {
+    PossibleValuesParser::new(PictureFormat::ALL.iter().map(|f| named(f.name())))
+        .map(|name| PictureFormat::of_suffix(&name).unwrap_or_default())
+}
+
+/// A format's name; of some a suffix is as usual.
+fn named(name: &'static str) -> PossibleValue {
+    let value = PossibleValue::new(name);
+    if name == PictureFormat::Jpeg.name() { value.alias("jpg") } else { value }
 }
 
 /// A size on the screen in pixels: above 0, and no larger than a picture.

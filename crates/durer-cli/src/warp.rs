@@ -1,13 +1,16 @@
 //! `durer warp`.
 
-use crate::args::{Compression, RunningArgs};
+use crate::args::RunningArgs;
+use crate::encoding::{self, PictureFileArgs};
 use crate::failure::Failure;
+use crate::kind::Wanted;
 use crate::messages::Messages;
 use crate::output::{self, Name};
+use crate::sides::{Sides, sides};
 use crate::values::{self, Size};
 use crate::{camera, color, input, report};
 use clap::{Args, ValueHint};
-use durer::math::DVec3;
+use durer::math::{DVec2, DVec3};
 use durer::scene::{Camera, Projection};
 use durer::shade::color::encode_rgba8;
 use durer::target::Pixels;
@@ -37,7 +40,7 @@ pub struct WarpArgs {
     /// Its depths, as `durer render --depth` writes them
     #[arg(value_name = "DEPTH", value_hint = ValueHint::FilePath)]
     pub depth: PathBuf,
-    /// Where the new picture goes: a .png file, or `-` for standard output
+    /// Where the new picture goes: a .png, .jpg or .webp file, or `-` for standard output
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// Where the eye of the picture was
@@ -70,9 +73,9 @@ pub struct WarpArgs {
     /// What is up in the new picture [default: as before]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub to_up: Option<DVec3>,
-    /// Width and height of the new picture [default: as before]
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = values::size)]
-    pub size: Option<Size>,
+    /// Width and height of the new picture; one may be left out [default: as before]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = sides)]
+    pub size: Option<Sides>,
     /// The colour of holes: what no picture shows
     #[arg(long, value_name = "COLOR", default_value = "#ff00ff", value_parser = color::color)]
     pub holes: durer::math::Vec4,
@@ -85,9 +88,9 @@ pub struct WarpArgs {
     /// What it looked at [default: the same]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
     pub fill_target: Option<DVec3>,
-    /// How small the PNG is to be: `fast` or `small`
-    #[arg(long, value_name = "HOW", default_value = "fast")]
-    pub compression: Compression,
+    /// How the picture is put into bytes.
+    #[command(flatten)]
+    pub file: PictureFileArgs,
     /// Write a report on standard output, in JSON
     #[arg(long)]
     pub json: bool,
@@ -116,7 +119,9 @@ struct Loaded {
 /// Makes the new view and writes it.
 pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     let name = Name { stem: "warped".to_owned(), frame: None };
-    let targets = output::plan_pictures("--output", &args.output, std::slice::from_ref(&name))?;
+    let wanted = Wanted::picture(&args.output, args.file.format);
+    args.file.encoding.check(wanted.kind)?;
+    let targets = output::plan("--output", &args.output, std::slice::from_ref(&name), &wanted)?;
     let Some(target) = targets.first() else { return Ok(()) };
     if args.json && *target == output::Target::Stdout {
         let message = "--json: the report goes to standard output, where the picture goes too";
@@ -134,7 +139,8 @@ pub fn run(args: &WarpArgs) -> Result<(), Failure> {
         _ => None,
     };
     let (width, height) = (first.color.width(), first.color.height());
-    let size = args.size.unwrap_or(Size { width, height });
+    let before = DVec2::new(f64::from(width), f64::from(height));
+    let size = args.size.map_or(Size { width, height }, |sides| sides.of_shape(before));
     let mut sources = vec![Source { color: &first.color, depth: &first.depth, camera }];
     if let Some(second) = &second {
         let eye = args.fill_eye.unwrap_or(args.eye);
@@ -145,9 +151,9 @@ pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     let options = warp::Options { hole: encode_rgba8(args.holes) };
     let warped = warp::warp(&sources, &new, [size.width, size.height], &options, &mut NoTrace)
         .map_err(|e| Failure::Data(format!("{}: {e}", args.depth.display())))?;
-    let compression = args.compression.into();
-    let colors = &warped.framebuffer.color;
-    output::deliver(target, |out| png::write_color(out, colors, compression))?;
+    if args.file.encoding.deliver(target, wanted.kind.picture(), &warped.framebuffer.color)? {
+        messages.warning(&target.to_string(), encoding::FLATTENED);
+    }
     tell(args, target, &warped, &messages)
 }
 

@@ -19,6 +19,7 @@ mod model;
 mod mtl;
 mod number;
 pub mod obj;
+pub mod picture;
 mod place;
 pub mod ply;
 pub mod png;

@@ -246,13 +246,7 @@ fn write_rows<W: Write, T: Copy, const BYTES: usize>(
     if kind.srgb {
         encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     }
-    match compression {
-        Compression::Fast => {
-            encoder.set_compression(png::Compression::Fast);
-            encoder.set_filter(Filter::Up);
-        }
-        Compression::Small => encoder.set_compression(png::Compression::Balanced),
-    }
+    set_compression(&mut encoder, compression);
     let mut writer = encoder.write_header().map_err(encoding)?;
     let mut stream = writer.stream_writer_with_size(CHUNK_BYTES).map_err(encoding)?;
     let mut row = vec![[0; BYTES]; pixels.width() as usize];
@@ -264,7 +258,18 @@ fn write_rows<W: Write, T: Copy, const BYTES: usize>(
     writer.finish().map_err(encoding)
 }
 
-fn encoding(error: EncodingError) -> Error {
+/// Tells an encoder how hard to try.
+pub(crate) fn set_compression<W: Write>(encoder: &mut Encoder<W>, compression: Compression) {
+    match compression {
+        Compression::Fast => {
+            encoder.set_compression(png::Compression::Fast);
+            encoder.set_filter(Filter::Up);
+        }
+        Compression::Small => encoder.set_compression(png::Compression::Balanced),
+    }
+}
+
+pub(crate) fn encoding(error: EncodingError) -> Error {
     match error {
         EncodingError::IoError(error) => Error::Io(error),
         other => Error::whole(other.to_string()),

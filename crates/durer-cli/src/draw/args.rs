@@ -1,7 +1,9 @@
 //! The options of `durer draw`.
 
 use super::layers::Layers;
-use crate::args::{Compression, RunningArgs};
+use crate::args::RunningArgs;
+use crate::encoding::PictureFileArgs;
+use crate::sides::{Sides, sides};
 use crate::{color, values};
 use clap::{Args, ValueEnum, ValueHint};
 use durer::math::Rect;
@@ -33,7 +35,7 @@ pub struct DrawArgs {
     pub layers: Layers,
     /// Where the picture goes
     ///
-    /// A .png file, or `-` for standard output. A file is replaced only by a whole picture.
+    /// A .png, .jpg or .webp file, or `-` for standard output. A file is replaced only by a whole picture.
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// What the picture is like.
@@ -80,9 +82,9 @@ pub struct PictureArgs {
     /// Where it is shown, in pixels from the upper left corner [default: the whole picture]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = viewport)]
     pub viewport: Option<PixelRect>,
-    /// How small the PNG is to be: `fast` or `small`
-    #[arg(long, value_name = "HOW", default_value = "fast")]
-    pub compression: Compression,
+    /// How the picture is put into bytes.
+    #[command(flatten)]
+    pub file: PictureFileArgs,
     /// Refuse pictures of more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,
@@ -112,28 +114,6 @@ pub enum Smoothing {
     Coverage,
 }
 
-/// A size of which one side may be open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sides {
-    pub width: Option<u32>,
-    pub height: Option<u32>,
-}
-
-fn sides(text: &str) -> Result<Sides, String> {
-    let wrong = || {
-        "a size is WIDTHxHEIGHT in whole pixels from 1, e.g. 1920x1080; one side may be left out, \
-         e.g. 1920x or x1080"
-            .to_owned()
-    };
-    let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, text));
-    let side = |side: &str| match side.trim() {
-        "" => Ok(None),
-        digits => digits.parse().ok().filter(|n| *n > 0).map(Some).ok_or_else(wrong),
-    };
-    let sides = Sides { width: side(width)?, height: side(height)? };
-    if sides.width.or(sides.height).is_some() { Ok(sides) } else { Err(wrong()) }
-}
-
 fn viewport(text: &str) -> Result<PixelRect, String> {
     let wrong = || "a viewport is X,Y,W,H in whole pixels, e.g. 0,0,640,480".to_owned();
     let numbers: Vec<i32> =
@@ -150,18 +130,6 @@ fn viewport(text: &str) -> Result<PixelRect, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn one_side_may_be_open() {
-        let both = |w, h| Ok(Sides { width: w, height: h });
-        assert_eq!(sides("800x600"), both(Some(800), Some(600)));
-        assert_eq!(sides("800x"), both(Some(800), None));
-        assert_eq!(sides("x600"), both(None, Some(600)));
-        assert_eq!(sides("64"), both(Some(64), Some(64)));
-        for wrong in ["", "x", "0x", "x-1", "1.5x", "axb", "1x2x3"] {
-            assert!(sides(wrong).is_err(), "{wrong}");
-        }
-    }
 
     #[test]
     fn viewports_have_a_place_and_an_extent() {

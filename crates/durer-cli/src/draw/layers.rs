@@ -121,6 +121,11 @@ struct LayerArgs {
     label_halo: Vec<Ink>,
 }
 
+/// Whether an option is one of the style of layers, by its name in the parser.
+pub fn is_style(id: &clap::Id) -> bool {
+    LayerArgs::augment_args(Command::new("layers")).get_arguments().any(|a| a.get_id() == id)
+}
+
 fn ink(text: &str) -> Result<Ink, String> {
     match text {
         "none" => Ok(Ink(None)),

@@ -11,18 +11,23 @@ mod report;
 mod svg;
 
 pub use args::{DrawArgs, EXAMPLES};
+pub use layers::is_style;
 
+use crate::encoding;
 use crate::failure::Failure;
 use crate::input::{self, display_name, is_stream};
+use crate::kind::Wanted;
 use crate::messages::Messages;
 use crate::output::{self, Name, Target};
-use args::{Sides, Smoothing};
+use crate::sides::Sides;
+use crate::values::Size;
+use args::Smoothing;
 use durer::math::DVec2;
 use durer::raster::paint::{Canvas, Options};
 use durer::target::Pixels;
 use durer::view::window::{PixelRect, Viewport};
+use durer_formats::Warning;
 use durer_formats::geo::GeoFormat;
-use durer_formats::{Warning, png};
 use layers::Layer;
 use report::{LayerReport, Report};
 use std::time::Instant;
@@ -44,8 +49,12 @@ pub fn run(args: &DrawArgs) -> Result<(), Failure> {
     let picture = job.draw()?;
     messages.progress.stage(|| format!("writing {target}"));
     let encode = Instant::now();
-    let compression = args.picture.compression.into();
-    output::deliver(&target, |out| png::write_color(out, &picture, compression))?;
+    let format = wanted(args).kind.picture();
+    if args.picture.file.encoding.deliver(&target, format, &picture)? {
+        let message = format!("{}; --background gives it another colour", encoding::FLATTENED);
+        messages.warning(&target.to_string(), &message);
+        report.warnings.push(message);
+    }
     drop(messages);
     report.encode_seconds = encode.elapsed().as_secs_f64();
     report.total_seconds = start.elapsed().as_secs_f64();
@@ -59,7 +68,8 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
     input::check_streams(&inputs)?;
     let names = output::stems(&inputs).into_iter().take(1);
     let names: Vec<Name> = names.map(|stem| Name { stem, frame: None }).collect();
-    let target = output::plan_pictures("--output", &args.output, &names)?;
+    args.picture.file.encoding.check(wanted(args).kind)?;
+    let target = output::plan("--output", &args.output, &names, &wanted(args))?;
     let Some(target) = target.into_iter().next() else {
         return Err(Failure::Usage("nothing to draw".to_owned()));
     };
@@ -68,6 +78,11 @@ fn check(args: &DrawArgs) -> Result<Target, Failure> {
         return Err(Failure::Usage(message.to_owned()));
     }
     Ok(target)
+}
+
+/// What is written: what --format says, or the name of the output.
+fn wanted(args: &DrawArgs) -> Wanted {
+    Wanted::picture(&args.output, args.picture.file.format)
 }
 
 /// One run.
@@ -172,14 +187,9 @@ impl Job<'_> {
 
 /// Whole sides for something of a given shape, which by itself would have the size `natural`.
 fn sides(given: Option<Sides>, natural: DVec2) -> (u32, u32) {
-    let whole = |side: f64| side.round().clamp(1.0, f64::from(u32::MAX)) as u32;
-    let other = |side: u32, ratio: f64| whole(f64::from(side) * ratio);
-    match given.map(|s| (s.width, s.height)) {
-        Some((Some(width), Some(height))) => (width, height),
-        Some((Some(width), None)) => (width, other(width, natural.y / natural.x)),
-        Some((None, Some(height))) => (other(height, natural.x / natural.y), height),
-        _ => (whole(natural.x.ceil()), whole(natural.y.ceil())),
-    }
+    let Size { width, height } =
+        given.unwrap_or(Sides { width: None, height: None }).of_shape(natural);
+    (width, height)
 }
 
 /// The rectangle of a viewport as a path.

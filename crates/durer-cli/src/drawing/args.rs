@@ -9,7 +9,7 @@ use durer::visibility::line::{ClassSet, edge_lines};
 use durer::visibility::region;
 
 /// Exact drawings: lines and areas, as vectors or painted.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Drawing")]
 pub struct DrawingArgs {
     /// What a drawing shows [default for vector files: hidden-line]

@@ -3,15 +3,18 @@
 pub mod args;
 pub mod report;
 
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, ViewArgs};
 use crate::camera::{self, Ortho, Shot};
 use crate::failure::Failure;
+use crate::film::Sink;
 use crate::fit;
-use crate::output::{self, Kind, Target};
+use crate::kind::Kind;
+use crate::output;
 use crate::report::{CameraReport, PictureReport};
+use crate::shape;
 use crate::values::Size;
 use args::{Fill, Hatch, Hidden, Merge, NAMES, Unit};
-use durer::math::{DVec3, Vec4};
+use durer::math::{DVec2, DVec3, Vec4};
 use durer::paper::{self, Frame, LaidOut, Page, Scale, TitleBlock, Views};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
 use durer::scene::{Camera, Projection, Scene};
@@ -19,7 +22,6 @@ use durer::target::drawing::Drawing;
 use durer::view::projection::NamedView;
 use durer::visibility::line::hidden_line;
 use durer_formats::drawing::DrawingFormat;
-use durer_formats::png;
 use report::DrawingReport;
 use std::time::Instant;
 
@@ -32,6 +34,9 @@ const STUBS: f64 = 1.0;
 /// Free space on paper, millimetres: on pages, and around drawings without one.
 const PAGE_MARGIN: f64 = 10.0;
 const MARGIN: f64 = 5.0;
+
+/// The shape of a sheet of several views, where no page is given: that of lying ISO paper.
+const SHEET: DVec2 = DVec2::new(297.0, 210.0);
 
 /// The longer side of the paper behind a painted picture, millimetres: pens are as wide in it as on a
 /// sheet of this size.
@@ -63,12 +68,12 @@ const OF_PIXELS: &[(&str, &str)] = &[
 /// Options that are about pixels but go with painted drawings too.
 const OF_PICTURES: &[(&str, &str)] = &[
     ("size", "a vector file has millimetres; use --page, e.g. --page 200x150"),
-    ("compression", "it is for .png files; leave it out"),
+    ("compression", "it is for .png and .jpg files; leave it out"),
 ];
 
 /// Whether the options ask for a drawing, rather than for pixels of surfaces.
 pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
-    kind != Kind::Png || args.drawing.style.is_some() || args.drawing.sheet.is_some()
+    kind.is_vector() || args.drawing.style.is_some() || args.drawing.sheet.is_some()
 }
 
 /// What the parser does not know to be wrong.
@@ -85,7 +90,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
             None => Ok(()),
         };
     }
-    let vector = kind != Kind::Png;
+    let vector = kind.is_vector();
     let wrong = OF_PIXELS.iter().chain(OF_PICTURES.iter().filter(|_| vector));
     for (id, instead) in wrong {
         if given(id) {
@@ -136,7 +141,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
 fn background(args: &RenderArgs, kind: Kind) -> Result<Option<[u8; 4]>, Failure> {
     let asked = args.given.iter().any(|g| g == "background");
     match args.picture.background {
-        _ if !asked && kind != Kind::Png => Ok(None),
+        _ if !asked && kind.is_vector() => Ok(None),
         Background::Color(color) if color.w == 0.0 => Ok(None),
         Background::Color(color) => Ok(Some(bytes(color))),
         _ => {
@@ -168,7 +173,7 @@ pub fn render(
     args: &RenderArgs,
     subject: &Subject,
     frame: Option<u32>,
-    target: &Target,
+    sink: &mut Sink,
     kind: Kind,
 ) -> Result<(PictureReport, Option<String>), Failure> {
     let start = Instant::now();
@@ -208,8 +213,8 @@ pub fn render(
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = drawings.iter().collect();
     report.drawing = Some(DrawingReport::new(style.name(), &all, &laid));
-    write(args, kind, target, &laid, &drawings, &mut report, start)?;
-    report.files = vec![target.to_string()];
+    write(args, kind, sink, &laid, &drawings, &mut report, start)?;
+    report.files = vec![sink.name()];
     Ok((report, unseen))
 }
 
@@ -231,14 +236,14 @@ fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
 fn write(
     args: &RenderArgs,
     kind: Kind,
-    target: &Target,
+    sink: &mut Sink,
     laid: &LaidOut,
     drawings: &[Drawing],
     report: &mut PictureReport,
     start: Instant,
 ) -> Result<(), Failure> {
-    match kind {
-        Kind::Png => {
+    match (kind, sink) {
+        (Kind::Picture(_) | Kind::Gif, sink) => {
             let Size { width, height } = args.picture.size;
             (report.width, report.height) = (width, height);
             let beside = background(args, kind)?.unwrap_or([0; 4]);
@@ -246,11 +251,12 @@ fn write(
                 .map_err(|e| Failure::Usage(e.to_string()))?;
             report.raster_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
-            let compression = args.picture.compression.into();
-            output::deliver(target, |out| png::write_color(out, &pixels, compression))?;
+            let format = kind.picture();
+            report.flattened = sink.put(&pixels, format, &args.picture.encoding)?;
             report.encode_seconds = start.elapsed().as_secs_f64();
         }
-        Kind::Drawing(format) => {
+        (Kind::Drawing(_), Sink::Film(_)) => {}
+        (Kind::Drawing(format), Sink::File(target)) => {
             report.raster_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
             let empty = Drawing::default();
@@ -272,7 +278,8 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
     };
     let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
     let merge = drawing.merge.unwrap_or(if geojson { Merge::Face } else { Merge::Shade });
-    let viewed = matches!(kind, Kind::Png | Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
+    let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
+    let viewed = paper || !kind.is_vector();
     let default = hidden_line::Options::default();
     DrawOptions {
         style,
@@ -318,16 +325,33 @@ fn size(args: &RenderArgs) -> Size {
     }
 }
 
-/// The camera of the view options. Fitted views are parallel unless an angle of view is given: that
-/// is what drawings are measured in.
-fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result<Camera, Failure> {
+/// The shape of a picture whose size leaves a side open: that of its page, or of what is seen.
+pub fn shape(args: &RenderArgs, scene: &Scene) -> Result<DVec2, Failure> {
+    match args.drawing.page {
+        Some(Page::Exact(size) | Page::Either(size)) => Ok(size),
+        _ if args.drawing.sheet.is_some() => Ok(SHEET),
+        _ if args.drawing.style.is_some() => {
+            shape::of_view(&view(args), scene, args.picture.turntable)
+        }
+        _ => shape::of_picture(&args.picture, &args.view, scene),
+    }
+}
+
+/// The view options. Fitted views are parallel unless an angle of view is given: that is what drawings are
+/// measured in.
+fn view(args: &RenderArgs) -> ViewArgs {
     let mut view = args.view.clone();
     let fitted = view.eye.is_none() && view.camera.is_none();
     if fitted && view.fov.is_none() && view.ortho.is_none() {
         view.ortho = Some(Ortho::Fit);
     }
+    view
+}
+
+/// The camera of the view options.
+fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result<Camera, Failure> {
     let shot = Shot { view: None, size: size(args), turn: frame.zip(args.picture.turntable) };
-    camera::camera(&view, scene, &shot)
+    camera::camera(&view(args), scene, &shot)
 }
 
 /// Front, top, right, isometric: parallel, with one target, so that the views are aligned.
@@ -390,9 +414,9 @@ fn paper_options(
     // turntable, which have to fit each other.
     let placed =
         view.eye.is_some() || view.camera.is_some() || matches!(view.ortho, Some(Ortho::Height(_)));
-    let window = drawing.sheet.is_none() && (placed || frame.is_some() || kind == Kind::Png);
+    let window = drawing.sheet.is_none() && (placed || frame.is_some() || !kind.is_vector());
     let page = drawing.page.unwrap_or_else(|| match kind {
-        Kind::Png if drawing.sheet.is_none() && drawing.scale.is_none() => {
+        Kind::Picture(_) | Kind::Gif if drawing.sheet.is_none() && drawing.scale.is_none() => {
             let Size { width, height } = args.picture.size;
             let size = durer::math::DVec2::new(f64::from(width), f64::from(height));
             Page::Exact(size * (PAINTED_SIDE / size.max_element()))
@@ -403,7 +427,7 @@ fn paper_options(
     let parallel = view.fov.is_none() && view.eye.is_none() && view.camera.is_none();
     let scale = if on_page && parallel { Scale::Standard } else { Scale::Fit };
     // A painted window fills the picture, as pixels of surfaces do.
-    let filled = kind == Kind::Png && window && drawing.page.is_none();
+    let filled = !kind.is_vector() && window && drawing.page.is_none();
     let margin = if on_page {
         PAGE_MARGIN
     } else if filled {

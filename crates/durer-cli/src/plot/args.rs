@@ -2,6 +2,8 @@
 
 use crate::args::RunningArgs;
 use crate::color;
+use crate::encoding::EncodingArgs;
+use crate::sides::{Sides, sides};
 use crate::values::{self, Size};
 use clap::{Args, ValueEnum, ValueHint};
 use durer::math::{DVec3, Vec4};
@@ -32,7 +34,7 @@ pub struct PlotArgs {
     pub input: Option<PathBuf>,
     /// Where the plot goes
     ///
-    /// A file whose suffix tells the format: .svg, .pdf, .dxf, .hpgl, .geojson, or .png; `-` for
+    /// A file whose suffix tells the format: .svg, .pdf, .dxf, .hpgl, .geojson, or .png, .jpg, .webp; `-` for
     /// standard output, with --to. A file is replaced only by a whole plot.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
@@ -159,9 +161,12 @@ pub struct PlotLookArgs {
     /// The paper: A0 … A6, letter, … (lying), or WIDTHxHEIGHT in millimetres
     #[arg(long, value_name = "PAGE", default_value = "180x135", value_parser = super::page)]
     pub page: Page,
-    /// Width and height of a PNG in pixels
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1600x1200", value_parser = values::size)]
-    pub size: Size,
+    /// How a picture is put into bytes.
+    #[command(flatten)]
+    pub encoding: EncodingArgs,
+    /// Width and height of a picture in pixels; one side may be left out, and follows from the page
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1600x1200", value_parser = sides)]
+    pub size: Sides,
 }
 
 /// `--lines`.

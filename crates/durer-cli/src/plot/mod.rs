@@ -5,8 +5,10 @@ mod report;
 
 pub use args::{EXAMPLES, PlotArgs};
 
+use crate::encoding;
 use crate::failure::Failure;
 use crate::input;
+use crate::kind::Kind;
 use crate::messages::Messages;
 use crate::output::{self, Target};
 use crate::report as reports;
@@ -19,10 +21,11 @@ use durer::scene::{HeightField, UpAxis};
 use durer::shade::color::encode_rgba8;
 use durer::view::projection::{Lens, ViewDirection};
 use durer::visibility::line::floating_horizon;
+use durer_formats::Limits;
 use durer_formats::drawing::{self, DrawingFormat};
 use durer_formats::formula::Formula;
 use durer_formats::height_map::{self, HeightMapOptions};
-use durer_formats::{Limits, png};
+use durer_formats::picture::{self, PictureFormat};
 use report::Report;
 use std::path::Path;
 use std::time::Instant;
@@ -40,17 +43,15 @@ pub enum Format {
     /// Vectors.
     Drawing(DrawingFormat),
     /// Pixels.
-    Png,
+    Picture(PictureFormat),
 }
 
 /// A format by its name or a file's suffix.
 pub fn format(text: &str) -> Result<Format, String> {
-    match text.to_ascii_lowercase().as_str() {
-        "png" => Ok(Format::Png),
-        other => DrawingFormat::of_suffix(other)
-            .map(Format::Drawing)
-            .ok_or_else(|| "a plot is svg, pdf, dxf, hpgl, geojson or png".to_owned()),
-    }
+    let picture = PictureFormat::of_suffix(text).map(Format::Picture);
+    picture
+        .or_else(|| DrawingFormat::of_suffix(text).map(Format::Drawing))
+        .ok_or_else(|| "a plot is svg, pdf, dxf, hpgl, geojson, png, jpg or webp".to_owned())
 }
 
 /// `--exaggeration`.
@@ -90,6 +91,10 @@ pub fn page(text: &str) -> Result<Page, String> {
 pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let format = format_of(args)?;
+    args.look.encoding.check(match format {
+        Format::Picture(format) => Kind::Picture(format),
+        Format::Drawing(format) => Kind::Drawing(format),
+    })?;
     let target = target(args)?;
     let messages = Messages::new(&args.running, 1);
     messages.progress.stage(|| "reading".to_owned());
@@ -105,7 +110,14 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let draw_seconds = start.elapsed().as_secs_f64();
     messages.progress.stage(|| "writing".to_owned());
     let start = Instant::now();
-    let bytes = output::deliver(&target, |out| write(out, format, &plot, &args.look))?;
+    let mut flattened = false;
+    let bytes = output::deliver(&target, |out| {
+        flattened = write(out, format, &plot, &args.look)?;
+        Ok(())
+    })?;
+    if flattened {
+        messages.warning(&target.to_string(), encoding::FLATTENED);
+    }
     messages.detail(|| format!("{target}: {} lines, {bytes} bytes", plot.drawing.lines.len()));
     drop(messages);
     if args.json {
@@ -279,19 +291,22 @@ fn paper_size(page: Page) -> DVec2 {
     }
 }
 
+/// Returns whether the picture had to be laid onto white.
 fn write(
     out: &mut Vec<u8>,
     format: Format,
     plot: &Plot,
     look: &PlotLookArgs,
-) -> durer_formats::Result<()> {
+) -> durer_formats::Result<bool> {
     match format {
-        Format::Drawing(format) => drawing::write(out, format, &plot.sheet, &plot.drawing),
-        Format::Png => {
+        Format::Drawing(format) => {
+            drawing::write(out, format, &plot.sheet, &plot.drawing).map(|()| false)
+        }
+        Format::Picture(format) => {
             let background = plot.sheet.background.unwrap_or([0; 4]);
-            let Size { width, height } = look.size;
+            let Size { width, height } = look.size.of_shape(plot.sheet.size);
             let pixels = paper::paint(&plot.sheet, width, height, background)?;
-            png::write_color(out, &pixels, png::Compression::Fast)
+            picture::write(out, format, &pixels, &look.encoding.encoding())
         }
     }
 }

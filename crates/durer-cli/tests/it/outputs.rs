@@ -29,11 +29,11 @@ fn places_that_cannot_be_written_are_told_before_the_work() {
     let folder = Folder::with_models();
     folder.run("render cube.obj -o nowhere/out.png").fails(1, "nowhere");
     folder.run("render cube.obj -o cube.obj/out.png").fails(1, "not a folder");
-    folder.run("render cube.obj -o out.jpg").fails(2, "--output out.jpg").fails(2, ".png");
+    folder.run("render cube.obj -o out.bmp").fails(2, "--output out.bmp").fails(2, ".png");
     folder.run("render cube.obj -o cube.obj").fails(2, ".png");
     folder.run("render cube.obj -o a.png --depth a.png").fails(2, "a.png: two pictures");
     folder.run("render cube.obj cube.obj -o a.png").fails(2, "folder");
-    folder.run("render cube.obj -o a.png --turntable 2").fails(2, "frame_%04d.png");
+    folder.run("render cube.obj -o a.jpg --turntable 2").fails(2, "frame_%04d.png");
     assert_eq!(folder.read("cube.obj"), crate::harness::CUBE.as_bytes());
 }
 
@@ -54,7 +54,8 @@ fn commands_name_the_suffixes_that_they_can_write() {
             assert!(!ended.err.contains(".pdf"), "{}", ended.err);
         }
     }
-    folder.run("render cube.obj -o x.gif").fails(2, ".svg, .pdf, .dxf, .hpgl, .geojson");
+    folder.run("render cube.obj -o x.bmp").fails(2, ".svg, .pdf, .dxf, .hpgl, .geojson");
+    folder.run("render cube.obj -o x.gif").fails(2, "a GIF is for a --turntable");
     let plane = folder.run("render cube.obj -o a.png --depth x.gif");
     assert!(
         plane.fails(2, "end the name in .png").err.trim_end().ends_with(".png"),
@@ -63,7 +64,7 @@ fn commands_name_the_suffixes_that_they_can_write() {
     );
     folder
         .run("plot --formula x*z -o x.gif")
-        .fails(2, "a plot is svg, pdf, dxf, hpgl, geojson or png");
+        .fails(2, "a plot is svg, pdf, dxf, hpgl, geojson, png, jpg or webp");
 }
 
 #[cfg(unix)]

@@ -34,6 +34,12 @@ const COMMANDS: &[(&str, &str)] = &[
     ("render teapot.obj --style regions+lines", "regions.svg"),
     ("render bracket.stl --style shadows --hatch shade", "shadows.pdf"),
     ("render bracket.stl --style regions+lines", "drawn.png"),
+    ("render teapot.obj --quality 80", "a.jpg"),
+    ("render crate.glb --compression small", "b.jpg"),
+    ("render glass.glb --background transparent", "a.webp"),
+    ("render bracket.stl --turntable 3", "turn.png"),
+    ("render glass.glb --turntable 3 --background transparent", "turn.webp"),
+    ("render crate.glb --turntable 3 --fps 10", "turn.gif"),
     ("clip countries.geojson --window -10,35,30,60", "window.geojson"),
     ("clip countries.geojson --by window.geojson --op difference", "rest.geojson"),
     ("clip countries.geojson --window -10,35,30,60 --grid 0.5", "coarse.wkt"),
@@ -49,7 +55,8 @@ const COMMANDS: &[(&str, &str)] = &[
 ];
 
 /// What of that runs under valgrind too: some fifty times as long.
-const UNDER_VALGRIND: &[&str] = &["textured.png", "lines.svg", "window.geojson", "drawn_svg.png"];
+const UNDER_VALGRIND: &[&str] =
+    &["textured.png", "a.jpg", "turn.gif", "lines.svg", "window.geojson", "drawn_svg.png"];
 
 /// Runs all commands; the bytes of everything in the folder, by name.
 fn written(how: &str) -> Vec<(String, Vec<u8>)> {
@@ -76,7 +83,8 @@ fn samples() -> Folder {
 
 /// A command that writes a file; pictures of models are small.
 fn with_output(command: &str, out: &str) -> String {
-    let pixels = command.starts_with("render") && out.ends_with(".png");
+    let painted = [".png", ".jpg", ".webp", ".gif"].iter().any(|suffix| out.ends_with(suffix));
+    let pixels = command.starts_with("render") && painted;
     let size = if pixels { "--size 96x80" } else { "" };
     format!("{command} {size} -o {out}")
 }

@@ -28,6 +28,63 @@ pub enum UpAxis {
     Y,
     /// z up: most STL and 3MF files.
     Z,
+    /// x up.
+    X,
+    /// −y up: y up, turned half around the axis to the front, as in pictures whose rows count downwards.
+    NegY,
+    /// −z up: z up, turned half around the axis to the front, as in maps of depths.
+    NegZ,
+    /// −x up.
+    NegX,
+}
+
+impl UpAxis {
+    /// All of them.
+    pub const ALL: &'static [Self] =
+        &[Self::Y, Self::Z, Self::X, Self::NegY, Self::NegZ, Self::NegX];
+
+    /// The axis with its sign, as options and reports write it, e.g. `-y`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::X => "x",
+            Self::NegY => "-y",
+            Self::NegZ => "-z",
+            Self::NegX => "-x",
+        }
+    }
+
+    /// Up; unit length.
+    pub const fn up(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+            Self::X => DVec3::X,
+            Self::NegY => DVec3::NEG_Y,
+            Self::NegZ => DVec3::NEG_Z,
+            Self::NegX => DVec3::NEG_X,
+        }
+    }
+
+    /// From the model to who stands in front of it; unit length. Turning the world around it by quarters
+    /// takes y, x, −y and −x up into each other; by half, z and −z.
+    pub const fn front(self) -> DVec3 {
+        match self {
+            Self::Y | Self::X | Self::NegY | Self::NegX => DVec3::Z,
+            Self::Z | Self::NegZ => DVec3::NEG_Y,
+        }
+    }
+
+    /// To the right for who stands in front: up × front; unit length.
+    pub const fn right(self) -> DVec3 {
+        match self {
+            Self::Y | Self::Z => DVec3::X,
+            Self::X => DVec3::NEG_Y,
+            Self::NegY | Self::NegZ => DVec3::NEG_X,
+            Self::NegX => DVec3::Y,
+        }
+    }
 }
 
 /// A mesh placed in the world.

@@ -8,6 +8,10 @@
 //! |---|---|---|---|
 //! | y | +z, looking down −z | +x | +y, −z is up in the picture |
 //! | z | −y, looking along +y | +x | +z, +y is up in the picture |
+//! | x | +z, looking down −z | −y | +x, −z is up in the picture |
+//! | −y | +z, looking down −z | −x | −y, −z is up in the picture |
+//! | −z | −y, looking along +y | −x | −z, +y is up in the picture |
+//! | −x | +z, looking down −z | +y | −x, −z is up in the picture |
 
 use crate::math::DVec3;
 use crate::scene::{Aabb, BoundingSphere, Camera, Projection, Scene, UpAxis};
@@ -120,12 +124,9 @@ impl ViewDirection {
     }
 
     fn turned(azimuth: f64, elevation: f64, up_axis: UpAxis) -> Self {
-        let (front, above) = match up_axis {
-            UpAxis::Y => (DVec3::Z, DVec3::Y),
-            UpAxis::Z => (DVec3::NEG_Y, DVec3::Z),
-        };
+        let (front, above) = (up_axis.front(), up_axis.up());
         let ((sa, ca), (se, ce)) = (sin_cos_degrees(azimuth), sin_cos_degrees(elevation));
-        let level = front * ca + DVec3::X * sa;
+        let level = front * ca + up_axis.right() * sa;
         // Up is where the eye would go next: it has a direction in the top view, too.
         Self { to_eye: level * ce + above * se, up: above * ce - level * se }
     }

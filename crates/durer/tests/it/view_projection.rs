@@ -49,7 +49,7 @@ fn options() -> impl Strategy<Value = FitOptions> {
 
 fn directions() -> impl Strategy<Value = ViewDirection> {
     let angle = prop_oneof![-400.0..400.0f64, (-4..5i32).prop_map(|q| f64::from(q) * 90.0)];
-    let axis = prop_oneof![Just(UpAxis::Y), Just(UpAxis::Z)];
+    let axis = proptest::sample::select(UpAxis::ALL);
     (angle.clone(), angle, axis)
         .prop_map(|(a, e, axis)| ViewDirection::from_angles(a, e, axis).unwrap())
 }
@@ -173,6 +173,20 @@ fn named_views_look_along_the_axes() {
         [(Front, -y, z), (Back, y, z), (Right, x, z), (Left, -x, z), (Top, z, y), (Bottom, -z, -y)]
     {
         check(view, UpAxis::Z, to_eye, up);
+    }
+    for (axis, front, right) in
+        [(UpAxis::X, z, -y), (UpAxis::NegX, z, y), (UpAxis::NegY, z, -x), (UpAxis::NegZ, -y, -x)]
+    {
+        check(Front, axis, front, axis.up());
+        check(Right, axis, right, axis.up());
+        check(Back, axis, -front, axis.up());
+        check(Top, axis, axis.up(), -front);
+    }
+    for &axis in UpAxis::ALL {
+        assert_eq!(axis.up().cross(axis.front()), axis.right(), "{axis:?} is right-handed");
+        let sign = if axis.name().starts_with('-') { -1.0 } else { 1.0 };
+        let index = "xyz".find(&axis.name()[axis.name().len() - 1..]).unwrap();
+        assert_eq!(axis.up()[index], sign, "{axis:?} is called as it points");
     }
     let third = DVec3::ONE / 3.0_f64.sqrt();
     assert!((Iso.direction(UpAxis::Y).to_eye() - third).length() < 1e-15);

@@ -1,0 +1,146 @@
+//! A file of options, `durer.toml`: its keys become defaults of the parser, so that values are checked as on
+//! the command line, which has the last word.
+
+mod settings;
+
+use crate::draw;
+use crate::failure::Failure;
+use crate::input;
+use clap::builder::Resettable;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, Command, ValueHint};
+use settings::{Setting, read};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// The file that is taken where none is named.
+const NAME: &str = "durer.toml";
+
+/// More than anybody writes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// What is said about it at the end of the help.
+pub const HELP: &str = "\
+Options can stand in a file, `durer.toml` in the current folder or --config FILE, each under its command:
+  [render]
+  size = 512
+  background = \"transparent\"
+  light = [\"ambient:white:0.2\", \"directional:-1,-2,-1\"]
+Flags are true or false, lists of numbers may be arrays, and paths are relative to the file. What is on \
+the command line wins over the file; --no-config leaves the file out.";
+
+/// Where further options are.
+#[derive(Debug, Clone, Args)]
+pub struct ConfigArgs {
+    /// Take further options from this file [default: durer.toml, where there is one]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, global = true, conflicts_with = "no_config", help_heading = "Running")]
+    pub config: Option<PathBuf>,
+    /// Take no options from durer.toml
+    #[arg(long, global = true, help_heading = "Running")]
+    pub no_config: bool,
+}
+
+/// The parser with the defaults of a file, and the command line for it.
+pub struct Configured {
+    /// Knows the defaults.
+    pub command: Command,
+    /// As it was given, but for what a file can only say in its words.
+    pub line: Vec<OsString>,
+    /// The file, where there is one.
+    pub file: Option<PathBuf>,
+}
+
+/// Puts the options of the file, if there is one, behind those of a command line.
+pub fn configured(command: Command, line: Vec<OsString>) -> Result<Configured, Failure> {
+    let named = line.iter().any(|word| word.to_string_lossy().starts_with("--config"));
+    if !named && !Path::new(NAME).is_file() {
+        return Ok(Configured { command, line, file: None });
+    }
+    // What is wrong with the line is told when all is known.
+    let given = command.clone().ignore_errors(true).try_get_matches_from(&line);
+    let given = given.ok().and_then(|mut matches| matches.remove_subcommand());
+    let Some((name, given)) = given else { return Ok(Configured { command, line, file: None }) };
+    let Some(file) = file(&given) else { return Ok(Configured { command, line, file: None }) };
+    let text = text(&file)?;
+    let mut built = command.clone();
+    built.build();
+    let settings = read(&file, &text, &built, &name)?;
+    let Some(sub) = built.find_subcommand(&name) else {
+        return Ok(Configured { command, line, file: None });
+    };
+    check_pairs(&file, &settings, sub)?;
+    let by_hand: Vec<&Arg> = sub.get_arguments().filter(|a| is_given(&given, a)).collect();
+    let settings = settings.into_iter().filter(|s| !by_hand.iter().any(|a| excluded(sub, s, a)));
+    let (words, defaults): (Vec<_>, Vec<_>) =
+        settings.partition(|s| name == "draw" && draw::is_style(&s.id));
+    let line = with_words(line, &name, &words);
+    let command = command.mut_subcommand(&name, |sub| defaults.into_iter().fold(sub, with_default));
+    Ok(Configured { command, line, file: Some(file) })
+}
+
+/// The file that is named, or the one that is there.
+fn file(given: &ArgMatches) -> Option<PathBuf> {
+    if given.get_flag("no_config") {
+        return None;
+    }
+    let named = given.get_one::<PathBuf>("config").cloned();
+    named.or_else(|| Some(PathBuf::from(NAME)).filter(|p| p.is_file()))
+}
+
+fn text(file: &Path) -> Result<String, Failure> {
+    let bytes = input::bytes(file, MOST_BYTES)?;
+    String::from_utf8(bytes).map_err(|_| Failure::of_file(file, "the text is not UTF-8"))
+}
+
+fn is_given(given: &ArgMatches, arg: &Arg) -> bool {
+    let id = arg.get_id().as_str();
+    let known = given.ids().any(|i| i == id);
+    known && given.value_source(id) == Some(ValueSource::CommandLine)
+}
+
+/// Whether an option that was given takes the place of a setting.
+fn excluded(sub: &Command, setting: &Setting, given: &Arg) -> bool {
+    let excludes = |a: &Arg, id: &clap::Id| {
+        sub.get_arg_conflicts_with(a).iter().any(|other| other.get_id() == id)
+    };
+    let of_setting = sub.get_arguments().find(|a| *a.get_id() == setting.id);
+    excludes(given, &setting.id) || of_setting.is_some_and(|a| excludes(a, given.get_id()))
+}
+
+/// Refuses two settings that exclude each other.
+fn check_pairs(file: &Path, settings: &[Setting], sub: &Command) -> Result<(), Failure> {
+    for (i, setting) in settings.iter().enumerate() {
+        for earlier in &settings[..i] {
+            let arg = sub.get_arguments().find(|a| *a.get_id() == earlier.id);
+            if arg.is_some_and(|a| excluded(sub, setting, a)) {
+                let message = format!("`{}` and `{}` exclude each other", earlier.key, setting.key);
+                return Err(setting.wrong(file, &message));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The command line with settings right behind the command's name.
+fn with_words(mut line: Vec<OsString>, name: &str, settings: &[Setting]) -> Vec<OsString> {
+    let words = settings.iter().flat_map(Setting::words).map(OsString::from);
+    // The name is the first word that is not an option, nor the file of --config.
+    let mut after_config = false;
+    let place = line.iter().skip(1).position(|word| {
+        let found = !after_config && word == name;
+        after_config = word == "--config";
+        found
+    });
+    if let Some(place) = place {
+        let behind = place + 2;
+        line.splice(behind..behind, words);
+    }
+    line
+}
+
+fn with_default(sub: Command, setting: Setting) -> Command {
+    let Setting { id, values, .. } = setting;
+    sub.mut_arg(id, |arg| {
+        arg.required(false).required_unless_present(Resettable::Reset).default_values(values)
+    })
+}

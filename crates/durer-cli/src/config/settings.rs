@@ -1,0 +1,202 @@
+//! Keys and values of the file, each checked by the parser of its option.
+
+use crate::failure::Failure;
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, Command, ValueHint};
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Options that are about the file itself, or about no work.
+const NOT_IN_FILES: &[&str] = &["config", "no_config", "help", "version"];
+
+/// An option as the file has it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setting {
+    /// As the file calls it.
+    pub key: String,
+    /// Where, counted from 1.
+    line: usize,
+    /// As the parser calls it.
+    pub id: clap::Id,
+    /// Its values, as on the command line; `true` or `false` of a flag.
+    pub values: Vec<String>,
+    /// Whether it takes no value, and whether it takes several at once.
+    flag: bool,
+    several: bool,
+}
+
+impl Setting {
+    /// A failure at its place.
+    pub fn wrong(&self, file: &Path, what: &str) -> Failure {
+        wrong(file, self.line, what)
+    }
+
+    /// As it would stand on the command line.
+    pub fn words(&self) -> Vec<String> {
+        let option = format!("--{}", self.key);
+        match &self.values[..] {
+            [value] if self.flag => (value == "true").then_some(option).into_iter().collect(),
+            values if self.several => {
+                std::iter::once(option).chain(values.iter().cloned()).collect()
+            }
+            values => values.iter().map(|value| format!("{option}={value}")).collect(),
+        }
+    }
+}
+
+fn wrong(file: &Path, line: usize, what: &str) -> Failure {
+    Failure::Usage(format!("{}: line {line}: {what}", file.display()))
+}
+
+/// The text with where its lines are.
+struct Source<'a> {
+    file: &'a Path,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn line(&self, offset: usize) -> usize {
+        self.text.bytes().take(offset).filter(|b| *b == b'\n').count() + 1
+    }
+
+    fn wrong(&self, offset: usize, what: &str) -> Failure {
+        wrong(self.file, self.line(offset), what)
+    }
+}
+
+/// Reads the settings of all commands, and gives those of one.
+pub fn read(
+    file: &Path,
+    text: &str,
+    command: &Command,
+    name: &str,
+) -> Result<Vec<Setting>, Failure> {
+    let source = Source { file, text };
+    let table = DeTable::parse(text)
+        .map_err(|e| source.wrong(e.span().map_or(0, |s| s.start), e.message()))?;
+    let mut wanted = Vec::new();
+    for (key, value) in table.get_ref() {
+        let (title, place) = (key.get_ref(), key.span().start);
+        let DeValue::Table(keys) = value.get_ref() else {
+            let what = format!("`{title}`: options stand under their command, e.g. [render]");
+            return Err(source.wrong(place, &what));
+        };
+        let Some(sub) = command.find_subcommand(title.as_ref()) else {
+            let what = format!("[{title}]: there is no such command; `durer --help` lists them");
+            return Err(source.wrong(place, &what));
+        };
+        let settings = settings(&source, sub, keys)?;
+        if sub.get_name() == name {
+            wanted = settings;
+        }
+    }
+    Ok(wanted)
+}
+
+fn settings(source: &Source, sub: &Command, keys: &DeTable) -> Result<Vec<Setting>, Failure> {
+    let mut settings: Vec<Setting> = Vec::new();
+    for (key, value) in keys {
+        let setting = setting(source, sub, key, value)?;
+        if settings.iter().any(|s| s.id == setting.id) {
+            let what = format!("`{}`: the option is there under another name, too", setting.key);
+            return Err(setting.wrong(source.file, &what));
+        }
+        settings.push(setting);
+    }
+    settings.sort_by_key(|s| s.line);
+    Ok(settings)
+}
+
+fn setting<S: AsRef<str>>(
+    source: &Source,
+    sub: &Command,
+    key: &Spanned<S>,
+    value: &Spanned<DeValue>,
+) -> Result<Setting, Failure> {
+    let name = key.get_ref().as_ref();
+    let fail = |what: &str| source.wrong(key.span().start, &format!("`{name}`: {what}"));
+    let arg = sub.get_arguments().find(|a| is_called(a, name)).ok_or_else(|| {
+        let command = sub.get_name();
+        fail(&format!("there is no such option; `durer {command} --help` lists them"))
+    })?;
+    let values = values(arg, value.get_ref()).map_err(|e| fail(&e))?;
+    let flag = !arg.get_action().takes_values();
+    let several = arg.get_num_args().is_some_and(|n| n.max_values() > 1);
+    let (line, id) = (source.line(key.span().start), arg.get_id().clone());
+    let mut setting = Setting { key: name.to_owned(), line, id, values, flag, several };
+    check(sub, &setting).map_err(|e| fail(&e))?;
+    if is_path(arg) {
+        let folder = source.file.parent().unwrap_or(Path::new(""));
+        setting.values.iter_mut().for_each(|value| *value = beside(folder, value));
+    }
+    Ok(setting)
+}
+
+fn is_called(arg: &Arg, name: &str) -> bool {
+    let aliases = arg.get_all_aliases().unwrap_or_default();
+    let in_files = !NOT_IN_FILES.contains(&arg.get_id().as_str());
+    in_files && (arg.get_long() == Some(name) || aliases.contains(&name))
+}
+
+/// The values as on the command line.
+fn values(arg: &Arg, value: &DeValue) -> Result<Vec<String>, String> {
+    let flag = !arg.get_action().takes_values();
+    match value {
+        DeValue::Boolean(is) if flag => Ok(vec![is.to_string()]),
+        _ if flag => Err("it is a flag: true or false".to_owned()),
+        DeValue::Array(array) => {
+            let items: Vec<String> =
+                array.iter().map(|item| word(item.get_ref())).collect::<Result<_, _>>()?;
+            let each = matches!(arg.get_action(), ArgAction::Append);
+            let several = arg.get_num_args().is_some_and(|n| n.max_values() > 1);
+            if items.is_empty() {
+                return Err("the array is empty; leave the key out".to_owned());
+            }
+            Ok(if each || several { items } else { vec![items.join(",")] })
+        }
+        one => word(one).map(|word| vec![word]),
+    }
+}
+
+/// A string or a number.
+fn word(value: &DeValue) -> Result<String, String> {
+    match value {
+        DeValue::String(text) => Ok(text.clone().into_owned()),
+        DeValue::Integer(number) => Ok(number.to_string()),
+        DeValue::Float(number) => Ok(number.to_string()),
+        _ => Err("it takes a string, a number, or an array of those".to_owned()),
+    }
+}
+
+/// What the parser has to say about a value.
+fn check(sub: &Command, setting: &Setting) -> Result<(), String> {
+    let line = std::iter::once(sub.get_name().to_owned()).chain(setting.words());
+    let Err(error) = sub.clone().try_get_matches_from(line) else { return Ok(()) };
+    match error.kind() {
+        // What else is needed can be on the command line.
+        ErrorKind::MissingRequiredArgument | ErrorKind::ArgumentConflict => Ok(()),
+        _ => Err(first_paragraph(&error.to_string())),
+    }
+}
+
+/// The parser's message without its hints at the command line.
+fn first_paragraph(message: &str) -> String {
+    let lines = message.lines().map(str::trim).take_while(|line| !line.is_empty());
+    let text = lines.collect::<Vec<_>>().join(" ");
+    text.strip_prefix("error: ").unwrap_or(&text).to_owned()
+}
+
+fn is_path(arg: &Arg) -> bool {
+    use ValueHint::{AnyPath, DirPath, ExecutablePath, FilePath};
+    matches!(arg.get_value_hint(), AnyPath | DirPath | ExecutablePath | FilePath)
+}
+
+/// A path of the file as seen from where the command runs.
+fn beside(folder: &Path, path: &str) -> String {
+    if path == crate::input::STREAM {
+        path.to_owned()
+    } else {
+        folder.join(path).display().to_string()
+    }
+}

@@ -1,0 +1,91 @@
+//! How pictures are put into bytes: options that all commands share.
+
+use crate::failure::Failure;
+use crate::kind::Kind;
+use crate::output::{Target, deliver};
+use crate::values;
+use clap::{Args, ValueEnum};
+use durer::target::Pixels;
+use durer_formats::picture::{self, Encoding, PictureFormat};
+
+/// What is told of a JPEG whose picture was not opaque.
+pub const FLATTENED: &str = "a JPEG has no transparency; what is not opaque lies on white";
+
+/// Formats and sizes of files.
+#[derive(Debug, Clone, Args)]
+pub struct EncodingArgs {
+    /// How small a PNG or JPEG is to be: `fast` or `small`; the pixels are the same
+    #[arg(long, value_name = "HOW", default_value = "fast")]
+    pub compression: Compression,
+    /// How fine a JPEG is, 1 to 100 [default: 90]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub quality: Option<u8>,
+    /// Whether the quality is from the command line, and not from a file of options.
+    #[arg(skip)]
+    pub quality_given: bool,
+}
+
+/// The same, of commands that write one picture.
+#[derive(Debug, Clone, Args)]
+pub struct PictureFileArgs {
+    /// The format of the output: png, jpeg or webp [default: by its suffix, else png]
+    #[arg(long, value_name = "FORMAT", value_parser = values::picture_format())]
+    pub format: Option<PictureFormat>,
+    /// Sizes of files.
+    #[command(flatten)]
+    pub encoding: EncodingArgs,
+}
+
+/// `--compression`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Compression {
+    /// Some twenty times faster than `small`
+    Fast,
+    /// PNGs a quarter to a half smaller, JPEGs a tenth
+    Small,
+}
+
+impl From<Compression> for durer_formats::png::Compression {
+    fn from(compression: Compression) -> Self {
+        match compression {
+            Compression::Fast => Self::Fast,
+            Compression::Small => Self::Small,
+        }
+    }
+}
+
+impl EncodingArgs {
+    /// Refuses what the format has nothing for.
+    pub fn check(&self, kind: Kind) -> Result<(), Failure> {
+        if self.quality_given && kind != Kind::Picture(PictureFormat::Jpeg) {
+            let message = "--quality: only a JPEG has one, other formats keep the pixels as they are; \
+                           end the name in .jpg, or give --format jpeg";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        Ok(())
+    }
+
+    /// What the encoders take.
+    pub fn encoding(&self) -> Encoding {
+        let default = Encoding::default();
+        Encoding {
+            compression: self.compression.into(),
+            quality: self.quality.unwrap_or(default.quality),
+        }
+    }
+
+    /// Encodes a picture and puts it in its place; tells whether it had to be laid onto white.
+    pub fn deliver(
+        &self,
+        target: &Target,
+        format: PictureFormat,
+        pixels: &Pixels<[u8; 4]>,
+    ) -> Result<bool, Failure> {
+        let mut flattened = false;
+        deliver(target, |out| {
+            flattened = picture::write(out, format, pixels, &self.encoding())?;
+            Ok(())
+        })?;
+        Ok(flattened)
+    }
+}

@@ -1,0 +1,198 @@
+//! What kind of file an output is: by what was told, else by its name.
+
+use crate::failure::Failure;
+use durer_formats::drawing::DrawingFormat;
+use durer_formats::picture::PictureFormat;
+use durer_formats::picture::animation::AnimationFormat;
+use std::path::Path;
+
+/// What kind of file a picture becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Pixels.
+    Picture(PictureFormat),
+    /// Pixels of all frames.
+    Gif,
+    /// Vectors.
+    Drawing(DrawingFormat),
+}
+
+impl Kind {
+    /// What pixels become where nothing else is said.
+    pub const PNG: Self = Self::Picture(PictureFormat::Png);
+
+    /// The names of all kinds, as `--format` takes them.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        let pictures = PictureFormat::ALL.iter().map(|f| f.name());
+        pictures.chain(["gif"]).chain(DrawingFormat::ALL.iter().map(|f| f.name()))
+    }
+
+    /// The kind of one of these names; pixels for any other.
+    pub fn of_name(name: &str) -> Self {
+        let picture = PictureFormat::ALL.iter().find(|f| f.name() == name);
+        picture.map(|f| Self::Picture(*f)).or_else(|| Self::of_suffix(name)).unwrap_or(Self::PNG)
+    }
+
+    fn of_suffix(suffix: &str) -> Option<Self> {
+        if suffix.eq_ignore_ascii_case("gif") {
+            return Some(Self::Gif);
+        }
+        let picture = PictureFormat::of_suffix(suffix).map(Self::Picture);
+        picture.or_else(|| DrawingFormat::of_suffix(suffix).map(Self::Drawing))
+    }
+
+    /// The kind that a file's name asks for, if any.
+    fn of_path(path: &Path) -> Option<Self> {
+        Self::of_suffix(&path.extension().unwrap_or_default().to_string_lossy())
+    }
+
+    /// Whether it has lines and areas instead of pixels.
+    pub fn is_vector(self) -> bool {
+        matches!(self, Self::Drawing(_))
+    }
+
+    /// The format of one picture; PNG where it has none of its own.
+    pub fn picture(self) -> PictureFormat {
+        match self {
+            Self::Picture(format) => format,
+            Self::Gif | Self::Drawing(_) => PictureFormat::Png,
+        }
+    }
+
+    /// The format of a file with several pictures, where there is one of this kind.
+    pub fn animation(self) -> Option<AnimationFormat> {
+        match self {
+            Self::Picture(PictureFormat::Png) => Some(AnimationFormat::Png),
+            Self::Picture(PictureFormat::WebP) => Some(AnimationFormat::WebP),
+            Self::Gif => Some(AnimationFormat::Gif),
+            Self::Picture(PictureFormat::Jpeg) | Self::Drawing(_) => None,
+        }
+    }
+
+    /// The largest width and height in pixels, where there are any.
+    pub fn max_side(self) -> u32 {
+        match self {
+            Self::Picture(format) => format.max_side(),
+            Self::Gif => AnimationFormat::Gif.max_side(),
+            Self::Drawing(_) => u32::MAX,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Picture(format) => format.name(),
+            _ => self.suffix(),
+        }
+    }
+
+    /// What its files' names end in, without a dot.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Picture(format) => format.suffixes().first().copied().unwrap_or_default(),
+            Self::Gif => "gif",
+            Self::Drawing(format) => format.name(),
+        }
+    }
+}
+
+/// The kind of file that is wanted under a name, and how that is known.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// The kind.
+    pub kind: Kind,
+    /// Whether an option says so, and not the name.
+    told: bool,
+    /// What names may end in.
+    suffixes: &'static str,
+}
+
+impl Wanted {
+    /// An output of a command that writes pictures and drawings.
+    pub fn any(path: &Path, told: Option<Kind>) -> Self {
+        let kind = told.or_else(|| Kind::of_path(path)).unwrap_or(Kind::PNG);
+        Self { kind, told: told.is_some(), suffixes: ANY }
+    }
+
+    /// An output of a command that writes pictures only.
+    pub fn picture(path: &Path, told: Option<PictureFormat>) -> Self {
+        let of_name = || match Kind::of_path(path) {
+            Some(Kind::Picture(format)) => Some(format),
+            _ => None,
+        };
+        let kind = told.or_else(of_name).map_or(Kind::PNG, Kind::Picture);
+        Self { kind, told: told.is_some(), suffixes: PICTURES }
+    }
+
+    /// A picture whose pixels are numbers that must not change.
+    pub fn plane() -> Self {
+        Self { kind: Kind::PNG, told: false, suffixes: PLANES }
+    }
+
+    /// Refuses a name that ends as those of other kinds do.
+    pub fn check_name(&self, option: &str, path: &Path) -> Result<(), Failure> {
+        let what = match Kind::of_path(path) {
+            Some(kind) if kind == self.kind => return Ok(()),
+            None if self.told => return Ok(()),
+            Some(_) if self.told => format!(
+                "--format says {}, the name something else; end it in .{}",
+                self.kind.name(),
+                self.kind.suffix()
+            ),
+            _ => self.suffixes.to_owned(),
+        };
+        Err(Failure::Usage(format!("{option} {}: {what}", path.display())))
+    }
+}
+
+const PICTURES: &str =
+    "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp";
+const ANY: &str = "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp \
+                   (a --turntable in one file: .png, .webp, .gif; drawings: .svg, .pdf, .dxf, .hpgl, \
+                   .geojson)";
+const PLANES: &str =
+    "its pixels are numbers, which only PNG keeps in all programs; end the name in .png";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_options_say_what_is_wanted() {
+        let jpeg = Kind::Picture(PictureFormat::Jpeg);
+        let any = |path: &str, told| Wanted::any(Path::new(path), told).kind;
+        assert_eq!(any("a.JPEG", None), jpeg);
+        assert_eq!(any("a.svg", None), Kind::Drawing(DrawingFormat::Svg));
+        assert_eq!(any("folder", None), Kind::PNG);
+        assert_eq!(any("folder", Some(jpeg)), jpeg);
+        assert_eq!(Wanted::picture(Path::new("a.svg"), None).kind, Kind::PNG);
+        for name in Kind::names() {
+            assert_eq!(Kind::of_name(name).name(), name);
+        }
+    }
+
+    #[test]
+    fn names_must_fit_what_is_written() {
+        let check = |path: &str, told: Option<&str>| {
+            let told = told.map(Kind::of_name);
+            let checked = Wanted::any(Path::new(path), told).check_name("-o", Path::new(path));
+            checked.map_err(|e| e.to_string())
+        };
+        for (path, told) in [
+            ("a.png", None),
+            ("a.jpg", Some("jpeg")),
+            ("a.plt", Some("hpgl")),
+            ("tmp.Xa41", Some("png")),
+            ("tmp", Some("webp")),
+        ] {
+            assert_eq!(check(path, told), Ok(()), "{path}");
+        }
+        for (path, told, part) in [
+            ("a.bmp", None, "pictures are written as PNG"),
+            ("a", None, ".png"),
+            ("a.png", Some("jpeg"), "--format says jpeg, the name something else; end it in .jpg"),
+            ("a.svg", Some("png"), "end it in .png"),
+        ] {
+            assert!(check(path, told).unwrap_err().contains(part), "{path}");
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! `durer thumbnailer`: what tells a desktop to let durer make the small pictures of models.
+
+use crate::failure::Failure;
+use crate::input::STREAM;
+use crate::output::{self, Target};
+use crate::report;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// How to install it.
+pub const HELP: &str = "\
+To see models in file managers (GNOME, Xfce, MATE, Cinnamon):
+  mkdir -p ~/.local/share/thumbnailers
+  durer thumbnailer ~/.local/share/thumbnailers/durer.thumbnailer
+Desktops know most formats by themselves; for those that they do not:
+  mkdir -p ~/.local/share/mime/packages
+  durer thumbnailer --types ~/.local/share/mime/packages/durer.xml
+  update-mime-database ~/.local/share/mime
+Then remove the pictures that failed before: rm -r ~/.cache/thumbnails/fail";
+
+/// The options of `durer thumbnailer`.
+#[derive(Debug, Args)]
+pub struct ThumbnailerArgs {
+    /// Where it goes; `-` for standard output
+    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath, default_value = STREAM, hide_default_value = true)]
+    pub output: PathBuf,
+    /// Write the types of files that desktops do not know, instead of the thumbnailer
+    #[arg(long)]
+    pub types: bool,
+}
+
+/// Formats, by their usual names, and what desktops call them, now and formerly.
+const TYPES: &[(&str, &[&str])] = &[
+    ("glTF", &["model/gltf-binary", "model/gltf+json"]),
+    ("OBJ", &["model/obj", "application/prs.wavefront-obj"]),
+    ("STL", &["model/stl", "model/x.stl-ascii", "model/x.stl-binary", "application/sla"]),
+    ("PLY", &["model/ply", "application/x-ply"]),
+    (
+        "3MF",
+        &[
+            "model/3mf",
+            "application/vnd.ms-3mfdocument",
+            "application/vnd.ms-package.3dmanufacturing-3dmodel+xml",
+        ],
+    ),
+];
+
+/// Formats that desktops do not know, by what they are called above.
+const UNKNOWN: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
+  <mime-type type="model/ply">
+    <comment>PLY 3D model</comment>
+    <alias type="application/x-ply"/>
+    <magic priority="50">
+      <match type="string" offset="0" value="ply\n"/>
+      <match type="string" offset="0" value="ply\r"/>
+    </magic>
+    <glob pattern="*.ply"/>
+  </mime-type>
+</mime-info>
+"#;
+
+/// Writes the entry, or the types.
+pub fn run(args: &ThumbnailerArgs) -> Result<(), Failure> {
+    let text = if args.types { UNKNOWN.to_owned() } else { entry() };
+    if crate::input::is_stream(&args.output) {
+        return report::print_text(&text);
+    }
+    let target: Target = output::file_or_stream("FILE", &args.output)?;
+    output::deliver(&target, |out| {
+        out.extend(text.as_bytes());
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// The desktop puts in the size, the new picture's name, which may end in anything, and the model's.
+fn entry() -> String {
+    let types = TYPES.iter().flat_map(|(_, types)| *types);
+    let types: String = types.map(|name| format!("{name};")).collect();
+    format!(
+        "[Thumbnailer Entry]\n\
+         TryExec=durer\n\
+         Exec=durer render --no-config --quiet --format png --background transparent --size %s --output %o %i\n\
+         MimeType={types}\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use durer_formats::ModelFormat;
+
+    #[test]
+    fn each_format_has_a_type() {
+        for format in ModelFormat::ALL {
+            let found = TYPES.iter().find(|(name, _)| *name == format.name());
+            assert!(found.is_some_and(|(_, types)| !types.is_empty()), "{}", format.name());
+        }
+        assert_eq!(TYPES.len(), ModelFormat::ALL.len());
+    }
+}
