@@ -61,6 +61,12 @@ pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
     Ok(Image { name: name.to_owned(), width, height, data })
 }
 
+/// Whether a PNG says of itself that it is grey.
+pub(crate) fn is_grey(bytes: &[u8]) -> bool {
+    // After the signature: the length and the name of the first chunk, width, height and depth.
+    bytes.starts_with(PNG) && matches!(bytes.get(25), Some(0 | 4))
+}
+
 fn unsupported(name: &str, format: &str) -> Error {
     Error::Unsupported {
         place: Place::Whole,
