@@ -23,6 +23,7 @@ use durer::math::DVec3;
 use durer::scene::{Mesh, Topology};
 use plane::Plane;
 use rebuild::Replaced;
+use std::ops::Range;
 
 /// Tests of a point or an edge that may still be made, over all polygons of a mesh: what hostile
 /// outlines would need grows with the cube of their corners.
@@ -73,6 +74,15 @@ pub(crate) fn recut(model: &mut Model, mesh: &mut Mesh, limits: &Limits) -> Resu
     Ok(())
 }
 
+/// The triangles of each face of a mesh of triangles.
+pub(crate) fn faces(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> + '_ {
+    let count = mesh.triangle_count();
+    let firsts = mesh.faces.iter().map(|&first| first as usize);
+    let ends = firsts.clone().skip(1).chain([count]);
+    let single = if mesh.faces.is_empty() { count } else { 0 };
+    firsts.zip(ends).map(|(first, end)| first..end).chain((0..single).map(|i| i..i + 1))
+}
+
 /// The triangles to be put in the place of fans.
 fn replacements(mesh: &Mesh) -> (Replaced, Found) {
     let (mut replaced, mut found) = (Replaced::new(mesh), Found::default());
@@ -80,9 +90,8 @@ fn replacements(mesh: &Mesh) -> (Replaced, Found) {
     let indices = mesh.indices.as_deref().unwrap_or_default();
     let at = |v: &u32| mesh.positions.get(*v as usize).copied().unwrap_or_default().as_dvec3();
     let (mut corners, mut points) = (Vec::new(), Vec::new());
-    let ends = mesh.faces.iter().skip(1).map(|&end| end as usize).chain([indices.len() / 3]);
-    for (face, (&first, end)) in mesh.faces.iter().zip(ends).enumerate() {
-        let fan = indices.get(3 * first as usize..3 * end).unwrap_or_default();
+    for (face, range) in faces(mesh).enumerate() {
+        let fan = indices.get(3 * range.start..3 * range.end).unwrap_or_default();
         match fan {
             [] | [_, _, _] => continue,
             [a, b, c, _, _, d] if quad_is_flat([a, b, c, d].map(at)) => continue,
@@ -148,6 +157,8 @@ fn replace(
     };
     match whole {
         Some(true) => replaced.add(face, corners, &triangles),
+        // A twisted face is a fan as good as any: there is nothing where its edges seem to cross.
+        Some(false) if plane.is_left_by(points) => {}
         Some(false) => match crossing::resolve(&flat, budget) {
             Some(resolved) => {
                 found.crossing.add(place);

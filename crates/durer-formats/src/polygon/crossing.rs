@@ -7,6 +7,7 @@ use durer::curve::Contours;
 use durer::math::{DVec2, Orientation, orient2d};
 use durer::raster::triangulate;
 use durer::trace::NoTrace;
+use std::collections::HashMap;
 
 /// Outlines of more crossings per corner are noise, and would take memory without end.
 const CROSSINGS_PER_CORNER: usize = 4;
@@ -62,6 +63,8 @@ pub(super) type Crossing = [([usize; 2], f64); 2];
 pub(super) struct Resolved {
     pub crossings: Vec<Crossing>,
     pub triangles: Vec<[Corner; 3]>,
+    /// Crossings by the edges that cross: regions that touch there have it in common.
+    numbers: HashMap<[[usize; 2]; 2], usize>,
 }
 
 /// Finds what an outline encloses by the non-zero rule. `None` where it cannot be told.
@@ -101,8 +104,14 @@ impl Resolved {
         match *origin {
             Origin::Vertex { index, .. } => Corner::Old(index),
             Origin::Crossing { first, second } => {
-                self.crossings.push([along(first), along(second)]);
-                Corner::New(self.crossings.len() - 1)
+                let crossing = [along(first), along(second)];
+                let mut edges = crossing.map(|(edge, _)| edge);
+                edges.sort_unstable();
+                let number = *self.numbers.entry(edges).or_insert(self.crossings.len());
+                if number == self.crossings.len() {
+                    self.crossings.push(crossing);
+                }
+                Corner::New(number)
             }
         }
     }

@@ -5,6 +5,9 @@ use durer::math::{DVec2, DVec3};
 /// Corners nearer to the plane than this part of the polygon's size lie in it, but for rounding.
 const FLAT: f64 = 1e-9;
 
+/// Corners farther from the plane than this part of the polygon's size make a bent face.
+const BENT: f64 = 1e-3;
+
 /// A plane in which a polygon runs counter-clockwise.
 #[derive(Debug)]
 pub(super) struct Plane {
@@ -30,6 +33,12 @@ impl Plane {
         let chosen = if newell.length() > rounding { newell } else { largest };
         let normal = chosen.try_normalize()?;
         size.is_finite().then_some(Self { origin, normal, none: FLAT * size })
+    }
+
+    /// Whether corners lie so far off the plane that edges which cross in it pass each other in space.
+    pub fn is_left_by(&self, points: &[DVec3]) -> bool {
+        let limit = self.none / FLAT * BENT;
+        points.iter().any(|p| (*p - self.origin).dot(self.normal).abs() > limit)
     }
 
     /// A point along the normal, on the plane of two axes that the polygon is seen best in. What lies

@@ -187,6 +187,14 @@ fn crossing_outlines_are_filled_by_the_non_zero_rule_with_interpolated_attribute
 }
 
 #[test]
+fn twisted_faces_whose_edges_pass_each_other_stay_fans() {
+    let bow = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.1]];
+    let mesh = fan(&bow, |[x, y]| Vec3::new(x as f32, y as f32, (0.1 * x * y) as f32));
+    let (same, model) = cut(mesh.clone());
+    assert!(same == mesh && model.warnings.is_empty(), "{:?}", model.warnings);
+}
+
+#[test]
 fn parts_and_faces_move_along_where_faces_change_their_number_of_triangles() {
     let mut mesh = fan(&KEYHOLE, flat);
     // A triangle, the keyhole with a spike, a bow tie, a triangle.
