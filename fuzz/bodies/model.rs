@@ -1,9 +1,10 @@
 //! What must hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`,
-//! `meshopt`, `obj`, `mtl`, `stl`, `ply` and `threemf`, which the tests call as well.
+//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply` and `threemf`, which the tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer_formats::{
-    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, gltf, obj, ply, stl, threemf,
+    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, gltf, image, obj, ply, stl,
+    threemf,
 };
 use std::io::{Cursor, Write};
 
@@ -195,6 +196,28 @@ pub fn obj(bytes: &[u8]) {
     check(obj::read(bytes, &Same(bytes), &options()));
     if let Ok(text) = text(bytes, OBJ) {
         check(obj::read(&text, &Same(bytes), &options()));
+    }
+    check(obj::read(&outline(bytes), &NoResources, &options()));
+}
+
+/// One face, with a corner for each byte, on a grid so small that outlines touch and cross everywhere.
+fn outline(bytes: &[u8]) -> Vec<u8> {
+    let mut text = Vec::new();
+    for byte in bytes.iter().take(64) {
+        let _ = writeln!(text, "v {} {} 0\nvt {} 0", byte & 7, byte >> 3 & 7, byte >> 6);
+    }
+    text.push(b'f');
+    (1..=bytes.len().min(64)).for_each(|i| {
+        let _ = write!(text, " {i}/{i}");
+    });
+    text
+}
+
+/// Pictures are as large as they say.
+pub fn image(bytes: &[u8]) {
+    if let Ok(image) = image::decode(bytes, "x", &options().limits) {
+        assert_eq!(image.data.len() as u64, u64::from(image.width) * u64::from(image.height));
+        assert!(image.width.max(image.height) <= 256);
     }
 }
 

@@ -338,8 +338,9 @@ pub struct PlaneArgs {
     /// The visible triangle of each pixel
     ///
     /// A PNG whose colour is the triangle's index as R<<16|G<<8|B, 0xFFFFFF where there is none.
-    /// Triangles count in file order, over all parts of the scene; faces of more vertices are
-    /// fanned from their first. One sample at the pixel's centre, whatever --aa says.
+    /// Triangles count in file order, over all parts of the scene; a face of n vertices is n − 2
+    /// triangles (others where its outline has spikes or crosses itself): those from its first
+    /// vertex, or where these would not cover it, as in concave faces, others. One sample at the pixel's centre, whatever --aa says.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub item: Option<PathBuf>,
     /// The depth of each pixel

@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
 use crate::report;
-use durer::scene::{LightKind, Material, Scene, ShadingModel};
+use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
+use durer::view::cull::triangle_area;
 use durer::view::topology::mesh_topology;
 use durer_formats::Model;
 use serde::Serialize;
@@ -24,6 +25,8 @@ struct Info {
     meshes: usize,
     instances: usize,
     bounds: Option<Bounds>,
+    /// Of all triangles together, in the model's own units; `null` where there are none.
+    area: Option<f64>,
     /// Whether the triangles bound a body; `null` where there are none.
     closed: Option<bool>,
     up_axis: &'static str,
@@ -85,8 +88,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 fn of_model(name: String, model: &Model) -> Info {
     let scene = &model.scene;
     let count = |wanted| {
-        let of =
-            |i: &durer::scene::Instance| scene.meshes.get(i.mesh).filter(|m| m.topology == wanted);
+        let of = |i: &Instance| scene.meshes.get(i.mesh).filter(|m| m.topology == wanted);
         scene.instances.iter().filter_map(of).map(|m| m.primitive_count() as u64).sum()
     };
     Info {
@@ -99,6 +101,7 @@ fn of_model(name: String, model: &Model) -> Info {
         meshes: scene.meshes.len(),
         instances: scene.instances.len(),
         bounds: bounds(scene),
+        area: area(scene),
         closed: closed(scene),
         up_axis: scene.up_axis.name(),
         materials: scene.materials.iter().map(material).collect(),
@@ -114,6 +117,21 @@ fn of_model(name: String, model: &Model) -> Info {
 fn bounds(scene: &Scene) -> Option<Bounds> {
     let b = scene.bounds()?;
     Some(Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() })
+}
+
+/// The sum of the triangles' areas, instance by instance.
+fn area(scene: &Scene) -> Option<f64> {
+    let of_instance = |instance: &Instance| {
+        let mesh = scene.meshes.get(instance.mesh)?;
+        let corner = |v: u32| {
+            let p = mesh.positions.get(v as usize).copied().unwrap_or_default();
+            instance.world_from_mesh.transform_point3(p.as_dvec3())
+        };
+        let area = |i| triangle_area(mesh.triangle(i).map(corner)).length();
+        Some((0..mesh.triangle_count()).map(area).filter(|area| area.is_finite()).sum::<f64>())
+    };
+    let sum = scene.instances.iter().filter_map(of_instance).sum();
+    (scene.triangle_count() > 0).then_some(sum)
 }
 
 /// Whether all meshes of triangles that are shown are closed.
@@ -167,6 +185,9 @@ impl Info {
         if let Some(Bounds { min, max, size }) = &self.bounds {
             lines.push(("bounds", format!("{} … {}", triple(min), triple(max))));
             lines.push(("size", triple(size)));
+        }
+        if let Some(area) = self.area {
+            lines.push(("area", (area as f32).to_string()));
         }
         if let Some(closed) = self.closed {
             lines.push(("closed", if closed { "yes" } else { "no" }.to_owned()));

@@ -1,9 +1,14 @@
-//! Pictures that models wear: PNG and JPEG to 8-bit RGBA; and deep PNG to 16-bit RGBA.
+//! Pictures that models wear: PNG, JPEG, WebP, GIF, BMP and TGA to 8-bit RGBA; and deep PNG to 16-bit RGBA.
 //!
-//! What a file is, is told by its first bytes. Sizes are checked before anything is allocated, also
+//! What a file is, is told by its first bytes, of TGA by its whole header. Sizes are checked before anything is allocated, also
 //! against what the bytes at hand can hold at all, so a short file cannot ask for a huge picture.
 
+mod bmp;
+mod bytes;
+mod gif;
 mod orientation;
+mod tga;
+mod webp;
 
 pub use orientation::Orientation;
 
@@ -26,7 +31,10 @@ const DEFLATE_RATIO: u64 = 1032;
 /// Each 8 × 8 block of a JPEG costs one bit at least, so a byte holds at most so many pixels.
 const JPEG_PIXELS_PER_BYTE: u64 = 8 * 64;
 
-/// Decodes a PNG or JPEG file.
+/// Width, height and pixels.
+type Picture = (u32, u32, Vec<[u8; 4]>);
+
+/// Decodes a PNG, JPEG, WebP, GIF, BMP or TGA file.
 ///
 /// Palettes, greys, CMYK (inverted, as Adobe writes it) and transparency become RGBA with straight
 /// alpha; 16-bit samples are rounded to 8. Of an animation the first picture is taken. Colour
@@ -37,20 +45,34 @@ const JPEG_PIXELS_PER_BYTE: u64 = 8 * 64;
 /// `limits.decoded_bytes`, [`Error::Unsupported`] for other known picture formats,
 /// [`Error::Decode`] for what is broken. `Place` is the whole: the caller knows the rest.
 pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
-    let (width, height, data) = if bytes.starts_with(PNG) {
-        decode_png(bytes, name, limits)?
-    } else if bytes.starts_with(JPEG) {
-        decode_jpeg(bytes, name, limits)?
-    } else if let Some(format) = other_format(bytes) {
-        return Err(Error::Unsupported {
-            place: Place::Whole,
-            what: format!("image `{name}`: the format {format}"),
-            hint: "use PNG or JPEG".to_owned(),
-        });
-    } else {
-        return Err(broken(name, "is neither PNG nor JPEG"));
+    let starts = |magic: &[u8]| bytes.starts_with(magic);
+    let (width, height, data) = match () {
+        () if starts(PNG) => decode_png(bytes, name, limits)?,
+        () if starts(JPEG) => decode_jpeg(bytes, name, limits)?,
+        () if webp::is_webp(bytes) => webp::decode(bytes, name, limits)?,
+        () if starts(gif::MAGIC) => gif::decode(bytes, name, limits)?,
+        () if starts(bmp::MAGIC) => bmp::decode(bytes, name, limits)?,
+        () => match other_format(bytes) {
+            Some(format) => return Err(unsupported(name, format)),
+            None if tga::is_tga(bytes) => tga::decode(bytes, name, limits)?,
+            None => return Err(broken(name, "is neither PNG nor JPEG, WebP, GIF, BMP or TGA")),
+        },
     };
     Ok(Image { name: name.to_owned(), width, height, data })
+}
+
+/// Whether a PNG says of itself that it is grey.
+pub(crate) fn is_grey(bytes: &[u8]) -> bool {
+    // After the signature: the length and the name of the first chunk, width, height and depth.
+    bytes.starts_with(PNG) && matches!(bytes.get(25), Some(0 | 4))
+}
+
+fn unsupported(name: &str, format: &str) -> Error {
+    Error::Unsupported {
+        place: Place::Whole,
+        what: format!("image `{name}`: the format {format}"),
+        hint: "use PNG, JPEG or WebP".to_owned(),
+    }
 }
 
 /// How many bits each sample of a PNG has, at least 8; JPEG files have 8 always.
@@ -64,13 +86,36 @@ pub fn bits_per_sample(bytes: &[u8]) -> u8 {
 fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let starts = |magic: &[u8]| bytes.starts_with(magic);
     match () {
-        () if starts(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") => Some("WebP"),
-        () if starts(b"\xabKTX 20\xbb\r\n\x1a\n") => Some("KTX 2"),
+        () if starts(b"\xabKTX 20\xbb\r\n\x1a\n") => Some("KTX 2 (Basis Universal)"),
+        () if starts(b"\xabKTX 11\xbb\r\n\x1a\n") => Some("KTX"),
+        () if starts(b"sB") && bytes.get(4..6) == Some(&[77, 0]) => Some("Basis Universal"),
         () if starts(b"DDS ") => Some("DDS"),
-        () if starts(b"GIF8") => Some("GIF"),
-        () if starts(b"BM") => Some("BMP"),
         () if starts(b"II*\0") || starts(b"MM\0*") => Some("TIFF"),
+        () if starts(b"8BPS") => Some("PSD"),
+        () if starts(b"v/1\x01") => Some("OpenEXR"),
+        () if starts(b"#?RADIANCE") => Some("Radiance HDR"),
         () => None,
+    }
+}
+
+/// A value of `most` levels spread over a byte.
+fn widen(value: u32, most: u32) -> u8 {
+    (u64::from(value) * 255 + u64::from(most) / 2).checked_div(u64::from(most)).unwrap_or(0) as u8
+}
+
+/// Exchanges top and bottom.
+fn flip(pixels: &mut [[u8; 4]], width: usize) {
+    let height = pixels.len() / width.max(1);
+    for y in 0..height / 2 {
+        let (upper, lower) = pixels.split_at_mut((height - 1 - y) * width);
+        upper[y * width..][..width].swap_with_slice(&mut lower[..width]);
+    }
+}
+
+/// Makes pixels opaque that all have an alpha of 0: many writers leave unset what they do not use.
+fn show_if_all_transparent(pixels: &mut [[u8; 4]]) {
+    if pixels.iter().all(|pixel| pixel[3] == 0) {
+        pixels.iter_mut().for_each(|pixel| pixel[3] = 255);
     }
 }
 
@@ -115,7 +160,7 @@ pub(crate) fn check_png_holds(length: usize, info: &png::Info, limit: u64) -> Re
     check_size((info.width, info.height), 4, holds, "height map", &limits)
 }
 
-fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
+fn decode_png(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
     let (frame, samples) = png_samples(bytes, 4, name, limits)?;
     let color = frame.color_type;
     let pixels = match frame.bit_depth {
@@ -222,7 +267,7 @@ fn pixels_of<S: Copy, T: Copy, const N: usize>(
     samples.as_chunks::<N>().0.iter().map(|pixel| rgba(pixel.map(&value))).collect()
 }
 
-fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<(u32, u32, Vec<[u8; 4]>)> {
+fn decode_jpeg(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
     let wrong = |e: zune_jpeg::errors::DecodeErrors| broken(name, e);
     let open = |out: ColorSpace| {
         let options = DecoderOptions::new_safe()
@@ -420,7 +465,12 @@ mod tests {
     fn what_is_no_picture_is_named() {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
         assert!(error(b"").contains("neither PNG nor JPEG"));
-        assert!(error(b"RIFF\0\0\0\0WEBPVP8 ").contains("WebP"));
+        assert!(
+            error(b"\xabKTX 20\xbb\r\n\x1a\n").contains("KTX 2 (Basis Universal) is not supported")
+        );
+        for start in [&b"RIFF\0\0\0\0WEBPVP8 "[..], b"GIF89a", b"BM12345678"] {
+            assert!(error(start).starts_with("image `x`"), "{}", error(start));
+        }
         assert!(error(&[PNG, b"rubbish"].concat()).starts_with("image `x`"));
         assert!(error(&[JPEG, b"rubbish"].concat()).starts_with("image `x`"));
     }

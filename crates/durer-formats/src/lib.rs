@@ -23,6 +23,7 @@ pub mod picture;
 mod place;
 pub mod ply;
 pub mod png;
+mod polygon;
 mod sniff;
 pub mod stl;
 pub mod svg;

@@ -5,18 +5,24 @@
 //! wrong in a material is a warning, and the model is shown all the same.
 //!
 //! What becomes what: `Kd` and `map_Kd` the base color, `Ks`, `map_Ks` and `Ns` Blinn's highlight
-//! (none where `Ks` is missing or `illum` is 1), `Ke` and `map_Ke` the emission, `d` or 1 − `Tr` and
-//! `map_d` the alpha (blended), `norm` the tangent-space normals; `Pr`, `Pm`, `map_Pr`, `map_Pm` make
-//! the material metallic-roughness. `illum 0` is unlit. `Ka`, `Ni`, `Tf` and reflection maps have no
-//! counterpart and are left out; bump maps too, with a warning. Colors are sRGB values.
+//! (none where `Ks` is missing, `illum` is 1, or `Ns` below 1), `Ke` and `map_Ke` the emission, `d` or
+//! 1 − `Tr` and `map_d` the alpha (blended), `norm` the tangent-space normals; `Pr`, `Pm`, `map_Pr`,
+//! `map_Pm` make the material metallic-roughness. `illum 0` is unlit, and other numbers make nothing
+//! transparent. `Ka`, `Ni`, `Tf` and reflection maps have no counterpart and are left out; bump maps too,
+//! with a warning, unless they show normals. Colors are sRGB values; those up to 255 are scaled.
+//!
+//! `Tr 1` without `d` is opaque: so MeshLab, OpenMVS and mvs-texturing have it, and a model that nobody
+//! sees is no use. Where libraries have `Tr 1` and nowhere `Tr 0`, `Tr` is the opacity of all materials.
 
 mod convert;
 mod image;
+mod notes;
 mod parse;
 
 use crate::{Model, Place, ReadOptions, Resources, text};
 use durer::scene::Material;
 use image::Images;
+use notes::Notes;
 use parse::{Library, Statements};
 
 /// Fills `model.scene.materials` with one material per name in `names`, in their order, from the
@@ -33,9 +39,10 @@ pub(crate) fn load(
         read_libraries(model, &mut all, Place::Line(*line, 0), operand, resources, options);
     }
     let mut images = Images::new(resources, options.limits);
+    let mut notes = Notes { tr_is_opacity: all.tr_is_opacity, ..Notes::default() };
     for name in names {
         let material = match all.find(name) {
-            Some(statements) => convert::material(model, &mut images, name, statements),
+            Some(m) => convert::material(model, &mut images, &mut notes, name, m),
             None => {
                 if !libraries.is_empty() || !name.is_empty() {
                     let message = format!("material `{name}` is not defined; a grey one is used");
@@ -46,6 +53,7 @@ pub(crate) fn load(
         };
         model.scene.materials.push(material);
     }
+    notes.tell(model);
 }
 
 /// Reads what one `mtllib` names: one file whose name may hold blanks, or else several.
@@ -58,14 +66,25 @@ fn read_libraries(
     options: &ReadOptions,
 ) {
     let limit = options.limits.decoded_bytes;
-    let words: Vec<&str> = operand.split_ascii_whitespace().collect();
+    let names = names(operand);
     let whole = resources.read(&relative(operand), limit);
-    if words.len() < 2 || whole.is_ok() {
+    if names.len() < 2 || whole.is_ok() {
         return read_library(model, all, place, operand, whole);
     }
-    for word in words {
-        read_library(model, all, place.clone(), word, resources.read(&relative(word), limit));
+    for name in &names {
+        read_library(model, all, place.clone(), name, resources.read(&relative(name), limit));
     }
+}
+
+/// The names of several libraries: each ends with `.mtl`, or where none does, with a blank.
+fn names(operand: &str) -> Vec<String> {
+    let words = operand.split_ascii_whitespace();
+    let ends = |word: &&str| word.to_ascii_lowercase().ends_with(".mtl");
+    if !words.clone().any(|word| ends(&word)) {
+        return words.map(str::to_owned).collect();
+    }
+    let words: Vec<&str> = words.collect();
+    words.split_inclusive(ends).map(|words| words.join(" ")).collect()
 }
 
 fn read_library(
@@ -150,6 +169,93 @@ mod tests {
         assert_eq!((flat.model, flat.base_color.w), (ShadingModel::Unlit, 0.5));
         assert_eq!(none.name, "none");
         assert_eq!(model.warnings.len(), 1, "{:?}", model.warnings);
+    }
+
+    fn alphas(mtl: &str, names: &[&str]) -> (Vec<f32>, Vec<String>) {
+        let model = loaded(mtl, names, vec![]);
+        let alphas = model.scene.materials.iter().map(|m| m.base_color.w).collect();
+        (alphas, model.warnings.iter().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn dissolve_beats_transparency_and_transparency_alone_hides_nothing() {
+        for mtl in ["newmtl m\nd 1\nTr 1", "newmtl m\nTr 1\nd 1.0", "newmtl m\nTr 0"] {
+            assert_eq!(alphas(mtl, &["m"]), (vec![1.0], vec![]), "{mtl}");
+        }
+        assert_eq!(alphas("newmtl m\nTr 0.75\nd 0.25", &["m"]).0, [0.25]);
+        assert_eq!(alphas("newmtl m\nTr 0.25", &["m"]), (vec![0.75], vec![]));
+        let (alpha, warnings) = alphas("newmtl m\nTr 1.0", &["m"]);
+        assert!(alpha == [1.0] && warnings[0].contains("`m`: `Tr` without `d`"), "{warnings:?}");
+        // All materials of a file mean the same by `Tr`; with a 0 among them it is the manual's.
+        let (alpha, warnings) = alphas("newmtl a\nTr 1\nnewmtl b\nTr 0.25", &["a", "b"]);
+        assert!(alpha == [1.0, 0.25] && warnings[0].starts_with("2 materials"), "{warnings:?}");
+        let (alpha, _) =
+            alphas("newmtl a\nTr 1\nnewmtl b\nTr 0.25\nnewmtl c\nTr 0", &["a", "b", "c"]);
+        assert_eq!(alpha, [1.0, 0.75, 1.0]);
+        let (alpha, warnings) = alphas("newmtl m\nd 0", &["m"]);
+        assert!(alpha == [0.0] && warnings[0].contains("`m`: wholly transparent (`d 0`)"));
+    }
+
+    #[test]
+    fn exponents_below_one_make_no_highlight() {
+        let mtl = "newmtl a\nKd .8 .3 .2\nKs .8 .8 .8\nNs 0\nillum 2\nnewmtl b\nKs 1 1 1\nNs 1";
+        let model = loaded(mtl, &["a", "b"], vec![]);
+        let speculars: Vec<Vec3> = model.scene.materials.iter().map(|m| m.specular).collect();
+        assert_eq!(speculars, [Vec3::ZERO, Vec3::ONE]);
+    }
+
+    #[test]
+    fn colors_up_to_255_are_scaled() {
+        let mtl = "newmtl a\nKd 255 51 0\nKs 0.5 0.5 0.5\nKe 0 0 255\n\
+                   newmtl b\nKa 20 20 20\nKd 1.2 1 1\nKe 20 0 0";
+        let model = loaded(mtl, &["a", "b"], vec![]);
+        let [a, b] = &model.scene.materials[..] else { panic!("two") };
+        let expected = crate::color::linear3([1.0, 0.2, 0.0]);
+        assert!((a.base_color.truncate() - expected).length() < 1e-6);
+        assert_eq!((a.emissive, b.emissive.x > 100.0, b.base_color.x > 1.0), (Vec3::Z, true, true));
+        assert!((a.specular.x - 0.214).abs() < 1e-3);
+        assert_eq!(model.warnings.len(), 1, "{:?}", model.warnings);
+        assert!(model.warnings[0].message.contains("`a`: colors go up to 255"));
+    }
+
+    #[test]
+    fn bump_maps_that_show_normals_are_normal_maps() {
+        let blue = png(2, 1, &[128, 128, 255, 255, 140, 110, 240, 255]);
+        let brown = png(2, 1, &[200, 150, 100, 255, 90, 60, 30, 255]);
+        let mtl = "newmtl a\nmap_Bump -bm 0.5 n.png\nnewmtl b\nbump h.png\n\
+                   newmtl c\nnorm n.png\nbump h.png\nnewmtl d\nbump my_bump.png";
+        let files = vec![("n.png", blue.clone()), ("h.png", brown), ("my_bump.png", blue)];
+        let model = loaded(mtl, &["a", "b", "c", "d"], files);
+        let maps: Vec<bool> =
+            model.scene.materials.iter().map(|m| m.normal_texture.is_some()).collect();
+        assert_eq!(maps, [true, false, true, false]);
+        assert_eq!(model.scene.materials[0].normal_scale, 0.5);
+        let [warning] = &model.warnings[..] else { panic!("{:?}", model.warnings) };
+        assert!(warning.message.starts_with("2 materials, the first `b`: bump maps"));
+    }
+
+    #[test]
+    fn a_map_of_alpha_has_it_in_one_channel_for_all_pixels() {
+        let mtl = "newmtl a\nmap_d d.png\nKd 1 0 0";
+        // Opaque black and half-transparent white: the second says that the first's grey is none.
+        let files = vec![("d.png", png(2, 1, &[0, 0, 0, 255, 255, 255, 255, 128]))];
+        let model = loaded(mtl, &["a"], files);
+        assert_eq!(model.scene.images[0].data, [[255, 255, 255, 255], [255, 255, 255, 128]]);
+        assert_eq!(model.scene.materials[0].base_color.x, 1.0);
+    }
+
+    #[test]
+    fn names_are_found_with_blanks_and_in_latin_1() {
+        assert_eq!(names("a b.mtl c.MTL"), ["a b.mtl", "c.MTL"]);
+        assert_eq!(names("a b"), ["a", "b"]);
+        let mut model = Model::default();
+        let files =
+            Files(vec![("x.mtl", b"newmtl Gr\xfcn\nKd 0 1 0\nmap_Kd Bl\xe4tt.png".to_vec())]);
+        let libraries = [(1, "y z.mtl x.mtl".to_owned())];
+        load(&mut model, &libraries, &["Grün".to_owned()], &files, &ReadOptions::default());
+        assert_eq!(model.scene.materials[0].base_color.y, 1.0);
+        let words: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+        assert!(words[0].contains("`y z.mtl`") && words[1].contains("`Blätt.png`"), "{words:?}");
     }
 
     #[test]

@@ -39,6 +39,26 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
     if text.chars().count() <= 60 { text } else { text.chars().take(60).chain(['…']).collect() }
 }
 
+/// A name in a text: UTF-8, or where it is none, Windows-1252, in which older programs wrote.
+pub(crate) fn name(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(name) => Cow::Borrowed(name),
+        Err(_) => Cow::Owned(bytes.iter().map(|&b| windows_1252(b)).collect()),
+    }
+}
+
+/// The character behind a byte of Windows-1252, which is Latin-1 but for the 32 from 0x80 on; the five
+/// that it leaves free are control characters.
+fn windows_1252(byte: u8) -> char {
+    const FROM_80: [char; 32] = [
+        '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž',
+        '\u{8f}', '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}',
+        'ž', 'Ÿ',
+    ];
+    let special = usize::from(byte).checked_sub(0x80).and_then(|i| FROM_80.get(i));
+    special.copied().unwrap_or(char::from(byte))
+}
+
 /// Text as bytes of UTF-8: without a byte-order mark, and decoded where the mark says UTF-16.
 pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     match bytes {
@@ -268,6 +288,12 @@ mod tests {
         let be: Vec<u8> = "\u{feff}v ä\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         assert_eq!(utf8(&be).as_ref(), "v ä\n".as_bytes());
         assert_eq!(utf8(b"\xef\xbb\xbfv").as_ref(), b"v");
+    }
+
+    #[test]
+    fn names_are_utf8_or_windows_1252() {
+        assert_eq!(name("Größe".as_bytes()), "Größe");
+        assert_eq!(name(b"Gr\xf6\xdfe \x80\x99\x9f"), "Größe €™Ÿ");
     }
 
     #[test]

@@ -1,24 +1,37 @@
 //! From a material's statements to the scene's material.
 
 use super::image::{Images, grey};
+use super::notes::Notes;
 use super::parse::{Map, Statements};
-use crate::{Model, Place, color};
+use crate::{Model, color};
 use durer::math::{DMat3, DVec2, Vec3};
 use durer::scene::{AlphaMode, Material, Sampler, ShadingModel, Texture, TextureRef, Wrap};
 
 /// The largest exponent of a highlight: narrower ones fall between pixels.
 const MAX_SHININESS: f32 = 10_000.0;
 
+/// Highlights of lower exponents would cover all that is lit: who writes them wants none.
+const MIN_SHININESS: f32 = 1.0;
+
+/// Colours above this are written in 0 … 255; those a little above 1 are only bright.
+const BRIGHTEST: f32 = 2.0;
+
 /// Builds a material; its textures go into the scene.
 pub(super) fn material(
     model: &mut Model,
     images: &mut Images<'_>,
+    notes: &mut Notes,
     name: &str,
     m: &Statements,
 ) -> Material {
     let mut material = Material { name: name.to_owned(), ..Material::default() };
+    let scaled = from_bytes(m);
+    if scaled.is_some() {
+        notes.byte_colors.add(name);
+    }
+    let m = scaled.as_ref().unwrap_or(m);
     set_colors(&mut material, m);
-    set_alpha(&mut material, m);
+    set_alpha(&mut material, notes, name, m);
     base_texture(model, images, &mut material, m);
     specular(model, images, &mut material, m);
     physical(model, images, &mut material, m);
@@ -28,14 +41,7 @@ pub(super) fn material(
             material.emissive = Vec3::ONE;
         }
     }
-    if let Some(map) = &m.map_normal {
-        material.normal_texture = whole(model, images, map);
-        material.normal_scale = map.strength as f32;
-    }
-    if m.bump {
-        let message = format!("material `{name}`: bump maps are not supported; left out");
-        model.warn(Place::Whole, message);
-    }
+    normals(model, images, notes, &mut material, m);
     if m.illum == Some(0.0) {
         material.model = ShadingModel::Unlit;
     }
@@ -53,11 +59,58 @@ fn set_colors(material: &mut Material, m: &Statements) {
     material.emissive = m.emissive.map_or(Vec3::ZERO, color::linear3);
 }
 
-fn set_alpha(material: &mut Material, m: &Statements) {
-    let alpha = m.alpha.unwrap_or(1.0).clamp(0.0, 1.0);
+/// The statements with colours divided by 255, where they are written so.
+fn from_bytes(m: &Statements) -> Option<Statements> {
+    let above = |color: &[f32; 3], limit: f32| color.iter().any(|v| *v > limit);
+    // Emission may well be above 1, and so is the ambient colour of what stands for a lamp.
+    let told = [m.diffuse, m.specular];
+    told.iter().flatten().any(|color| above(color, BRIGHTEST)).then(|| {
+        let scale = |color: Option<[f32; 3]>| {
+            color.map(|c| if above(&c, 1.0) { c.map(|v| v / 255.0) } else { c })
+        };
+        let (diffuse, specular, emissive) =
+            (scale(m.diffuse), scale(m.specular), scale(m.emissive));
+        Statements { diffuse, specular, emissive, ..m.clone() }
+    })
+}
+
+/// `d`; or else `Tr`, of which 1 is opaque to many writers, though transparent to the manual.
+fn set_alpha(material: &mut Material, notes: &mut Notes, name: &str, m: &Statements) {
+    let alpha = match (m.dissolve, m.transparency) {
+        (Some(d), _) => d,
+        (None, Some(tr)) if tr >= 1.0 || (notes.tr_is_opacity && tr > 0.0) => {
+            notes.opacity.add(name);
+            tr
+        }
+        (None, Some(tr)) => 1.0 - tr,
+        (None, None) => 1.0,
+    };
+    let alpha = alpha.clamp(0.0, 1.0);
+    if alpha == 0.0 {
+        notes.invisible.add(name);
+    }
     material.base_color.w = alpha;
     if alpha < 1.0 || m.map_alpha.is_some() {
         material.alpha_mode = AlphaMode::Blend;
+    }
+}
+
+/// `norm`; or else a bump map that shows normals, as many writers have it.
+fn normals(
+    model: &mut Model,
+    images: &mut Images<'_>,
+    notes: &mut Notes,
+    material: &mut Material,
+    m: &Statements,
+) {
+    let bump = m.map_bump.as_ref().filter(|_| m.map_normal.is_none());
+    let shows_normals = bump.and_then(|map| images.shows_normals(model, &map.path));
+    if shows_normals == Some(false) {
+        notes.bump.add(&material.name);
+    }
+    if let Some(map) = m.map_normal.as_ref().or(bump.filter(|_| shows_normals == Some(true))) {
+        material.normal_texture = whole(model, images, map);
+        material.normal_scale = map.strength as f32;
     }
 }
 
@@ -76,10 +129,11 @@ fn base_texture(
         (Some(color), Some(alpha)) if color.path == alpha.path => images.whole(model, &color.path),
         _ => {
             let paths = [color, alpha].map(|map| map.map(|m| m.path.as_str()));
+            // A picture made for alpha alone has it in its alpha channel or as grey.
+            let channel = alpha.is_some_and(|map| images.has_alpha(model, &map.path));
             images.joined(model, paths, |[color, alpha]| {
                 let [r, g, b, _] = color.unwrap_or([255; 4]);
-                // A picture made for alpha alone has it in its alpha channel or as grey.
-                let a = alpha.map_or(255, |p| if p[3] < 255 { p[3] } else { grey(p) });
+                let a = alpha.map_or(255, |p| if channel { p[3] } else { grey(p) });
                 [r, g, b, a]
             })
         }
@@ -89,9 +143,11 @@ fn base_texture(
 
 fn specular(model: &mut Model, images: &mut Images<'_>, material: &mut Material, m: &Statements) {
     let matte = m.illum.is_some_and(|i| i < 2.0);
+    let matte = matte || m.shininess.is_some_and(|exponent| exponent < MIN_SHININESS);
     let given = m.specular.or(m.map_specular.is_some().then_some([1.0; 3])).filter(|_| !matte);
     material.specular = given.map_or(Vec3::ZERO, color::linear3);
-    material.shininess = m.shininess.unwrap_or(material.shininess).clamp(1.0, MAX_SHININESS);
+    let shininess = m.shininess.unwrap_or(material.shininess);
+    material.shininess = shininess.clamp(MIN_SHININESS, MAX_SHININESS);
     if let Some(map) = m.map_specular.as_ref().filter(|_| !matte) {
         material.specular_texture = whole(model, images, map);
     }

@@ -40,6 +40,27 @@ impl<'a> Images<'a> {
         self.decoded.get(path)?.as_ref()
     }
 
+    /// Whether a picture has any pixel that is not opaque.
+    pub fn has_alpha(&mut self, model: &mut Model, path: &str) -> bool {
+        let image = self.decode(model, path);
+        image.is_some_and(|image| image.data.iter().any(|pixel| pixel[3] < 255))
+    }
+
+    /// Whether a picture shows normals rather than heights; `None` where it cannot be read, after a
+    /// warning. What is grey, or named after heights, is not decoded for it.
+    pub fn shows_normals(&mut self, model: &mut Model, path: &str) -> Option<bool> {
+        let name = path.to_ascii_lowercase();
+        if ["bump", "height", "disp"].iter().any(|word| name.contains(word)) {
+            return Some(false);
+        }
+        let is_new = !self.decoded.contains_key(path);
+        let bytes = self.resources.read(path, self.left.decoded_bytes);
+        if is_new && bytes.is_ok_and(|bytes| image::is_grey(&bytes)) {
+            return Some(false);
+        }
+        self.decode(model, path).map(is_normal_map)
+    }
+
     /// The scene's number of a picture as it is.
     pub fn whole(&mut self, model: &mut Model, path: &str) -> Option<usize> {
         let key = vec![Some(path.to_owned())];
@@ -87,6 +108,16 @@ impl<'a> Images<'a> {
         self.numbers.insert(key, number);
         number
     }
+}
+
+/// Whether a picture is blue on the whole, with red and green in the middle, as normals are that look
+/// away from their surface.
+fn is_normal_map(image: &Image) -> bool {
+    let sum = |channel: usize| image.data.iter().map(|p| u64::from(p[channel])).sum::<u64>();
+    let count = (image.data.len() as u64).max(1);
+    let [red, green, blue] = [0, 1, 2].map(|channel| sum(channel) / count);
+    let middle = 80..=176;
+    middle.contains(&red) && middle.contains(&green) && blue >= 160 && blue > red.max(green) + 30
 }
 
 /// A pixel as one grey value: Rec. 709 luma of its stored values.

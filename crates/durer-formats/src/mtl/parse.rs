@@ -1,6 +1,6 @@
 //! The statements of a material library.
 
-use crate::text::{Cursor, quote};
+use crate::text::{self, Cursor, quote};
 use crate::{Model, Place, Result, number};
 use std::collections::HashMap;
 
@@ -25,7 +25,10 @@ pub(super) struct Statements {
     pub specular: Option<[f32; 3]>,
     pub emissive: Option<[f32; 3]>,
     pub shininess: Option<f32>,
-    pub alpha: Option<f32>,
+    /// `d`: 1 is opaque.
+    pub dissolve: Option<f32>,
+    /// `Tr`: 0 is opaque, or so the manual has it.
+    pub transparency: Option<f32>,
     pub roughness: Option<f32>,
     pub metallic: Option<f32>,
     pub illum: Option<f32>,
@@ -36,13 +39,15 @@ pub(super) struct Statements {
     pub map_normal: Option<Map>,
     pub map_roughness: Option<Map>,
     pub map_metallic: Option<Map>,
-    pub bump: bool,
+    pub map_bump: Option<Map>,
 }
 
 /// Materials by name; of two with the same name the first stands.
 #[derive(Debug, Default)]
 pub(super) struct Library {
     pub materials: HashMap<String, Statements>,
+    /// Whether `Tr` is the opacity: it is nowhere 0 and somewhere 1, of materials without `d`.
+    pub tr_is_opacity: bool,
 }
 
 impl Library {
@@ -71,6 +76,9 @@ impl Library {
             cursor.next_line();
         }
         self.keep(current);
+        let alone = |m: &Statements| m.transparency.filter(|_| m.dissolve.is_none());
+        let any = |test: fn(f32) -> bool| self.materials.values().filter_map(alone).any(test);
+        self.tr_is_opacity = any(|tr| tr >= 1.0) && !any(|tr| tr <= 0.0);
     }
 
     fn keep(&mut self, material: Option<(String, Statements)>) {
@@ -87,7 +95,7 @@ impl Library {
         let Some(word) = cursor.word() else { return Ok(()) };
         let keyword = word.to_ascii_lowercase();
         if keyword == b"newmtl" {
-            let name = String::from_utf8_lossy(cursor.rest()).into_owned();
+            let name = text::name(cursor.rest()).into_owned();
             self.keep(current.replace((name, Statements::default())));
             return Ok(());
         }
@@ -99,8 +107,8 @@ impl Library {
             b"ks" => m.specular = Some(color(cursor)?),
             b"ke" => m.emissive = Some(color(cursor)?),
             b"ns" => m.shininess = Some(value(cursor)?),
-            b"d" => m.alpha = Some(dissolve(cursor)?),
-            b"tr" => m.alpha = Some(1.0 - value(cursor)?),
+            b"d" => m.dissolve = Some(dissolve(cursor)?),
+            b"tr" => m.transparency = Some(value(cursor)?),
             b"pr" => m.roughness = Some(value(cursor)?),
             b"pm" => m.metallic = Some(value(cursor)?),
             b"illum" => m.illum = Some(value(cursor)?),
@@ -111,7 +119,7 @@ impl Library {
             b"norm" | b"map_norm" | b"map_kn" => m.map_normal = Some(map(cursor)?),
             b"map_pr" => m.map_roughness = Some(map(cursor)?),
             b"map_pm" => m.map_metallic = Some(map(cursor)?),
-            b"map_bump" | b"bump" => m.bump = true,
+            b"map_bump" | b"bump" => m.map_bump = Some(map(cursor)?),
             // No counterpart in the scene, and no harm in leaving them out.
             b"ka" | b"ni" | b"tf" | b"map_ka" | b"map_ns" | b"map_tr" | b"map_tf" | b"map_ni"
             | b"refl" | b"map_refl" | b"disp" | b"map_disp" | b"decal" | b"sharpness"
@@ -178,7 +186,7 @@ fn map(cursor: &mut Cursor<'_>) -> Result<Map> {
         }
         *cursor = ahead;
     }
-    map.path = super::relative(&String::from_utf8_lossy(cursor.rest()));
+    map.path = super::relative(&text::name(cursor.rest()));
     if map.path.is_empty() {
         Err(cursor.error("the name of a picture is missing"))
     } else {

@@ -2,7 +2,8 @@
 
 use super::corners::{Corner, NONE};
 use super::parse::{Parsed, Repairs, Run};
-use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place};
+use super::smooth;
+use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place, polygon};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{Instance, Mesh, Part, Topology};
 
@@ -32,7 +33,8 @@ pub(super) fn build(
     let lines = loose(&parsed, &parsed.lines, &parsed.line_runs, Topology::Lines, origin);
     let points = loose(&parsed, &parsed.points, &parsed.point_runs, Topology::Points, origin);
     if !parsed.triangles.indices.is_empty() {
-        let mesh = triangles(&mut model, parsed, origin);
+        let mut mesh = triangles(&mut model, parsed, origin);
+        polygon::recut(&mut model, &mut mesh, &options.limits)?;
         add(&mut model, mesh, origin);
     }
     for mesh in [lines, points].into_iter().flatten() {
@@ -71,10 +73,23 @@ fn whiten(model: &mut Model) {
 
 fn warn_of_repairs(model: &mut Model, repairs: &Repairs) {
     let word = &repairs.unknown_word;
+    let (corner, number) = (&repairs.bad_corner, &repairs.bad_number);
     for (tally, message) in [
         (
             &repairs.unknown,
             format!("statements are not known and were skipped, the first: `{word}`"),
+        ),
+        (
+            &repairs.bad_corners,
+            format!(
+                "faces, lines or points have a wrong corner and were left out, the first: {corner}"
+            ),
+        ),
+        (
+            &repairs.bad_numbers,
+            format!(
+                "vertices, texture coordinates or normals are not readable, the first: {number}"
+            ),
         ),
         (&repairs.short_faces, "elements have too few corners and were left out".to_owned()),
         (&repairs.non_finite, "vertices have a coordinate that is NaN or infinite".to_owned()),
@@ -177,35 +192,7 @@ fn triangles(model: &mut Model, parsed: Parsed, origin: DVec3) -> Mesh {
     if keys.iter().any(|k| k.normal != NONE) {
         let normal = |k: &Corner| normals.get(k.normal as usize).copied();
         mesh.normals = keys.iter().map(|k| normal(k).unwrap_or(Vec3::ZERO)).collect();
-        fill_normals(model, &mut mesh, &keys);
+        smooth::fill(model, &mut mesh, &keys, normals.len());
     }
     mesh
-}
-
-/// Gives vertices without a normal the area-weighted mean of their triangles' normals.
-fn fill_normals(model: &mut Model, mesh: &mut Mesh, keys: &[Corner]) {
-    let missing = keys.iter().filter(|k| k.normal == NONE).count();
-    if missing == 0 {
-        return;
-    }
-    model.warn(
-        Place::Whole,
-        format!("{missing} vertices have no normal where others have; theirs were computed"),
-    );
-    for i in 0..mesh.triangle_count() {
-        let corners = mesh.triangle(i);
-        let [a, b, c] =
-            corners.map(|v| mesh.positions.get(v as usize).copied().unwrap_or_default());
-        let area_normal = (b - a).cross(c - a);
-        for v in corners.map(|v| v as usize) {
-            if keys.get(v).is_some_and(|k| k.normal == NONE)
-                && let Some(n) = mesh.normals.get_mut(v)
-            {
-                *n += area_normal;
-            }
-        }
-    }
-    for (n, _) in mesh.normals.iter_mut().zip(keys).filter(|(_, k)| k.normal == NONE) {
-        *n = n.normalize_or_zero();
-    }
 }

@@ -11,6 +11,8 @@ pub(super) struct Counts {
     pub triangles: usize,
     pub lines: usize,
     pub points: usize,
+    /// Whether there is a smoothing group: a statement that only switches smoothing off names none.
+    pub smoothing: bool,
 }
 
 /// Counts statements by the first letters of each line. Lines joined by a backslash are seen as
@@ -27,10 +29,17 @@ pub(super) fn count(text: &[u8]) -> Counts {
             (Some(b'f'), _) if blank(1) => counts.triangles += words(line).saturating_sub(3),
             (Some(b'l'), _) if blank(1) => counts.lines += words(line).saturating_sub(2),
             (Some(b'p'), _) if blank(1) => counts.points += words(line).saturating_sub(1),
+            (Some(b's'), _) if blank(1) => counts.smoothing |= !is_off(line.get(1..)),
             _ => {}
         }
     }
     counts
+}
+
+/// Whether the operand of `s` means that faces are flat.
+pub(super) fn is_off(operand: Option<&[u8]>) -> bool {
+    let operand = operand.unwrap_or_default().trim_ascii();
+    operand.is_empty() || operand == b"0" || operand.eq_ignore_ascii_case(b"off")
 }
 
 fn words(line: &[u8]) -> usize {
@@ -74,8 +83,16 @@ mod tests {
     fn statements_are_counted() {
         let text =
             b"v 0 0 0\r\n v 1 1 1\rvt 0 0\nvn 0 0 1\nf 1 1 1 1 1\nl 1 2 1\np 1 2\nvp 1\n# v 1\nv";
-        let expected =
-            Counts { positions: 3, tex_coords: 1, normals: 1, triangles: 3, lines: 2, points: 2 };
+        let expected = Counts {
+            positions: 3,
+            tex_coords: 1,
+            normals: 1,
+            triangles: 3,
+            lines: 2,
+            points: 2,
+            smoothing: false,
+        };
         assert_eq!(count(text), expected);
+        assert!(!count(b"s off\ns 0\ns\nsmooth 1").smoothing && count(b"s off\n s\t3").smoothing);
     }
 }

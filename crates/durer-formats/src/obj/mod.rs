@@ -2,15 +2,18 @@
 //!
 //! Source: *Wavefront Advanced Visualizer Manual*, appendix B1 (OBJ) and B5 (MTL), 1990s, and what
 //! later writers do. Lines, points and triangles become one mesh each; faces keep the file's order
-//! and are fanned from their first corner. Names of objects and groups, and materials, become parts.
+//! and are triangulated as [`crate::polygon`] has it. Names of objects and groups, and materials, become parts.
 //!
 //! Choices where the manual is silent or tools differ:
 //! - colours (of materials and of vertices, `v x y z r g b`) are sRGB values, as in viewers without
 //!   colour management and in three.js; vertex colours of 0…255 are scaled.
 //! - faces may refer to vertices that come later in the file; negative numbers count back from the
 //!   last vertex so far.
-//! - smoothing groups are not kept: a file without normals leaves them to the renderer. Where only
-//!   some corners have normals, the others get the area-weighted mean of the triangles around them.
+//! - corners without a normal get, in a file with smoothing groups, the area-weighted mean of the faces
+//!   of their group around the vertex, or where smoothing is off their face's own. A file without
+//!   normals and groups, also where `s off` stands in it, leaves them to the renderer; where only some
+//!   corners have normals, the others get the mean of all faces around them.
+//! - what is wrong with one element costs that element only, and a warning.
 //! - a file with vertices and nothing else is a point cloud.
 //!
 //! Cost: three passes over the text, one to count. Memory: the text, 24 bytes per `v` while reading,
@@ -20,15 +23,19 @@ mod build;
 mod corners;
 mod count;
 mod parse;
+mod smooth;
+#[cfg(test)]
+mod tests;
 
 use crate::{Model, ReadOptions, Resources, Result, text};
 
 /// Reads an OBJ file: UTF-8 or any 8-bit text, or UTF-16 with a byte-order mark.
 ///
 /// # Errors
-/// [`crate::Error::Decode`] with line and column for a number that is none, an index to something
-/// that does not exist, or a file without vertices; [`crate::Error::Limit`] for more primitives than
-/// allowed. A missing material library or texture is a warning.
+/// [`crate::Error::Decode`] for a file without vertices, and with line and column for numbers that are
+/// none and indices to something that does not exist, where nothing is left without them;
+/// [`crate::Error::Limit`] for more primitives than allowed. A missing material library or texture is a
+/// warning.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let text = text::utf8(bytes);
     let counts = count::count(&text);

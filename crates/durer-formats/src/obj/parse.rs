@@ -1,8 +1,8 @@
 //! The statements of an OBJ file.
 
 use super::corners::{Corner, Corners, NONE};
-use super::count::Counts;
-use crate::text::{Cursor, Tally, quote};
+use super::count::{Counts, is_off};
+use crate::text::{self, Cursor, Tally, quote};
 use crate::{Error, Limits, Place, Result};
 use durer::math::{DVec3, Vec2, Vec3};
 use durer::scene::Topology;
@@ -34,6 +34,22 @@ pub(super) struct Repairs {
     pub no_attributes: Tally,
     /// Vertices with no color, or no finite one, where others have one.
     pub no_color: Tally,
+    /// Faces, lines and points that were left out for a corner, and what was wrong with the first.
+    pub bad_corners: Tally,
+    pub bad_corner: String,
+    /// Vertices, texture coordinates and normals whose numbers are none, and what was wrong with the first.
+    pub bad_numbers: Tally,
+    pub bad_number: String,
+}
+
+/// Counts an error that only one element suffers from.
+fn note(tally: &mut Tally, first: &mut String, error: Error) -> Result<()> {
+    let Error::Decode { place, message } = error else { return Err(error) };
+    if tally.count == 0 {
+        *first = message;
+    }
+    tally.add(|| place);
+    Ok(())
 }
 
 /// What the statements say.
@@ -44,6 +60,7 @@ pub(super) struct Parsed {
     pub colors: Vec<Vec3>,
     pub tex_coords: Vec<Vec2>,
     pub normals: Vec<Vec3>,
+    /// Their normals may be numbers of smoothing groups, see [`super::smooth`].
     pub triangles: Corners,
     pub triangle_runs: Vec<Run>,
     /// First triangle of each face; empty while all faces are triangles.
@@ -88,6 +105,10 @@ struct Parser<'a> {
     brightest: f32,
     /// Faces with three or more corners so far.
     faces: usize,
+    /// What stands for the normal of a corner that has none: [`NONE`], or in files with smoothing groups
+    /// a number from that of the normals on: that for flat faces, then one for each group.
+    smoothing: u32,
+    groups: HashMap<&'a [u8], u32>,
 }
 
 /// The three kinds of things that corners refer to.
@@ -119,6 +140,9 @@ impl<'a> Parser<'a> {
             open: [None; 3],
             brightest: 0.0,
             faces: 0,
+            // The manual's default is off, where groups are used at all.
+            smoothing: if counts.smoothing { counts.normals as u32 } else { NONE },
+            groups: HashMap::new(),
         }
     }
 
@@ -146,17 +170,17 @@ impl<'a> Parser<'a> {
                 let next = self.material_numbers.len();
                 let number = *self.material_numbers.entry(name).or_insert(next);
                 if number == next {
-                    self.out.materials.push(String::from_utf8_lossy(name).into_owned());
+                    self.out.materials.push(text::name(name).into_owned());
                 }
                 self.material = Some(number);
             }
             b"mtllib" => {
-                let name = String::from_utf8_lossy(self.cursor.rest()).into_owned();
+                let name = text::name(self.cursor.rest()).into_owned();
                 self.out.libraries.push((self.cursor.line(), name));
             }
             b"o" => self.object = self.cursor.rest(),
             b"g" => self.group = self.cursor.rest(),
-            b"s" => {}
+            b"s" => self.smoothing_group(),
             _ => {
                 let place = self.cursor.place();
                 if self.out.repairs.unknown.count == 0 {
@@ -167,8 +191,32 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Numbers of a statement that needs `least` of them.
+    fn smoothing_group(&mut self) {
+        let name = self.cursor.word().unwrap_or_default();
+        let flat = self.counts.normals as u32;
+        if self.counts.smoothing && is_off(Some(name)) {
+            self.smoothing = flat;
+        } else if self.counts.smoothing {
+            let next = self.groups.len() as u32;
+            let group = *self.groups.entry(name).or_insert(next);
+            self.smoothing = flat.saturating_add(1).saturating_add(group).min(NONE - 1);
+        }
+    }
+
+    /// Numbers of a statement that needs `least` of them; NaN where they are none.
     fn numbers<const N: usize>(&mut self, what: &str, least: usize) -> Result<([f64; N], usize)> {
+        self.numbers_or_error(what, least).or_else(|error| {
+            let repairs = &mut self.out.repairs;
+            note(&mut repairs.bad_numbers, &mut repairs.bad_number, error)?;
+            Ok(([f64::NAN; N], least))
+        })
+    }
+
+    fn numbers_or_error<const N: usize>(
+        &mut self,
+        what: &str,
+        least: usize,
+    ) -> Result<([f64; N], usize)> {
         let line = self.cursor.line();
         let mut values = [0.0; N];
         let count = self.cursor.floats(&mut values)?;
@@ -210,6 +258,7 @@ impl<'a> Parser<'a> {
 
     fn tex_coord(&mut self) -> Result<()> {
         let ([u, v, _], _) = self.numbers::<3>("vt", 1)?;
+        let [u, v] = if u.is_nan() || v.is_nan() { [0.0; 2] } else { [u, v] };
         self.out.tex_coords.push(Vec2::new(u as f32, (1.0 - v) as f32));
         Ok(())
     }
@@ -245,7 +294,7 @@ impl<'a> Parser<'a> {
         Ok(Some(Corner {
             position,
             tex_coord: tex_coord.unwrap_or(NONE),
-            normal: normal.unwrap_or(NONE),
+            normal: normal.unwrap_or(self.smoothing),
         }))
     }
 
@@ -290,12 +339,25 @@ impl<'a> Parser<'a> {
     }
 
     fn face(&mut self) -> Result<()> {
-        let place = self.cursor.line();
-        let (Some(first), Some(second)) = (self.corner()?, self.corner()?) else {
-            return self.short_face(place);
-        };
-        let Some(third) = self.corner()? else { return self.short_face(place) };
+        let line = self.cursor.line();
         let start = self.out.triangles.indices.len();
+        match self.fan(start) {
+            Ok(true) => self.note_face(start / 3),
+            Ok(false) => self.short_face(line),
+            Err(error) => {
+                self.out.triangles.indices.truncate(start);
+                self.leave_out(error)?;
+            }
+        }
+        self.check_limit()
+    }
+
+    /// Adds a face's corners as triangles from the first; false where there are fewer than three.
+    fn fan(&mut self, start: usize) -> Result<bool> {
+        let (Some(first), Some(second)) = (self.corner()?, self.corner()?) else {
+            return Ok(false);
+        };
+        let Some(third) = self.corner()? else { return Ok(false) };
         self.begin(start / 3, Topology::Triangles);
         for corner in [first, second, third] {
             self.out.triangles.push(corner);
@@ -306,13 +368,17 @@ impl<'a> Parser<'a> {
             self.out.triangles.repeat(last);
             self.out.triangles.push(next);
         }
-        self.note_face(start / 3);
-        self.check_limit()
+        Ok(true)
     }
 
-    fn short_face(&mut self, line: u64) -> Result<()> {
+    fn short_face(&mut self, line: u64) {
         self.out.repairs.short_faces.add(|| Place::Line(line, 0));
-        Ok(())
+    }
+
+    /// Counts an element that is left out for one of its corners.
+    fn leave_out(&mut self, error: Error) -> Result<()> {
+        let repairs = &mut self.out.repairs;
+        note(&mut repairs.bad_corners, &mut repairs.bad_corner, error)
     }
 
     /// Keeps the first triangle of each face once a face has several.
@@ -329,7 +395,17 @@ impl<'a> Parser<'a> {
     }
 
     fn line(&mut self) -> Result<()> {
-        let start = self.out.lines.len() / 2;
+        let start = self.out.lines.len();
+        if let Err(error) = self.polyline(start / 2) {
+            self.out.lines.truncate(start);
+            self.leave_out(error)?;
+        } else if start == self.out.lines.len() {
+            self.short_face(self.cursor.line());
+        }
+        self.check_limit()
+    }
+
+    fn polyline(&mut self, start: usize) -> Result<()> {
         let mut last = None;
         while let Some(Corner { position, .. }) = self.corner()? {
             if let Some(from) = last.replace(position) {
@@ -337,19 +413,24 @@ impl<'a> Parser<'a> {
                 self.out.lines.extend([from, position]);
             }
         }
-        if start == self.out.lines.len() / 2 {
-            let line = self.cursor.line();
-            self.out.repairs.short_faces.add(|| Place::Line(line, 0));
+        Ok(())
+    }
+
+    fn points(&mut self) -> Result<()> {
+        let start = self.out.points.len();
+        if let Err(error) = self.some_points() {
+            self.out.points.truncate(start);
+            self.leave_out(error)?;
         }
         self.check_limit()
     }
 
-    fn points(&mut self) -> Result<()> {
+    fn some_points(&mut self) -> Result<()> {
         while let Some(Corner { position, .. }) = self.corner()? {
             self.begin(self.out.points.len(), Topology::Points);
             self.out.points.push(position);
         }
-        self.check_limit()
+        Ok(())
     }
 
     /// Starts a run at primitive `start` where material or name change.
@@ -391,6 +472,7 @@ impl<'a> Parser<'a> {
                 "holds no vertex; an OBJ file has lines like `v 0 0 0` and `f 1 2 3`",
             ));
         }
+        self.check_something_left()?;
         if self.out.positions.len() < self.counts.positions
             || self.out.tex_coords.len() < self.counts.tex_coords
             || self.out.normals.len() < self.counts.normals
@@ -406,6 +488,25 @@ impl<'a> Parser<'a> {
         Ok(self.out)
     }
 
+    /// # Errors
+    /// What was wrong first, where nothing can be shown because of it.
+    fn check_something_left(&self) -> Result<()> {
+        let (out, repairs) = (&self.out, &self.out.repairs);
+        let no_element =
+            out.triangles.indices.is_empty() && out.lines.is_empty() && out.points.is_empty();
+        let no_place = || !out.positions.iter().any(|p| p.is_finite());
+        let error = |tally: &Tally, message: &String| {
+            Err(Error::Decode { place: tally.first.clone(), message: message.clone() })
+        };
+        if no_element && repairs.bad_corners.count > 0 {
+            return error(&repairs.bad_corners, &repairs.bad_corner);
+        }
+        if repairs.bad_numbers.count > 0 && no_place() {
+            return error(&repairs.bad_numbers, &repairs.bad_number);
+        }
+        Ok(())
+    }
+
     /// Where lines that look like vertices were the continuation of others, there are fewer things
     /// than counted, and an index may lead nowhere.
     fn check_joined(&self) -> Result<()> {
@@ -416,7 +517,7 @@ impl<'a> Parser<'a> {
             [
                 positions.chain(keys().map(|k| k.position)).max(),
                 keys().map(|k| k.tex_coord).filter(|&t| t != NONE).max(),
-                keys().map(|k| k.normal).filter(|&n| n != NONE).max(),
+                keys().map(|k| k.normal).filter(|&n| n < self.counts.normals as u32).max(),
             ]
         } else {
             [positions.chain(out.triangles.indices.iter().copied()).max(), None, None]
@@ -457,8 +558,7 @@ impl Part<'_> {
 
     /// `object/group`, or the one that there is.
     fn name(&self) -> String {
-        let (object, group) =
-            (String::from_utf8_lossy(self.object), String::from_utf8_lossy(self.group));
+        let (object, group) = (text::name(self.object), text::name(self.group));
         match (object.is_empty(), group.is_empty()) {
             (false, false) => format!("{object}/{group}"),
             (false, true) => object.into_owned(),

@@ -19,9 +19,10 @@ pub(super) fn paint(
         hint: "use PNG or JPEG".to_owned(),
     };
     let bytes = match node.kind() {
-        usvg::ImageKind::PNG(bytes) | usvg::ImageKind::JPEG(bytes) => bytes,
-        usvg::ImageKind::GIF(_) => return Err(unsupported("the format GIF")),
-        usvg::ImageKind::WEBP(_) => return Err(unsupported("the format WebP")),
+        usvg::ImageKind::PNG(bytes)
+        | usvg::ImageKind::JPEG(bytes)
+        | usvg::ImageKind::GIF(bytes)
+        | usvg::ImageKind::WEBP(bytes) => bytes,
         usvg::ImageKind::SVG(_) => return Err(unsupported("a drawing in place of pixels")),
     };
     let name = if node.id().is_empty() { "unnamed" } else { node.id() };

@@ -18,7 +18,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 15] = [
+const TARGETS: [(&str, Body); 16] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -26,6 +26,7 @@ const TARGETS: [(&str, Body); 15] = [
     ("drawing", drawing::drawing),
     ("gltf", model::gltf),
     ("draco", model::draco),
+    ("image", model::image),
     ("meshopt", model::meshopt),
     ("obj", model::obj),
     ("mtl", model::mtl),

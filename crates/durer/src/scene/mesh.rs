@@ -52,8 +52,11 @@ pub struct Mesh {
     pub indices: Option<Vec<u32>>,
     /// Runs of primitives by material, in order, without gaps; empty = one part, default material.
     pub parts: Vec<Part>,
-    /// First triangle of each face, where the file had faces of more than three vertices (they are
-    /// fanned from their first vertex); empty where each face is one triangle.
+    /// First triangle of each face, in order, where the file had faces of more than three vertices;
+    /// empty where each face is one triangle. The triangles of a face cover it, run around as it does,
+    /// and follow each other: a fan from its first vertex where that covers it, as in convex faces, else
+    /// any. n vertices make n − 2 of them, fewer where some lie on spikes without area, others where the
+    /// outline crosses itself.
     pub faces: Vec<u32>,
 }
 

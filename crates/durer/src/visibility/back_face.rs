@@ -31,7 +31,7 @@ use crate::info::{Class, Info};
 use crate::math::DVec3;
 use crate::scene::{Camera, Mesh, Projection, Scene};
 use crate::trace::Tracer;
-use crate::view::cull::{Face, face_along, face_from_point, newell_area};
+use crate::view::cull::{Face, face_along, face_from_point, newell_area, triangle_area};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -112,7 +112,8 @@ pub fn remove<'a>(
     t: &mut impl Tracer<Step>,
 ) -> Vec<usize> {
     let faces = polygons.into_iter().enumerate();
-    let kept = faces.filter(|(face, ring)| stays(*face, ring, 1.0, eye, options, t));
+    let kept =
+        faces.filter(|(face, ring)| stays(*face, newell_area(ring), mean(ring), eye, options, t));
     kept.map(|(face, _)| face).collect()
 }
 
@@ -125,19 +126,20 @@ pub fn remove_of_scene(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Vec<u32> {
-    let (mut kept, mut ring) = (Vec::new(), Vec::new());
+    let (mut kept, mut corners) = (Vec::new(), Vec::new());
     let (mut face, mut first_item) = (0, 0);
     for instance in &scene.instances {
         let mesh = &scene.meshes[instance.mesh];
         let matrix = instance.world_from_mesh;
         let mirrored = glam::DMat3::from_mat4(matrix).determinant() < 0.0;
         for triangles in polygons(mesh, options.whole_polygons) {
-            ring.clear();
-            let corners = fan(mesh, triangles.clone());
             let corner = |v: u32| matrix.transform_point3(mesh.positions[v as usize].as_dvec3());
-            ring.extend(corners.map(corner));
-            let sign = if mirrored { -1.0 } else { 1.0 };
-            if stays(face, &ring, sign, eye, options, t) {
+            corners.clear();
+            corners.extend(triangles.clone().flat_map(|i| mesh.triangle(i)).map(corner));
+            let parts = corners.as_chunks().0;
+            let area = parts.iter().map(|triangle| triangle_area(*triangle)).sum::<DVec3>();
+            let area = if mirrored { -area } else { area };
+            if stays(face, area, mean(&corners), eye, options, t) {
                 kept.extend(triangles.map(|i| first_item + i as u32));
             }
             face += 1;
@@ -147,19 +149,21 @@ pub fn remove_of_scene(
     kept
 }
 
-/// Whether a face stays; `sign` turns its normal over where the corners run the other way round.
+/// Returns the mean of a face's corners, through which Newell's plane goes.
+fn mean(corners: &[DVec3]) -> DVec3 {
+    corners.iter().sum::<DVec3>() / corners.len() as f64
+}
+
+/// Whether a face stays whose plane goes through a point, across its vector area.
 fn stays(
     face: usize,
-    ring: &[DVec3],
-    sign: f64,
+    area: DVec3,
+    point: DVec3,
     eye: Eye,
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> bool {
-    let area = newell_area(ring) * sign;
-    // Newell's plane goes through the mean of the corners.
-    let mean = ring.iter().sum::<DVec3>() / ring.len() as f64;
-    let side = eye.side(area, mean);
+    let side = eye.side(area, point);
     t.step(|| Step::Tested { face, area, side });
     match side {
         Face::Front => true,
@@ -177,11 +181,4 @@ fn polygons(mesh: &Mesh, whole: bool) -> impl Iterator<Item = std::ops::Range<us
     let single = if whole && !mesh.faces.is_empty() { 0 } else { count };
     // Without a list of faces each triangle is one.
     faces.zip(ends).map(|(first, end)| first..end.max(first)).chain((0..single).map(|i| i..i + 1))
-}
-
-/// The corners of a polygon that is fanned from its first vertex.
-fn fan(mesh: &Mesh, triangles: std::ops::Range<usize>) -> impl Iterator<Item = u32> + '_ {
-    let first = triangles.clone().next().map(|i| mesh.triangle(i));
-    let start = first.into_iter().flat_map(|[a, b, _]| [a, b]);
-    start.chain(triangles.map(|i| mesh.triangle(i)[2]))
 }

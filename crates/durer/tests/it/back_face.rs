@@ -197,6 +197,14 @@ fn concave_polygons_have_one_side() {
     };
     assert_eq!((sides(true, 5.0), sides(true, -5.0)), (vec![0, 1], vec![]));
     assert_ne!((sides(false, 5.0).len(), sides(false, -5.0).len()), (2, 0));
+    // The same polygon by the triangles that readers give it, which are no fan.
+    let mut scene = scene;
+    scene.meshes[0].indices = Some(vec![3, 0, 1, 1, 2, 3]);
+    for z in [5.0, -5.0] {
+        let eye = Eye::At(DVec3::new(0.4, 0.1, z));
+        let kept = remove_of_scene(&scene, eye, &Options::default(), &mut NoTrace);
+        assert_eq!(kept.len(), if z > 0.0 { 2 } else { 0 });
+    }
 }
 
 #[test]

@@ -1,0 +1,232 @@
+//! Truevision TGA: indexed, true colour and grey pictures, as they are or run-length encoded.
+//!
+//! Source: *Truevision TGA File Format Specification*, version 2.0, 1991. The format has no magic number:
+//! a file is one whose header makes sense, which few other bytes do.
+
+use super::bytes::Bytes;
+use super::{Picture, broken, check_size};
+use crate::{Limits, Result};
+
+/// The length of the header.
+const HEADER: usize = 18;
+
+/// A run-length packet of two bytes at least holds up to 128 pixels.
+const PIXELS_PER_BYTE: u64 = 64;
+
+/// What the pixels are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Indexed,
+    Color,
+    Grey,
+}
+
+/// The header.
+#[derive(Debug, Clone, Copy)]
+struct Header {
+    id_length: usize,
+    kind: Kind,
+    packed: bool,
+    /// First index, number, and bits of the entries of the colour map.
+    map: [usize; 3],
+    width: u32,
+    height: u32,
+    bits: usize,
+    /// Whether the first row is the upper one, and whether rows run from right to left.
+    from_top: bool,
+    from_right: bool,
+}
+
+impl Header {
+    /// Reads a header; `None` where it is none.
+    fn of(bytes: &[u8]) -> Option<Self> {
+        let short = |at: usize| {
+            Some(usize::from(u16::from_le_bytes([*bytes.get(at)?, *bytes.get(at + 1)?])))
+        };
+        let byte = |at: usize| bytes.get(at).copied();
+        let (map_type, image_type, descriptor) = (byte(1)?, byte(2)?, byte(17)?);
+        let kind = match image_type & 7 {
+            1 => Kind::Indexed,
+            2 => Kind::Color,
+            3 => Kind::Grey,
+            _ => return None,
+        };
+        let header = Self {
+            id_length: usize::from(byte(0)?),
+            kind,
+            packed: image_type & 8 != 0,
+            map: [short(3)?, short(5)?, usize::from(byte(7)?)],
+            width: short(12)? as u32,
+            height: short(14)? as u32,
+            bits: usize::from(byte(16)?),
+            from_top: descriptor & 0x20 != 0,
+            from_right: descriptor & 0x10 != 0,
+        };
+        let known = image_type & !0b1011 == 0 && map_type <= 1 && descriptor & 0xc0 == 0;
+        let has_map = map_type == 1 && matches!(header.map[2], 15 | 16 | 24 | 32);
+        let fits = match kind {
+            Kind::Indexed => has_map && matches!(header.bits, 8 | 16),
+            Kind::Color => matches!(header.bits, 15 | 16 | 24 | 32),
+            Kind::Grey => matches!(header.bits, 8 | 16),
+        };
+        (known && fits && header.width > 0 && header.height > 0).then_some(header)
+    }
+}
+
+/// Whether bytes begin like a TGA file.
+pub(super) fn is_tga(bytes: &[u8]) -> bool {
+    Header::of(bytes).is_some()
+}
+
+/// Decodes a file.
+///
+/// # Errors
+/// As [`super::decode`].
+pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
+    let header = Header::of(bytes).ok_or_else(|| broken(name, "is no TGA picture"))?;
+    let size = (header.width, header.height);
+    let data = bytes.len() as u64;
+    let per_byte = if header.packed { PIXELS_PER_BYTE } else { 1 };
+    check_size(size, 4, data.saturating_mul(per_byte), name, limits)?;
+    let short = || broken(name, "is cut off");
+    let mut rest = Bytes::new(bytes.get(HEADER + header.id_length..).ok_or_else(short)?);
+    let [first, count, map_bits] = header.map;
+    let has_map = bytes.get(1) == Some(&1);
+    let entries = if has_map { count * map_bits.div_ceil(8) } else { 0 };
+    let map = rest.take(entries).ok_or_else(short)?;
+    let map: Vec<[u8; 4]> =
+        map.chunks_exact(map_bits.div_ceil(8).max(1)).map(|entry| color(entry, map_bits)).collect();
+    let value = |pixel: &[u8]| match header.kind {
+        Kind::Color => Some(color(pixel, header.bits)),
+        Kind::Grey => {
+            let [grey, alpha] = [0, 1].map(|i| pixel.get(i).copied().unwrap_or(255));
+            Some([grey, grey, grey, alpha])
+        }
+        Kind::Indexed => {
+            let index = pixel.iter().rev().fold(0, |index, &byte| index << 8 | usize::from(byte));
+            map.get(index.checked_sub(first)?).copied()
+        }
+    };
+    let stored = stored(&header, &mut rest).ok_or_else(short)?;
+    let pixels =
+        stored.chunks_exact(header.bits.div_ceil(8)).map(value).collect::<Option<Vec<_>>>();
+    let mut pixels = pixels.ok_or_else(|| broken(name, "has an index beyond its colour map"))?;
+    turn(&header, &mut pixels);
+    super::show_if_all_transparent(&mut pixels);
+    Ok((header.width, header.height, pixels))
+}
+
+/// The bytes of all pixels, in the file's order.
+fn stored(header: &Header, rest: &mut Bytes<'_>) -> Option<Vec<u8>> {
+    let size = header.bits.div_ceil(8);
+    let length = header.width as usize * header.height as usize * size;
+    if !header.packed {
+        return Some(rest.take(length)?.to_vec());
+    }
+    let mut stored = Vec::with_capacity(length);
+    while stored.len() < length {
+        let packet = rest.byte()?;
+        let count = usize::from(packet & 0x7f) + 1;
+        if packet & 0x80 == 0 {
+            stored.extend_from_slice(rest.take(count * size)?);
+        } else {
+            let pixel = rest.take(size)?;
+            (0..count).for_each(|_| stored.extend_from_slice(pixel));
+        }
+    }
+    stored.truncate(length);
+    Some(stored)
+}
+
+/// A stored colour, blue first. Fifteen bits have no alpha, and sixteen have it hardly ever.
+fn color(bytes: &[u8], bits: usize) -> [u8; 4] {
+    match (bytes, bits) {
+        (&[b, g, r, a], _) => [r, g, b, a],
+        (&[b, g, r], _) => [r, g, b, 255],
+        (&[low, high], _) => {
+            let all = u16::from_le_bytes([low, high]);
+            let [r, g, b] = [10, 5, 0].map(|shift| super::widen(u32::from(all >> shift) & 31, 31));
+            [r, g, b, 255]
+        }
+        _ => [0, 0, 0, 255],
+    }
+}
+
+/// Brings rows and columns into the order from the upper left.
+fn turn(header: &Header, pixels: &mut [[u8; 4]]) {
+    let width = header.width as usize;
+    if header.from_right {
+        pixels.chunks_exact_mut(width).for_each(<[_]>::reverse);
+    }
+    if !header.from_top {
+        super::flip(pixels, width);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::decode;
+
+    /// A file of two by two pixels.
+    fn file(image_type: u8, bits: u8, descriptor: u8, map: &[u8], data: &[u8]) -> Vec<u8> {
+        let mut bytes = vec![1, u8::from(!map.is_empty()), image_type];
+        bytes.extend([
+            0,
+            0,
+            (map.len() / 3) as u8,
+            0,
+            24,
+            0,
+            0,
+            0,
+            0,
+            2,
+            0,
+            2,
+            0,
+            bits,
+            descriptor,
+        ]);
+        bytes.push(b'!');
+        [&bytes, map, data].concat()
+    }
+
+    fn decoded(bytes: &[u8]) -> Vec<[u8; 4]> {
+        decode(bytes, "x", &Limits::default()).unwrap().data
+    }
+
+    const GREYS: [[u8; 4]; 4] = [[1, 1, 1, 255], [2, 2, 2, 255], [3, 3, 3, 255], [4, 4, 4, 255]];
+
+    #[test]
+    fn rows_and_columns_come_in_any_order() {
+        assert_eq!(decoded(&file(3, 8, 0x20, &[], &[1, 2, 3, 4])), GREYS);
+        assert_eq!(decoded(&file(3, 8, 0x00, &[], &[3, 4, 1, 2])), GREYS);
+        assert_eq!(decoded(&file(3, 8, 0x30, &[], &[2, 1, 4, 3])), GREYS);
+        // A run of two, and two as they are; across the end of a row too.
+        assert_eq!(decoded(&file(11, 8, 0x20, &[], &[0, 1, 0x81, 2, 0, 4]))[1..3], [GREYS[1]; 2]);
+    }
+
+    #[test]
+    fn every_layout_becomes_rgba() {
+        let first = |bytes: Vec<u8>| decoded(&bytes)[0];
+        assert_eq!(first(file(2, 24, 0x20, &[], &[3, 2, 1].repeat(4))), [1, 2, 3, 255]);
+        assert_eq!(first(file(2, 32, 0x28, &[], &[3, 2, 1, 9].repeat(4))), [1, 2, 3, 9]);
+        assert_eq!(first(file(10, 32, 0x28, &[], &[0x83, 3, 2, 1, 0])), [1, 2, 3, 255]);
+        assert_eq!(first(file(2, 16, 0x20, &[], &[0x1f, 0x7c].repeat(4))), [255, 0, 255, 255]);
+        assert_eq!(first(file(1, 8, 0x20, &[9, 9, 9, 3, 2, 1], &[1, 0, 0, 0])), [1, 2, 3, 255]);
+    }
+
+    #[test]
+    fn what_is_missing_or_too_much_is_told() {
+        let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
+        assert!(error(&file(3, 8, 0, &[], &[1, 2])).contains("cut off"));
+        assert!(error(&file(11, 8, 0, &[], &[0x81, 1])).contains("cut off"));
+        assert!(error(&file(1, 8, 0, &[1, 2, 3], &[0, 0, 0, 1])).contains("colour map"));
+        let mut huge = file(3, 8, 0, &[], &[1, 2, 3, 4]);
+        huge[12..16].copy_from_slice(&[0xff, 0x3f, 0xff, 0x3f]);
+        assert!(error(&huge).contains("too short for its 16383 × 16383 pixels"));
+        huge[13] = 0xff;
+        assert!(error(&huge).contains("above the limit"));
+    }
+}

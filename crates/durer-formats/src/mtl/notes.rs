@@ -1,0 +1,56 @@
+//! What is to be told about materials, once for all of a kind.
+
+use crate::{Model, Place};
+
+/// Materials that something is to be told about.
+#[derive(Debug, Default)]
+pub(super) struct Named {
+    count: usize,
+    first: String,
+}
+
+impl Named {
+    /// Adds one more.
+    pub fn add(&mut self, name: &str) {
+        if self.count == 0 {
+            self.first = name.to_owned();
+        }
+        self.count += 1;
+    }
+}
+
+/// What was met while materials were built, and what is known of all of them.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    /// Whether `Tr` is the opacity.
+    pub tr_is_opacity: bool,
+    pub opacity: Named,
+    pub invisible: Named,
+    pub byte_colors: Named,
+    pub bump: Named,
+}
+
+impl Notes {
+    /// Warns of everything that was met.
+    pub fn tell(&self, model: &mut Model) {
+        for (named, message) in [
+            (
+                &self.opacity,
+                "`Tr` without `d` is taken as opacity (1 is opaque), as it would else hide what is there",
+            ),
+            (&self.invisible, "wholly transparent (`d 0`): nothing of it is seen"),
+            (&self.byte_colors, "colors go up to 255 instead of 1; they were scaled"),
+            (&self.bump, "bump maps are not supported; left out (normal maps are read)"),
+        ] {
+            let (count, first) = (named.count, &named.first);
+            match count {
+                0 => {}
+                1 => model.warn(Place::Whole, format!("material `{first}`: {message}")),
+                _ => {
+                    let place = format!("{count} materials, the first `{first}`: {message}");
+                    model.warn(Place::Whole, place);
+                }
+            }
+        }
+    }
+}

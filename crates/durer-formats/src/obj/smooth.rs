@@ -1,0 +1,60 @@
+//! Normals of corners that have none of their own.
+//!
+//! In place of such a normal a corner has [`NONE`], or in files with smoothing groups a number from that
+//! of the file's normals on: the first stands for flat faces, the others for the groups.
+
+use super::corners::{Corner, NONE};
+use crate::{Model, Place, polygon};
+use durer::math::DVec3;
+use durer::scene::Mesh;
+
+/// Fills in the normals, of a mesh whose faces are fans; `count` is that of the file's.
+///
+/// Each is the mean of the vector areas of the faces around the vertex that are of the same group. Flat
+/// faces are left without, which stands for the face's own.
+pub(super) fn fill(model: &mut Model, mesh: &mut Mesh, keys: &[Corner], count: usize) {
+    let missing = keys.iter().filter(|k| k.normal == NONE).count();
+    if missing > 0 {
+        let message =
+            format!("{missing} vertices have no normal where others have; theirs were computed");
+        model.warn(Place::Whole, message);
+    }
+    let mut computed: Vec<u32> =
+        (0..).zip(keys).filter(|(_, k)| k.normal as usize > count).map(|(v, _)| v).collect();
+    if computed.is_empty() {
+        return;
+    }
+    let areas = areas(mesh);
+    let key = |v: &u32| keys.get(*v as usize).map(|k| (k.position, k.normal));
+    computed.sort_by_key(key);
+    for same in computed.chunk_by(|a, b| key(a) == key(b)) {
+        let sum: DVec3 = same.iter().filter_map(|v| areas.get(*v as usize)).sum();
+        for &v in same {
+            if let Some(normal) = mesh.normals.get_mut(v as usize) {
+                *normal = sum.normalize_or_zero().as_vec3();
+            }
+        }
+    }
+}
+
+/// Per vertex: the sum of twice the vector areas of the faces that it is a corner of.
+fn areas(mesh: &Mesh) -> Vec<DVec3> {
+    let at = |v: u32| mesh.positions.get(v as usize).copied().unwrap_or_default().as_dvec3();
+    let mut areas = vec![DVec3::ZERO; mesh.positions.len()];
+    for face in polygon::faces(mesh) {
+        let cross = |i| {
+            let [a, b, c] = mesh.triangle(i).map(at);
+            (b - a).cross(c - a)
+        };
+        let area: DVec3 = face.clone().map(cross).sum();
+        let area = if area.is_finite() { area } else { DVec3::ZERO };
+        let first = face.clone().next().map(|i| mesh.triangle(i));
+        let ends = face.map(|i| mesh.triangle(i)[2]);
+        for v in first.into_iter().flat_map(|[a, b, _]| [a, b]).chain(ends) {
+            if let Some(sum) = areas.get_mut(v as usize) {
+                *sum += area;
+            }
+        }
+    }
+    areas
+}
