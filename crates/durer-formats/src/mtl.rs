@@ -14,7 +14,7 @@ mod convert;
 mod image;
 mod parse;
 
-use crate::{Model, Place, ReadOptions, Resources, text};
+use crate::{Found, Model, Place, ReadOptions, Resources, text};
 use durer::scene::Material;
 use image::Images;
 use parse::{Library, Statements};
@@ -59,12 +59,12 @@ fn read_libraries(
 ) {
     let limit = options.limits.decoded_bytes;
     let words: Vec<&str> = operand.split_ascii_whitespace().collect();
-    let whole = resources.read(&relative(operand), limit);
+    let whole = resources.find(&relative(operand), limit);
     if words.len() < 2 || whole.is_ok() {
         return read_library(model, all, place, operand, whole);
     }
     for word in words {
-        read_library(model, all, place.clone(), word, resources.read(&relative(word), limit));
+        read_library(model, all, place.clone(), word, resources.find(&relative(word), limit));
     }
 }
 
@@ -73,10 +73,15 @@ fn read_library(
     all: &mut Library,
     place: Place,
     name: &str,
-    bytes: Result<Vec<u8>, String>,
+    found: Result<Found, String>,
 ) {
-    match bytes {
-        Ok(bytes) => all.read(model, name, &text::utf8(&bytes)),
+    match found {
+        Ok(Found { bytes, note }) => {
+            if let Some(note) = note {
+                model.warn(place, format!("the material library `{name}`: {note}"));
+            }
+            all.read(model, name, &text::utf8(&bytes));
+        }
         Err(why) => model.warn(place, format!("cannot read the material library `{name}`: {why}")),
     }
 }
