@@ -14,6 +14,7 @@ mod convert;
 mod image;
 mod parse;
 
+use crate::gltf::uri::steps;
 use crate::{Found, Model, Place, ReadOptions, Resources, text};
 use durer::scene::Material;
 use image::Images;
@@ -94,7 +95,7 @@ fn relative(path: &str) -> String {
     if path.starts_with('/') || drive {
         return path.rsplit(['/', ':']).next().unwrap_or_default().to_owned();
     }
-    path.split('/').filter(|piece| !matches!(*piece, "" | ".")).collect::<Vec<_>>().join("/")
+    steps(&path).join("/")
 }
 
 impl Library {

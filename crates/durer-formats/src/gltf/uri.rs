@@ -51,13 +51,26 @@ pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
     // What Windows programs write; no glTF names a file with a backslash in it.
     let path = path.replace('\\', "/");
     let absolute = if path.starts_with('/') { "/" } else { "" };
-    let parts: Vec<&str> = path.split('/').filter(|p| !p.is_empty() && *p != ".").collect();
+    let parts = steps(&path);
     match parts.as_slice() {
         [] => Err("it names no file"),
         // A network address keeps its two strokes.
         _ if path.contains("://") => Ok(path),
         _ => Ok(format!("{absolute}{}", parts.join("/"))),
     }
+}
+
+/// The steps of a path with `/` as separator, without `.` and without folders that a `..` leaves again (RFC 3986,
+/// §5.2.4): they need not exist. What is left of `..` stands at the beginning.
+pub(crate) fn steps(path: &str) -> Vec<&str> {
+    let mut steps = Vec::new();
+    for step in path.split('/').filter(|step| !matches!(*step, "" | ".")) {
+        match steps.last() {
+            Some(last) if step == ".." && *last != ".." => drop(steps.pop()),
+            _ => steps.push(step),
+        }
+    }
+    steps
 }
 
 fn percent_decode(text: &str) -> Option<Vec<u8>> {
@@ -136,6 +149,8 @@ mod tests {
             ("a%zz%20.png", "a%zz%20.png"),
             ("//host//a", "/host/a"),
             ("..%2fa", "../a"),
+            ("./tex/../a.png", "a.png"),
+            ("a/b/../../../../c", "../../c"),
         ] {
             assert_eq!(path(uri).unwrap(), expected);
         }
@@ -145,10 +160,11 @@ mod tests {
         for outside in [
             "../a",
             "a/../../b",
-            "a/%2e%2E/b",
+            "../a/../b",
+            "a/%2e%2E/%2e./b",
             "..%2fa",
             "..%5Ca",
-            "a\\..\\b",
+            "a\\..\\..\\b",
             "/etc/passwd",
             "%2fetc",
             "//host/a",
