@@ -138,7 +138,9 @@ fn material(material: &Material) -> MaterialInfo {
 
 fn textures(scene: &Scene) -> Vec<TextureInfo> {
     let images = scene.textures.iter().filter_map(|t| scene.images.get(t.image));
-    images.map(|i| TextureInfo { name: i.name.clone(), width: i.width, height: i.height }).collect()
+    // Those that nothing shows, or that could not be read, are empty.
+    let read = images.filter(|i| !i.data.is_empty());
+    read.map(|i| TextureInfo { name: i.name.clone(), width: i.width, height: i.height }).collect()
 }
 
 fn light(kind: &LightKind) -> &'static str {

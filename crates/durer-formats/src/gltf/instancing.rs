@@ -24,7 +24,7 @@ pub fn matrices(source: &Source<'_>, instancing: &Instancing, node: usize) -> Re
         let message = format!("their numbers of elements differ: {count} and {other}");
         return Err(Error::path(at, message));
     }
-    source.budget.bytes((count * size_of::<DMat4>()) as u64, &at)?;
+    source.budget.bytes((count as u64).saturating_mul(size_of::<DMat4>() as u64), &at)?;
     let matrix = |i: usize| {
         let [x, y, z, w] = rotations.at(i).unwrap_or([0.0, 0.0, 0.0, 1.0]);
         DMat4::from_scale_rotation_translation(

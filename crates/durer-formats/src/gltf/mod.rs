@@ -3,12 +3,13 @@
 //! What is read: meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and
 //! one instance per node and primitive; the nodes of the default scene depth first; sparse,
 //! interleaved, normalized and quantized accessors; buffer views compressed by meshopt; primitives
-//! compressed by Draco (feature `draco`); materials with their textures; cameras; lights; skins and
-//! morph targets, posed at one moment of an animation. What is known of extensions stands in
-//! `extension.rs`.
+//! compressed by Draco (feature `draco`); materials with their textures, layers and variants; cameras;
+//! lights; skins and morph targets, posed at one moment of an animation; instances by attributes. What is
+//! known of extensions stands in `extension.rs`.
 //!
 //! Every reference and size of a file is checked before any data are read, also in parts that are
-//! not drawn; what is wrong is told with its path. Nothing recurses, and memory is charged to
+//! not drawn; what is wrong is told with its path. Where data themselves are broken or missing, what needs
+//! them is left out if something else remains. Nothing recurses, and memory is charged to
 //! [`crate::Limits`] before it is taken.
 
 mod accessor;
@@ -204,20 +205,24 @@ impl Builder<'_> {
             Err(error) => return self.broken.take(error, path(mesh, 0)),
         };
         let primitives = self.source.root.meshes[mesh].primitives.len();
-        let (count, at) = (placing.places.len() * primitives, format!("nodes[{n}]"));
-        self.source.budget.instances(count as u64, &at)?;
         let name = name(&self.source.root.nodes[n]);
-        self.source.budget.bytes((count * (size_of::<Instance>() + name.len())) as u64, &at)?;
+        self.charge(placing.places.len() as u64, primitives as u64, name.len(), n)?;
         for p in 0..primitives {
             match self.mesh(mesh, p, &placing, model) {
                 Ok(Some((mesh, skinned))) => placing.add(mesh, skinned, &name, model),
                 Ok(None) => {}
-                Err(error) => {
-                    self.broken.take(error, path(mesh, p))?;
-                }
+                Err(error) => self.broken.take(error, path(mesh, p))?,
             }
         }
         Ok(())
+    }
+
+    /// Charges the instances of so many primitives at so many places.
+    fn charge(&self, places: u64, primitives: u64, name: usize, n: usize) -> Result<()> {
+        let (count, at) = (places.saturating_mul(primitives), format!("nodes[{n}]"));
+        self.source.budget.instances(count, &at)?;
+        let bytes = (size_of::<Instance>() as u64).saturating_add(name as u64);
+        self.source.budget.bytes(count.saturating_mul(bytes), &at)
     }
 
     /// The scene mesh of a primitive, and whether it is skinned; `None` where it draws nothing.

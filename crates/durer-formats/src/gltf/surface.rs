@@ -63,12 +63,17 @@ pub fn extend(
     extensions: &MaterialExtensions,
     todo: &mut Todo,
 ) {
-    if extensions.unlit.is_some() {
-        material.model = ShadingModel::Unlit;
-    }
     if let Some(glossy) = &extensions.specular_glossiness {
+        material.base_color = Glossy::of(glossy).diffuse;
         material.base_color_texture = texture(glossy.diffuse_texture.as_ref());
         material.metallic_roughness_texture = None;
+    }
+    if extensions.unlit.is_some() {
+        // Shown as it is: what it would reflect or let through has no meaning.
+        material.model = ShadingModel::Unlit;
+        return;
+    }
+    if let Some(glossy) = &extensions.specular_glossiness {
         let texture = texture(glossy.specular_glossiness_texture.as_ref());
         let what = What::Glossy(Glossy::of(glossy));
         todo.jobs.push(Job { material: index, texture, what });

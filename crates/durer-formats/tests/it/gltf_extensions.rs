@@ -218,6 +218,14 @@ fn specular_glossiness_becomes_metal() {
     let [gold, plastic] = model.scene.materials.as_slice() else { panic!() };
     assert_eq!(gold.model, ShadingModel::MetallicRoughness);
     assert!((gold.base_color - Vec4::new(1.0, 0.76, 0.33, 0.5)).abs().max_element() < 1e-6);
+    let unlit = painted(
+        r#"{"extensions": {"KHR_materials_unlit": {}, "KHR_materials_pbrSpecularGlossiness":
+            {"diffuseFactor": [0, 1, 0, 0.5]}, "KHR_materials_transmission": {"transmissionFactor": 1}}}"#,
+        &[],
+    );
+    let unlit = &unlit.scene.materials[0];
+    assert_eq!((unlit.model, unlit.alpha_mode), (ShadingModel::Unlit, AlphaMode::Opaque));
+    assert_eq!(unlit.base_color, Vec4::new(0.0, 1.0, 0.0, 0.5));
     assert!(gold.metallic > 1.0 - 1e-6 && (gold.roughness - 0.3).abs() < 1e-6);
     assert!(plastic.metallic < 1e-6 && plastic.roughness == 1.0);
     assert!((plastic.base_color.x - 0.96).abs() < 1e-5);
