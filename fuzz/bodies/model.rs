@@ -17,7 +17,8 @@ fn options() -> ReadOptions {
         image_side: 256,
         depth: 64,
     };
-    ReadOptions { limits, pose: Some(Pose { animation: None, time: 0.5 }) }
+    let pose = Some(Pose { animation: None, time: 0.5 });
+    ReadOptions { limits, pose, ..ReadOptions::default() }
 }
 
 /// Every file that a model refers to has the same bytes.

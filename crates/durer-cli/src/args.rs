@@ -367,6 +367,16 @@ pub struct ReadingArgs {
     /// Pose the model at this time of the animation
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub time: Option<f64>,
+    /// Show the model in this variant of its materials, by name or number; `durer info` lists them
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Let references lead to any file below this folder [default: the model's own folder]
+    ///
+    /// Textures, buffers and material libraries are read from the model's folder alone, whatever links and `..`
+    /// lead to; with this also from below another one, for example one above it. Of a model from standard input,
+    /// references start there.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub root: Option<PathBuf>,
     /// Refuse models of more triangles, lines and points [default: 100 million]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub max_triangles: Option<u64>,

@@ -35,6 +35,8 @@ struct Info {
     cameras: Vec<String>,
     lights: Vec<&'static str>,
     animations: Vec<String>,
+    /// Of its materials.
+    variants: Vec<String>,
     extensions: Vec<String>,
     warnings: Vec<String>,
 }
@@ -109,6 +111,7 @@ fn of_model(name: String, model: &Model) -> Info {
         cameras: scene.cameras.iter().map(|c| c.name.clone()).collect(),
         lights: scene.lights.iter().map(|l| light(&l.kind)).collect(),
         animations: model.animations.clone(),
+        variants: model.variants.clone(),
         extensions: model.extensions.clone(),
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
     }
@@ -153,7 +156,9 @@ fn material(material: &Material) -> MaterialInfo {
 
 fn textures(scene: &Scene) -> Vec<TextureInfo> {
     let images = scene.textures.iter().filter_map(|t| scene.images.get(t.image));
-    images.map(|i| TextureInfo { name: i.name.clone(), width: i.width, height: i.height }).collect()
+    // Those that nothing shows, or that could not be read, are empty.
+    let read = images.filter(|i| !i.data.is_empty());
+    read.map(|i| TextureInfo { name: i.name.clone(), width: i.width, height: i.height }).collect()
 }
 
 fn light(kind: &LightKind) -> &'static str {
@@ -214,6 +219,7 @@ impl Info {
         list("cameras", self.cameras.clone());
         list("lights", self.lights.iter().map(ToString::to_string).collect());
         list("animations", self.animations.iter().map(unnamed).collect());
+        list("variants", self.variants.iter().map(unnamed).collect());
         list("extensions", self.extensions.clone());
         lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
         let mut text = format!("{}\n", self.model);

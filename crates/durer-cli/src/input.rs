@@ -9,7 +9,7 @@ use durer_formats::{
 use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The argument that stands for standard input or output.
 pub const STREAM: &str = "-";
@@ -32,54 +32,84 @@ pub fn check_streams(models: &[impl AsRef<Path>]) -> Result<(), Failure> {
     }
 }
 
+/// How models are read, and where what they refer to may lie.
+#[derive(Debug)]
+pub struct Reading {
+    options: ReadOptions,
+    root: Option<PathBuf>,
+}
+
 /// How models are read.
-pub fn read_options(args: &ReadingArgs) -> ReadOptions {
+pub fn read_options(args: &ReadingArgs) -> Reading {
     let default = Limits::default();
     let posed = args.animation.is_some() || args.time.is_some();
     let pose = Pose { animation: args.animation.clone(), time: args.time.unwrap_or(0.0) };
-    ReadOptions {
+    let options = ReadOptions {
         limits: Limits {
             primitives: args.max_triangles.unwrap_or(default.primitives),
             decoded_bytes: args.max_bytes.unwrap_or(default.decoded_bytes),
             ..default
         },
         pose: posed.then_some(pose),
-    }
+        variant: args.variant.clone(),
+    };
+    Reading { options, root: args.root.clone() }
 }
 
 /// Reads a model.
-pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
-    let mut model = streamed(path, options).unwrap_or_else(|| read_whole(path, options))?;
+pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
+    let Reading { options, root } = reading;
+    let resources = resources(path, root.as_deref())?;
+    let streamed = streamed(path, &*resources, options);
+    let mut model = streamed.unwrap_or_else(|| read_whole(path, &*resources, options))?;
     // Of a format that has them the reader says so itself.
-    if options.pose.is_some() && !model.format.starts_with("glTF") {
-        let message =
-            format!("{} has no animations; --animation and --time do nothing", model.format);
-        model.warn(Place::Whole, message);
+    if !model.format.starts_with("glTF") {
+        for (given, what) in [
+            (options.pose.is_some(), "animations; --animation and --time do"),
+            (options.variant.is_some(), "variants; --variant does"),
+        ] {
+            if given {
+                let message = format!("{} has no {what} nothing", model.format);
+                model.warn(Place::Whole, message);
+            }
+        }
     }
     Ok(model)
 }
 
 /// Reads a model from all of its bytes.
-fn read_whole(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
+fn read_whole(
+    path: &Path,
+    resources: &dyn Resources,
+    options: &ReadOptions,
+) -> Result<Model, Failure> {
     let bytes = bytes(path, options.limits.decoded_bytes)?;
-    let resources: Box<dyn Resources> =
-        if is_stream(path) { Box::new(NoResources) } else { resources(path) };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_model(&bytes, &name, &*resources, options)
+    read_model(&bytes, &name, resources, options)
         .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
 }
 
-/// What a model in a file may refer to.
-fn resources(path: &Path) -> Box<dyn Resources> {
-    match Folder::of(path) {
-        Ok(folder) => Box::new(folder),
-        Err(_) => Box::new(NoResources),
-    }
+/// What a model may refer to.
+fn resources(path: &Path, root: Option<&Path>) -> Result<Box<dyn Resources>, Failure> {
+    let of_root = |root: &Path, e: std::io::Error| {
+        Failure::Data(format!("--root {}: {}", root.display(), in_words(&e)))
+    };
+    let folder = if is_stream(path) { None } else { Folder::of(path).ok() };
+    let folder = match (folder, root) {
+        (Some(folder), Some(root)) => Some(folder.widen(root).map_err(|e| of_root(root, e))?),
+        (None, Some(root)) => Some(Folder::itself(root).map_err(|e| of_root(root, e))?),
+        (folder, None) => folder,
+    };
+    Ok(folder.map_or_else(|| Box::new(NoResources) as Box<dyn Resources>, |f| Box::new(f)))
 }
 
 /// Reads a binary STL or glTF file without holding its bytes, which are as many as the model's or more;
 /// `None` for anything else.
-fn streamed(path: &Path, options: &ReadOptions) -> Option<Result<Model, Failure>> {
+fn streamed(
+    path: &Path,
+    resources: &dyn Resources,
+    options: &ReadOptions,
+) -> Option<Result<Model, Failure>> {
     // Of a pipe the bytes read here would be lost.
     let length = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?.len();
     if is_stream(path) || length > options.limits.decoded_bytes {
@@ -91,7 +121,7 @@ fn streamed(path: &Path, options: &ReadOptions) -> Option<Result<Model, Failure>
     let model = if stl::is_whole_binary(&head, length) {
         stl::read_binary_stream(&head, file, options)
     } else if gltf::is_binary(&head) {
-        gltf::read_file(file, &*resources(path), options)
+        gltf::read_file(file, resources, options)
     } else {
         return None;
     };

@@ -1,44 +1,135 @@
-//! Finds what a model refers to: in its own folder, nowhere else.
+//! Finds what a model refers to: in its own folder, or below another one that is given, nowhere else.
 
 use crate::failure::in_words;
-use durer_formats::Resources;
+use durer_formats::{Found, Resources};
+use std::collections::BTreeMap;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::io::{self, ErrorKind, Read};
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The names in a folder by their lower case; of several the first by bytes.
+type Names = BTreeMap<String, OsString>;
 
 /// The folder of a model.
 ///
 /// # Guarantees
-/// Only regular files below the folder are read, also where links or `..` lead elsewhere; never a
-/// network address.
+/// Only regular files below the folder, or below the one that [`Self::widen`] adds, are read, also where links
+/// or `..` lead elsewhere; never a network address.
 #[derive(Debug)]
 pub struct Folder {
-    /// Without links and `..`.
-    root: PathBuf,
+    /// Where relative paths start; without links and `..`.
+    base: PathBuf,
+    /// Below which folders files may lie; without links and `..`.
+    roots: Vec<PathBuf>,
+    /// Folders in which names were looked for in other cases.
+    names: Mutex<BTreeMap<PathBuf, Names>>,
 }
 
 impl Folder {
     /// The folder that holds the file; where the file is a link, what it leads to.
-    pub fn of(model: &Path) -> std::io::Result<Self> {
+    pub fn of(model: &Path) -> io::Result<Self> {
         let model = fs::canonicalize(model)?;
-        let root = model.parent().unwrap_or(Path::new("/")).to_owned();
-        Ok(Self { root })
+        Ok(Self::at(model.parent().unwrap_or(Path::new("/")).to_owned()))
     }
 
-    /// The file's true place, if that is below the folder.
-    fn find(&self, path: &str) -> Result<PathBuf, String> {
+    /// A folder without a model in it, where paths start.
+    pub fn itself(folder: &Path) -> io::Result<Self> {
+        Ok(Self::at(directory(folder)?))
+    }
+
+    fn at(base: PathBuf) -> Self {
+        Self { roots: vec![base.clone()], base, names: Mutex::default() }
+    }
+
+    /// Lets references lead to any file below a further folder.
+    pub fn widen(mut self, folder: &Path) -> io::Result<Self> {
+        self.roots.push(directory(folder)?);
+        Ok(self)
+    }
+
+    /// The file's true place, if that is where files may lie; and what is to be told where its name is written
+    /// otherwise.
+    fn place(&self, path: &str) -> Result<(PathBuf, Option<String>), String> {
         if has_scheme(path) {
             return Err(
                 "network addresses are never fetched; keep the file beside the model".into()
             );
         }
-        let full = fs::canonicalize(self.root.join(path)).map_err(|e| in_words(&e))?;
-        if full.starts_with(&self.root) {
-            Ok(full)
-        } else {
-            Err("it lies outside the model's folder, where nothing is read".to_owned())
+        let (full, note) = match fs::canonicalize(self.base.join(path)) {
+            Ok(full) => (full, None),
+            Err(error) => {
+                let missing = error.kind() == ErrorKind::NotFound;
+                let other = missing.then(|| self.other_case(path)).flatten();
+                let spelled = other.ok_or_else(|| in_words(&error))?;
+                let full = fs::canonicalize(&spelled).map_err(|e| in_words(&e))?;
+                (full, Some(self.told(path, &spelled)))
+            }
+        };
+        if self.allows(&full) {
+            return Ok((full, note));
+        }
+        let why = match self.roots.len() {
+            1 => {
+                "it lies outside the model's folder, where nothing is read; --root allows a wider one"
+            }
+            _ => "it lies outside the model's folder and the one of --root, where nothing is read",
+        };
+        Err(why.to_owned())
+    }
+
+    fn allows(&self, full: &Path) -> bool {
+        self.roots.iter().any(|root| full.starts_with(root))
+    }
+
+    fn told(&self, path: &str, spelled: &Path) -> String {
+        let spelled = spelled.strip_prefix(&self.base).unwrap_or(spelled).display();
+        format!("there is no `{path}`; `{spelled}` is taken, which differs in upper and lower case")
+    }
+
+    /// The path with each name that does not exist in another case; `None` where one does not exist in any.
+    fn other_case(&self, path: &str) -> Option<PathBuf> {
+        let mut at = self.base.clone();
+        for component in Path::new(path).components() {
+            match component {
+                Component::Normal(name) if !at.join(name).exists() => {
+                    at.push(self.name(&at, name)?)
+                }
+                Component::ParentDir => at = fs::canonicalize(at.join("..")).ok()?,
+                other => at.push(other),
+            }
+        }
+        Some(at)
+    }
+
+    /// A name of the folder that differs from `name` only in upper and lower case.
+    fn name(&self, folder: &Path, name: &OsStr) -> Option<OsString> {
+        let folder = fs::canonicalize(folder).ok().filter(|folder| self.allows(folder))?;
+        let mut known = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        let names = known.entry(folder).or_insert_with_key(|folder| names(folder));
+        names.get(&name.to_str()?.to_lowercase()).cloned()
+    }
+}
+
+/// A folder's true place.
+fn directory(folder: &Path) -> io::Result<PathBuf> {
+    let full = fs::canonicalize(folder)?;
+    if full.is_dir() { Ok(full) } else { Err(io::Error::other("it is not a folder")) }
+}
+
+/// The names in a folder, as far as it can be read.
+fn names(folder: &Path) -> Names {
+    let mut names = Names::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let Some(key) = name.to_str().map(str::to_lowercase) else { continue };
+        let first = names.entry(key).or_insert_with(|| name.clone());
+        if name < *first {
+            *first = name;
         }
     }
+    names
 }
 
 /// Whether a reference begins like `http:` or `file:` (RFC 3986), with at least two letters, so that
@@ -53,7 +144,11 @@ fn has_scheme(path: &str) -> bool {
 
 impl Resources for Folder {
     fn read(&self, path: &str, limit: u64) -> Result<Vec<u8>, String> {
-        let full = self.find(path)?;
+        self.find(path, limit).map(|found| found.bytes)
+    }
+
+    fn find(&self, path: &str, limit: u64) -> Result<Found, String> {
+        let (full, note) = self.place(path)?;
         let metadata = fs::metadata(&full).map_err(|e| in_words(&e))?;
         if !metadata.is_file() {
             return Err("it is not a file".to_owned());
@@ -66,7 +161,7 @@ impl Resources for Folder {
         let file = File::open(&full).map_err(|e| in_words(&e))?;
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| in_words(&e))?;
-        if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(bytes) }
+        if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(Found { bytes, note }) }
     }
 }
 

@@ -27,9 +27,10 @@ mod polygon;
 mod sniff;
 pub mod stl;
 pub mod svg;
+mod texels;
 mod text;
 pub mod threemf;
 
 pub use error::{Error, Place, Result, Warning};
-pub use model::{Limits, Model, NoResources, Pose, ReadOptions, Resources};
+pub use model::{Found, Limits, Model, NoResources, Pose, ReadOptions, Resources};
 pub use sniff::{ModelFormat, read_model};

@@ -15,6 +15,51 @@ pub trait Resources {
     /// # Errors
     /// A sentence that says why not, for the reader to put into [`crate::Error::Resource`].
     fn read(&self, path: &str, limit: u64) -> std::result::Result<Vec<u8>, String>;
+
+    /// The bytes behind a path as the file writes it, percent-decoded and with `/` as separator; it may be
+    /// absolute, lead out of the folder by `..`, or be a network address. Readers call this.
+    ///
+    /// As provided it refuses such paths, so that [`Self::read`] never sees one. What replaces it decides
+    /// itself where paths may lead, and may find a file under another spelling.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    fn find(&self, path: &str, limit: u64) -> std::result::Result<Found, String> {
+        check_inside(path)?;
+        self.read(path, limit).map(|bytes| Found { bytes, note: None })
+    }
+}
+
+/// What [`Resources::find`] found.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Found {
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
+    /// A sentence for a warning, where the file is not quite what was asked for: one whose name differs in
+    /// upper and lower case.
+    pub note: Option<String>,
+}
+
+/// Refuses paths that are not relative to the model's folder, or lead out of it.
+///
+/// # Errors
+/// A sentence that says why.
+fn check_inside(path: &str) -> std::result::Result<(), &'static str> {
+    // A scheme is letters, digits, +, - or . before a colon (RFC 3986); a colon in the first segment of a
+    // relative path is not allowed, and on some systems it names a drive or a stream.
+    if path.split('/').next().unwrap_or_default().contains(':') {
+        return Err("only relative paths are followed, no schemes and no network addresses");
+    }
+    if path.contains(':') {
+        return Err("a colon has no place in a relative path");
+    }
+    if path.starts_with('/') {
+        return Err("absolute paths are not followed");
+    }
+    if path.split('/').any(|part| part == "..") {
+        return Err("paths out of the model's folder are not followed");
+    }
+    Ok(())
 }
 
 /// Finds nothing: for files that must stand alone.
@@ -32,13 +77,13 @@ impl Resources for NoResources {
 pub struct Limits {
     /// Triangles, lines and points over all meshes, before instancing.
     pub primitives: u64,
-    /// Instances of meshes.
+    /// Instances of meshes, and also nodes of a glTF file.
     pub instances: u64,
     /// Bytes of all decoded buffers and images together, also after decompression.
     pub decoded_bytes: u64,
     /// Width and height of one image, in pixels.
     pub image_side: u32,
-    /// Depth of a tree of nodes or components.
+    /// Depth of a tree of components.
     pub depth: u32,
 }
 
@@ -71,6 +116,9 @@ pub struct ReadOptions {
     pub limits: Limits,
     /// The moment to pose at; `None` = the rest pose of the file.
     pub pose: Option<Pose>,
+    /// Name or number of the variant whose materials are shown (KHR_materials_variants); `None` = the
+    /// materials that the file shows by default.
+    pub variant: Option<String>,
 }
 
 /// A model as read.
@@ -84,6 +132,8 @@ pub struct Model {
     pub extensions: Vec<String>,
     /// Names of the animations.
     pub animations: Vec<String>,
+    /// Names of the variants of its materials.
+    pub variants: Vec<String>,
     /// What was repaired or left out.
     pub warnings: Vec<Warning>,
 }

@@ -19,7 +19,8 @@ mod image;
 mod notes;
 mod parse;
 
-use crate::{Model, Place, ReadOptions, Resources, text};
+use crate::gltf::uri::steps;
+use crate::{Found, Model, Place, ReadOptions, Resources, text};
 use durer::scene::Material;
 use image::Images;
 use notes::Notes;
@@ -67,12 +68,12 @@ fn read_libraries(
 ) {
     let limit = options.limits.decoded_bytes;
     let names = names(operand);
-    let whole = resources.read(&relative(operand), limit);
+    let whole = resources.find(&relative(operand), limit);
     if names.len() < 2 || whole.is_ok() {
         return read_library(model, all, place, operand, whole);
     }
     for name in &names {
-        read_library(model, all, place.clone(), name, resources.read(&relative(name), limit));
+        read_library(model, all, place.clone(), name, resources.find(&relative(name), limit));
     }
 }
 
@@ -92,10 +93,15 @@ fn read_library(
     all: &mut Library,
     place: Place,
     name: &str,
-    bytes: Result<Vec<u8>, String>,
+    found: Result<Found, String>,
 ) {
-    match bytes {
-        Ok(bytes) => all.read(model, name, &text::utf8(&bytes)),
+    match found {
+        Ok(Found { bytes, note }) => {
+            if let Some(note) = note {
+                model.warn(place, format!("the material library `{name}`: {note}"));
+            }
+            all.read(model, name, &text::utf8(&bytes));
+        }
         Err(why) => model.warn(place, format!("cannot read the material library `{name}`: {why}")),
     }
 }
@@ -108,7 +114,7 @@ fn relative(path: &str) -> String {
     if path.starts_with('/') || drive {
         return path.rsplit(['/', ':']).next().unwrap_or_default().to_owned();
     }
-    path.split('/').filter(|piece| !matches!(*piece, "" | ".")).collect::<Vec<_>>().join("/")
+    steps(&path).join("/")
 }
 
 impl Library {

@@ -67,6 +67,126 @@ fn links_do_not_lead_out_of_the_folder() {
     folder.must("info model/m.gltf");
 }
 
+/// A triangle whose picture is elsewhere.
+fn pictured(uri: &str) -> String {
+    gltf("ok.bin").replacen(
+        '{',
+        &format!(
+            r#"{{"images":[{{"uri":"{uri}"}}],"textures":[{{"source":0}}],
+            "materials":[{{"emissiveTexture":{{"index":0}}}}],"#
+        ),
+        1,
+    )
+}
+
+/// A PNG of one texel.
+fn png(folder: &Folder, name: &str) {
+    folder.write("one.obj", CUBE);
+    folder.must("render one.obj -o one.png --size 1x1");
+    folder.write(name, folder.read("one.png"));
+}
+
+#[test]
+fn a_picture_outside_of_the_folder_is_left_out() {
+    let folder = folder();
+    png(&folder, "secret.png");
+    for uri in [
+        "../secret.png",
+        "..\\\\secret.png",
+        "/secret.png",
+        "http://h/secret.png",
+        "C:\\\\secret.png",
+    ] {
+        folder.write("model/m.gltf", pictured(uri));
+        let ended = folder.must("info model/m.gltf --json");
+        let warnings = ended.json()["warnings"].to_string();
+        assert!(
+            warnings.contains("secret.png") && warnings.contains("drawn white"),
+            "{uri}: {warnings}"
+        );
+    }
+}
+
+#[test]
+fn the_root_widens_where_references_lead() {
+    let folder = folder();
+    png(&folder, "secret.png");
+    let absolute = folder.path("secret.bin").display().to_string();
+    for uri in
+        ["../secret.bin", "..%2Fsecret.bin", "..\\\\secret.bin", "sub/../../secret.bin", &absolute]
+    {
+        folder.write("model/m.gltf", gltf(uri));
+        folder.run("info model/m.gltf").fails(1, "secret.bin");
+        folder.run("info model/m.gltf --root model").fails(1, "secret.bin");
+        folder.must("info model/m.gltf --root .");
+    }
+    folder.write("model/m.gltf", pictured("../secret.png"));
+    assert!(folder.must("render model/m.gltf -o a.png --size 8x8 --root .").err.is_empty());
+    folder.write("model/m.gltf", gltf("../../../../../../etc/hostname"));
+    folder.run("info model/m.gltf --root .").fails(1, "hostname");
+    folder.run("info model/m.gltf --root nowhere").fails(1, "--root nowhere: ");
+    folder.run("info model/m.gltf --root secret.bin").fails(1, "it is not a folder");
+    // The model's own folder stays.
+    folder.write("model/m.gltf", gltf("ok.bin"));
+    fs::create_dir_all(folder.path("other")).unwrap();
+    folder.must("info model/m.gltf --root other");
+}
+
+// Where names that differ in case are names of different files.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_in_another_case_are_found_and_told() {
+    let folder = folder();
+    fs::create_dir_all(folder.path("model/Tex/Sub")).unwrap();
+    for name in ["Tex/Sub/B.Bin", "Tex/Sub/b.bIN", "exact.BIN", "exact.bin"] {
+        folder.write(&format!("model/{name}"), positions());
+    }
+    for (uri, found) in [
+        ("tex/SUB/b.bin", Some("Tex/Sub/B.Bin")),
+        ("sub/../TEX/sub/B.BIN", Some("Tex/Sub/B.Bin")),
+        ("EXACT.BIN", Some("exact.BIN")),
+        ("exact.bin", None),
+    ] {
+        folder.write("model/m.gltf", gltf(uri));
+        let warnings = folder.must("info model/m.gltf --json").json()["warnings"].clone();
+        let told = warnings.to_string();
+        let wanted = uri.trim_start_matches("sub/../");
+        let note = |found| format!("there is no `{wanted}`; `{found}` is taken");
+        assert_eq!(warnings.as_array().unwrap().len(), usize::from(found.is_some()), "{told}");
+        assert!(found.is_none_or(|found| told.contains(&note(found))), "{uri}: {told}");
+    }
+    folder.write("model/m.gltf", gltf("tex/sub/c.bin"));
+    folder.run("info model/m.gltf").fails(1, "tex/sub/c.bin");
+    folder.write("model/m.gltf", gltf("../SECRET.bin"));
+    folder.run("info model/m.gltf").fails(1, "SECRET.bin");
+    folder.must("info model/m.gltf --root .");
+    png(&folder, "model/quad.PNG");
+    folder.write("model/LIB.mtl", "newmtl m\nmap_Kd Quad.png\n");
+    folder.write("model/m.obj", format!("mtllib lib.mtl\nusemtl m\n{CUBE}"));
+    let told = folder.must("info model/m.obj --json").json()["warnings"].to_string();
+    assert!(told.contains("`LIB.mtl` is taken") && told.contains("`quad.PNG` is taken"), "{told}");
+}
+
+#[test]
+fn variants_are_listed_and_chosen() {
+    let folder = folder();
+    let file = gltf("ok.bin").replacen(
+        '{',
+        r#"{"extensions":{"KHR_materials_variants":{"variants":[{"name":"hot"},{"name":"cold"}]}},"#,
+        1,
+    );
+    folder.write("model/m.gltf", file);
+    let info = folder.must("info model/m.gltf --json").json();
+    assert_eq!(info["variants"].to_string(), r#"["hot","cold"]"#);
+    folder.must("render model/m.gltf -o a.png --size 8x8 --variant cold");
+    folder
+        .run("pick model/m.gltf --at 1,1 --variant warm")
+        .fails(1, "no variant `warm`: hot, cold");
+    folder.write("cube.obj", CUBE);
+    let ended = folder.must("render cube.obj -o a.png --size 8x8 --variant cold");
+    assert!(ended.err.contains("OBJ has no variants; --variant does nothing"), "{}", ended.err);
+}
+
 #[test]
 fn sizes_are_limited() {
     let folder = Folder::with_models();

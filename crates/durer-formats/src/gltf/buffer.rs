@@ -5,7 +5,7 @@ use super::check::missing;
 use super::container::Container;
 use super::json::{BufferView, Root, Whole};
 use super::{meshopt, uri};
-use crate::{Error, Limits, Place, Resources, Result};
+use crate::{Error, Found, Limits, Place, Resources, Result, Warning};
 use std::cell::Cell;
 
 /// What has been taken of the limits so far.
@@ -61,14 +61,32 @@ enum Buffer<'a> {
     Loaded(Vec<u8>),
     /// The binary chunk.
     Chunk(Bytes<'a>),
+    /// There are no bytes; why, told to whoever asks for them.
+    Missing(Missing),
+}
+
+/// A file that could not be had.
+#[derive(Debug, Clone)]
+struct Missing {
+    place: Place,
+    uri: String,
+    message: String,
 }
 
 impl Buffer<'_> {
-    fn bytes(&self) -> Bytes<'_> {
+    fn bytes(&self) -> Result<Bytes<'_>> {
         match self {
-            Self::Loaded(bytes) => Bytes::Held(bytes),
-            Self::Chunk(bytes) => bytes.clone(),
+            Self::Loaded(bytes) => Ok(Bytes::Held(bytes)),
+            Self::Chunk(bytes) => Ok(bytes.clone()),
+            Self::Missing(missing) => Err(missing.error()),
         }
+    }
+}
+
+impl Missing {
+    fn error(&self) -> Error {
+        let Self { place, uri, message } = self.clone();
+        Error::Resource { place, uri, message }
     }
 }
 
@@ -84,23 +102,43 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Loads all buffers but the binary chunk, and unpacks compressed views.
+    /// Loads all buffers but the binary chunk, and unpacks compressed views. What needs a buffer that cannot
+    /// be had fails later, when it asks for it.
     ///
     /// # Errors
-    /// Where a buffer cannot be had or is shorter than it says, or a view does not unpack.
+    /// Where a buffer is shorter than it says, or a view does not unpack.
     pub fn load(
         root: &'a Root,
         container: &Container<'a>,
         resources: &dyn Resources,
         budget: &'a Budget,
+        warnings: &mut Vec<Warning>,
     ) -> Result<Self> {
         let buffers = (0..root.buffers.len())
-            .map(|i| load_buffer(root, i, container, resources, budget))
+            .map(|i| match load_buffer(root, i, container, resources, budget) {
+                Ok((buffer, note)) => {
+                    let place = Place::Path(format!("buffers[{i}].uri"));
+                    warnings.extend(note.map(|message| Warning { place, message }));
+                    Ok(buffer)
+                }
+                Err(Error::Resource { place, uri, message }) => {
+                    Ok(Some(Buffer::Missing(Missing { place, uri, message })))
+                }
+                Err(error) => Err(error),
+            })
             .collect::<Result<_>>()?;
         let mut source = Self { root, budget, buffers, unpacked: Vec::new() };
         source.unpacked =
             (0..root.buffer_views.len()).map(|i| source.unpack(i)).collect::<Result<_>>()?;
         Ok(source)
+    }
+
+    /// The buffers that could not be had.
+    pub fn missing(&self) -> impl Iterator<Item = Error> + '_ {
+        self.buffers.iter().flatten().filter_map(|buffer| match buffer {
+            Buffer::Missing(missing) => Some(missing.error()),
+            Buffer::Loaded(_) | Buffer::Chunk(_) => None,
+        })
     }
 
     /// The bytes of a view, as long as its `byteLength`.
@@ -113,12 +151,14 @@ impl<'a> Source<'a> {
         let view = views.get(i).ok_or_else(|| missing("buffer view", index, views.len(), at))?;
         match self.unpacked.get(i) {
             Some(Some(bytes)) => Ok(Bytes::Held(bytes)),
-            _ => self.slice(
-                view.buffer,
-                view.byte_offset,
-                length(view),
-                &format!("bufferViews[{i}]"),
-            ),
+            _ => {
+                let at = format!("bufferViews[{i}]");
+                if let Some(packing) = &view.extensions.meshopt {
+                    // It was not unpacked, so its buffer is missing: this tells how.
+                    self.slice(packing.buffer, packing.byte_offset, packing.byte_length, &at)?;
+                }
+                self.slice(view.buffer, view.byte_offset, length(view), &at)
+            }
         }
     }
 
@@ -131,7 +171,7 @@ impl<'a> Source<'a> {
     ) -> Result<Bytes<'_>> {
         let i = buffer.map_or(usize::MAX, Whole::index);
         let buffer = self.buffers.get(i).ok_or_else(|| Error::path(at, "its buffer is missing"))?;
-        let bytes = buffer.as_ref().map(Buffer::bytes).ok_or_else(|| {
+        let bytes = buffer.as_ref().map(Buffer::bytes).transpose()?.ok_or_else(|| {
             Error::path(format!("buffers[{i}]"), "it has neither a URI nor a binary chunk")
         })?;
         let end = offset.0.saturating_add(length.0);
@@ -140,8 +180,15 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The plain bytes of a compressed view; `None` for a plain one.
+    /// The plain bytes of a compressed view; `None` for a plain one, and for one whose buffer is missing.
     fn unpack(&self, index: usize) -> Result<Option<Vec<u8>>> {
+        match self.unpack_there(index) {
+            Err(Error::Resource { .. }) => Ok(None),
+            result => result,
+        }
+    }
+
+    fn unpack_there(&self, index: usize) -> Result<Option<Vec<u8>>> {
         let view = &self.root.buffer_views[index];
         let Some(packing) = &view.extensions.meshopt else { return Ok(None) };
         let at = format!("bufferViews[{index}].extensions.EXT_meshopt_compression");
@@ -170,13 +217,14 @@ fn length(view: &BufferView) -> Whole {
     view.byte_length.unwrap_or_default()
 }
 
+/// A buffer, where it has bytes, and what is to be told about its file.
 fn load_buffer<'a>(
     root: &'a Root,
     index: usize,
     container: &Container<'a>,
     resources: &dyn Resources,
     budget: &Budget,
-) -> Result<Option<Buffer<'a>>> {
+) -> Result<(Option<Buffer<'a>>, Option<String>)> {
     let buffer = &root.buffers[index];
     let at = format!("buffers[{index}]");
     let fallback = buffer.extensions.meshopt.as_ref().is_some_and(|m| m.fallback);
@@ -185,22 +233,22 @@ fn load_buffer<'a>(
         Error::path(&at, format!("byteLength is {} but there are {there} bytes", wanted.0))
     };
     match (&buffer.uri, &container.bin) {
-        _ if fallback => Ok(None),
+        _ if fallback => Ok((None, None)),
         (Some(uri), _) => {
             budget.bytes(wanted.0, &at)?;
             // Files may be longer than the part that is used.
             let most = budget.rest().decoded_bytes.saturating_add(wanted.0);
-            let mut bytes = uri::load(uri, &format!("{at}.uri"), resources, most)?;
+            let Found { mut bytes, note } = uri::load(uri, &format!("{at}.uri"), resources, most)?;
             if (bytes.len() as u64) < wanted.0 {
                 return Err(too_few(bytes.len() as u64));
             }
             bytes.truncate(wanted.index());
-            Ok(Some(Buffer::Loaded(bytes)))
+            Ok((Some(Buffer::Loaded(bytes)), note))
         }
         (None, Some(bin)) if index == 0 => {
             let bytes = bin.part(0..wanted.0).ok_or_else(|| too_few(bin.len()))?;
-            Ok(Some(Buffer::Chunk(bytes)))
+            Ok((Some(Buffer::Chunk(bytes)), None))
         }
-        (None, _) => Ok(None),
+        (None, _) => Ok((None, None)),
     }
 }

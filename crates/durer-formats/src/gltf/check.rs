@@ -2,7 +2,7 @@
 //! broken, also in a part that no picture would show.
 
 use super::accessor::Layout;
-use super::json::{Root, TextureInfo, Whole};
+use super::json::{Material, Root, TextureInfo, Whole};
 use super::uri;
 use crate::{Error, Result};
 use std::fmt::Display;
@@ -101,6 +101,10 @@ fn meshes(root: &Root) -> Result<()> {
                     exists(Some(accessor), accessors, "accessor", at)?;
                 }
             }
+            for mapping in primitive.extensions.variants.iter().flat_map(|v| &v.mappings) {
+                let at = format_args!("{at}.extensions.KHR_materials_variants");
+                exists(mapping.material, root.materials.len(), "material", at)?;
+            }
             if let Some(draco) = &primitive.extensions.draco {
                 let at = format!("{at}.extensions.KHR_draco_mesh_compression");
                 present(&draco.buffer_view, "bufferView", &at)?;
@@ -130,6 +134,11 @@ fn nodes(root: &Root) -> Result<()> {
         exists(node.camera, root.cameras.len(), "camera", format_args!("{at}.camera"))?;
         let light = node.extensions.light.as_ref().and_then(|l| l.light);
         exists(light, lights, "light", format_args!("{at}.extensions.KHR_lights_punctual"))?;
+        let instancing = node.extensions.instancing.iter().flat_map(|i| &i.attributes);
+        for (name, &accessor) in instancing {
+            let at = format_args!("{at}.extensions.EXT_mesh_gpu_instancing.attributes.{name}");
+            exists(Some(accessor), root.accessors.len(), "accessor", at)?;
+        }
     }
     for (s, skin) in root.skins.iter().enumerate() {
         let at = format!("skins[{s}]");
@@ -176,30 +185,77 @@ fn materials(root: &Root) -> Result<()> {
     for (t, texture) in root.textures.iter().enumerate() {
         let at = format!("textures[{t}]");
         exists(texture.source, root.images.len(), "image", format_args!("{at}.source"))?;
+        for (name, extension) in [
+            ("EXT_texture_webp", &texture.extensions.webp),
+            ("KHR_texture_basisu", &texture.extensions.basisu),
+        ] {
+            let source = extension.as_ref().and_then(|e| e.source);
+            exists(source, root.images.len(), "image", format_args!("{at}.extensions.{name}"))?;
+        }
         exists(texture.sampler, root.samplers.len(), "sampler", format_args!("{at}.sampler"))?;
     }
     for (m, material) in root.materials.iter().enumerate() {
-        let pbr = &material.pbr_metallic_roughness;
-        let glossy = material.extensions.specular_glossiness.as_ref();
-        let slots: [(&str, Option<&TextureInfo>); 6] = [
-            ("normalTexture", material.normal_texture.as_ref()),
-            ("occlusionTexture", material.occlusion_texture.as_ref()),
-            ("emissiveTexture", material.emissive_texture.as_ref()),
-            ("pbrMetallicRoughness.baseColorTexture", pbr.base_color_texture.as_ref()),
-            (
-                "pbrMetallicRoughness.metallicRoughnessTexture",
-                pbr.metallic_roughness_texture.as_ref(),
-            ),
-            (
-                "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
-                glossy.and_then(|g| g.diffuse_texture.as_ref()),
-            ),
-        ];
-        for (slot, info) in slots.into_iter().filter_map(|(slot, info)| Some((slot, info?))) {
+        for (slot, info) in slots(material) {
             let at = format!("materials[{m}].{slot}");
             present(&info.index, "index", &at)?;
             exists(info.index, root.textures.len(), "texture", &at)?;
         }
     }
     Ok(())
+}
+
+/// All textures of a material that are read, with their places in it.
+fn slots(material: &Material) -> impl Iterator<Item = (&'static str, &TextureInfo)> {
+    let pbr = &material.pbr_metallic_roughness;
+    let extensions = &material.extensions;
+    let glossy = extensions.specular_glossiness.as_ref();
+    let specular = extensions.specular.as_ref();
+    let coat = extensions.clearcoat.as_ref();
+    let sheen = extensions.sheen.as_ref();
+    let transmission = extensions.transmission.as_ref();
+    [
+        ("normalTexture", material.normal_texture.as_ref()),
+        ("occlusionTexture", material.occlusion_texture.as_ref()),
+        ("emissiveTexture", material.emissive_texture.as_ref()),
+        ("pbrMetallicRoughness.baseColorTexture", pbr.base_color_texture.as_ref()),
+        ("pbrMetallicRoughness.metallicRoughnessTexture", pbr.metallic_roughness_texture.as_ref()),
+        (
+            "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture",
+            glossy.and_then(|g| g.diffuse_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture",
+            glossy.and_then(|g| g.specular_glossiness_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_specular.specularTexture",
+            specular.and_then(|s| s.specular_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_specular.specularColorTexture",
+            specular.and_then(|s| s.specular_color_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_clearcoat.clearcoatTexture",
+            coat.and_then(|c| c.clearcoat_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_clearcoat.clearcoatRoughnessTexture",
+            coat.and_then(|c| c.clearcoat_roughness_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_sheen.sheenColorTexture",
+            sheen.and_then(|s| s.sheen_color_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_sheen.sheenRoughnessTexture",
+            sheen.and_then(|s| s.sheen_roughness_texture.as_ref()),
+        ),
+        (
+            "extensions.KHR_materials_transmission.transmissionTexture",
+            transmission.and_then(|t| t.transmission_texture.as_ref()),
+        ),
+    ]
+    .into_iter()
+    .filter_map(|(slot, info)| Some((slot, info?)))
 }

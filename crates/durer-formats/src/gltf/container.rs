@@ -1,6 +1,7 @@
 //! The binary container: a header, a JSON chunk, a binary chunk (glTF 2.0, §4).
 
 use super::bytes::Bytes;
+use super::old;
 use crate::{Error, Place, Result, Warning};
 use std::borrow::Cow;
 
@@ -65,11 +66,7 @@ fn u32_at(file: &Bytes<'_>, end: u64, at: u64) -> Result<u32> {
 fn split_binary<'a>(file: &Bytes<'a>, warnings: &mut Vec<Warning>) -> Result<Container<'a>> {
     let version = u32_at(file, file.len(), 4)?;
     if version != 2 {
-        return Err(Error::Unsupported {
-            place: Place::Byte(4),
-            what: format!("version {version} of binary glTF"),
-            hint: "only version 2 is read".to_owned(),
-        });
+        return Err(old::unsupported(Place::Byte(4), &format!("{version}.0 (binary)")));
     }
     let length = u64::from(u32_at(file, file.len(), 8)?);
     if length > file.len() {

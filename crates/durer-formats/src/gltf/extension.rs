@@ -7,32 +7,39 @@ use crate::{Error, Model, Place, Result};
 const READ: &[&str] = &[
     #[cfg(feature = "draco")]
     "KHR_draco_mesh_compression",
+    "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
+    "EXT_texture_webp",
     "KHR_meshopt_compression",
     "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 ];
 
 /// Extensions that are read in part, and what is left out.
-const IN_PART: &[(&str, &str)] = &[(
-    "KHR_materials_pbrSpecularGlossiness",
-    "its diffuse colour and glossiness are taken for a rough dielectric, its specular colour is not",
-)];
+const IN_PART: &[(&str, &str)] = &[
+    ("KHR_materials_transmission", "what lies behind shows through, neither bent nor blurred"),
+    ("KHR_materials_volume", "its colour tints the surface, its thickness does nothing"),
+];
 
-/// Extensions that change no picture.
-const SILENT: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
+/// Extensions whose loss is told where it matters, or changes no picture.
+const SILENT: &[&str] = &["KHR_texture_basisu", "KHR_xmp", "KHR_xmp_json_ld"];
 
 /// What a message calls the loss of an optional extension.
 fn loss(name: &str) -> &'static str {
     match name {
-        "EXT_mesh_gpu_instancing" => "each instanced mesh is drawn once, at its node",
-        "EXT_texture_webp" | "KHR_texture_basisu" | "MSFT_texture_dds" | "EXT_texture_avif" => {
-            "textures without a PNG or JPEG are drawn white"
+        "MSFT_texture_dds" | "EXT_texture_avif" => {
+            "textures without a PNG, JPEG or WebP are drawn white"
         }
-        "KHR_materials_variants" => "the first choice of material is drawn",
         "KHR_animation_pointer" => "what it moves stays at rest",
         n if n.starts_with("KHR_materials_") => "drawn without its effect",
         _ => "passed over",
@@ -44,7 +51,9 @@ fn loss(name: &str) -> &'static str {
 /// # Errors
 /// [`Error::Unsupported`] naming the required extensions.
 pub fn check(root: &Root, model: &mut Model) -> Result<()> {
-    let known = |name: &str| READ.contains(&name) || IN_PART.iter().any(|(n, _)| *n == name);
+    let known = |name: &str| {
+        READ.contains(&name) || SILENT.contains(&name) || IN_PART.iter().any(|(n, _)| *n == name)
+    };
     let required = &root.extensions_required;
     let missing: Vec<&str> = required.iter().map(String::as_str).filter(|n| !known(n)).collect();
     if !missing.is_empty() {
@@ -62,7 +71,7 @@ pub fn check(root: &Root, model: &mut Model) -> Result<()> {
         let place = Place::Path("extensionsUsed".to_owned());
         if let Some((_, what)) = IN_PART.iter().find(|(n, _)| n == name) {
             model.warn(place, format!("{name} is read in part: {what}"));
-        } else if !known(name) && !SILENT.contains(&name.as_str()) {
+        } else if !known(name) {
             model.warn(place, format!("{name} is not read; {}", loss(name)));
         }
     }

@@ -3,6 +3,7 @@
 //! Unknown members are passed over; wrong types are errors with line and column. Numbers that are
 //! indices or sizes may be written as `3` or `3.0`, as JSON Schema allows.
 
+use super::old;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
@@ -94,7 +95,11 @@ objects! {
     RootExtensions {
         #[serde(rename = "KHR_lights_punctual")]
         lights: Option<Lights>,
+        #[serde(rename = "KHR_materials_variants")]
+        variants: Option<Variants>,
     }
+    Variants { variants: Vec<Variant>, }
+    Variant { name: Option<String>, }
     Lights { lights: Vec<Light>, }
     Light {
         name: Option<String>,
@@ -159,7 +164,11 @@ objects! {
     PrimitiveExtensions {
         #[serde(rename = "KHR_draco_mesh_compression")]
         draco: Option<Draco>,
+        #[serde(rename = "KHR_materials_variants")]
+        variants: Option<VariantMappings>,
     }
+    VariantMappings { mappings: Vec<VariantMapping>, }
+    VariantMapping { material: Option<Whole>, variants: Vec<Whole>, }
     Draco {
         buffer_view: Option<Whole>,
         attributes: std::collections::BTreeMap<String, Whole>,
@@ -182,8 +191,14 @@ objects! {
     NodeExtensions {
         #[serde(rename = "KHR_lights_punctual")]
         light: Option<NodeLight>,
+        #[serde(rename = "EXT_mesh_gpu_instancing")]
+        instancing: Option<Instancing>,
+        #[serde(rename = "KHR_node_visibility")]
+        visibility: Option<Visibility>,
     }
     NodeLight { light: Option<Whole>, }
+    Instancing { attributes: std::collections::BTreeMap<String, Whole>, }
+    Visibility { visible: Option<bool>, }
     Skin {
         inverse_bind_matrices: Option<Whole>,
         skeleton: Option<Whole>,
@@ -213,7 +228,14 @@ objects! {
         wrap_s: Option<Whole>,
         wrap_t: Option<Whole>,
     }
-    Texture { sampler: Option<Whole>, source: Option<Whole>, }
+    Texture { sampler: Option<Whole>, source: Option<Whole>, extensions: TextureExtensions, }
+    TextureExtensions {
+        #[serde(rename = "EXT_texture_webp")]
+        webp: Option<TextureSource>,
+        #[serde(rename = "KHR_texture_basisu")]
+        basisu: Option<TextureSource>,
+    }
+    TextureSource { source: Option<Whole>, }
     Material {
         name: Option<String>,
         pbr_metallic_roughness: MetallicRoughness,
@@ -240,14 +262,50 @@ objects! {
         emissive_strength: Option<EmissiveStrength>,
         #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
         specular_glossiness: Option<SpecularGlossiness>,
+        #[serde(rename = "KHR_materials_ior")]
+        ior: Option<Ior>,
+        #[serde(rename = "KHR_materials_specular")]
+        specular: Option<Specular>,
+        #[serde(rename = "KHR_materials_clearcoat")]
+        clearcoat: Option<Clearcoat>,
+        #[serde(rename = "KHR_materials_sheen")]
+        sheen: Option<Sheen>,
+        #[serde(rename = "KHR_materials_transmission")]
+        transmission: Option<Transmission>,
+        #[serde(rename = "KHR_materials_volume")]
+        volume: Option<Volume>,
     }
     Empty {}
     EmissiveStrength { emissive_strength: Option<f32>, }
     SpecularGlossiness {
         diffuse_factor: Option<[f32; 4]>,
         diffuse_texture: Option<TextureInfo>,
+        specular_factor: Option<[f32; 3]>,
         glossiness_factor: Option<f32>,
+        specular_glossiness_texture: Option<TextureInfo>,
     }
+    Ior { ior: Option<f32>, }
+    Specular {
+        specular_factor: Option<f32>,
+        specular_texture: Option<TextureInfo>,
+        specular_color_factor: Option<[f32; 3]>,
+        specular_color_texture: Option<TextureInfo>,
+    }
+    Clearcoat {
+        clearcoat_factor: f32,
+        clearcoat_texture: Option<TextureInfo>,
+        clearcoat_roughness_factor: f32,
+        clearcoat_roughness_texture: Option<TextureInfo>,
+        clearcoat_normal_texture: Option<TextureInfo>,
+    }
+    Sheen {
+        sheen_color_factor: [f32; 3],
+        sheen_color_texture: Option<TextureInfo>,
+        sheen_roughness_factor: f32,
+        sheen_roughness_texture: Option<TextureInfo>,
+    }
+    Transmission { transmission_factor: f32, transmission_texture: Option<TextureInfo>, }
+    Volume { attenuation_color: Option<[f32; 3]>, }
     /// Of any kind: `scale` is a normal texture's, `strength` an occlusion texture's.
     TextureInfo {
         index: Option<Whole>,
@@ -271,9 +329,13 @@ objects! {
 /// Parses the JSON.
 ///
 /// # Errors
-/// A decode error at line and column.
+/// A decode error at line and column; [`crate::Error::Unsupported`] for glTF 1.
 pub fn parse(text: &[u8]) -> crate::Result<Root> {
     serde_json::from_slice(text).map_err(|e| {
+        // Version 1 has other types, so it is known only after it was not understood.
+        if let Some(version) = old::version(text) {
+            return old::unsupported(crate::Place::Path("asset.version".to_owned()), &version);
+        }
         let message = e.to_string();
         // The place goes before the message, so it is taken off its end.
         let end = format!(" at line {} column {}", e.line(), e.column());

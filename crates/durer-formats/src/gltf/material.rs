@@ -1,8 +1,9 @@
 //! Materials, textures, samplers and images.
 
 use super::buffer::Source;
-use super::json::{self, MaterialExtensions, Sampler, TextureInfo, Whole};
-use super::uri;
+use super::json::{self, Root, Sampler, TextureInfo, Whole};
+use super::surface::{self, Todo};
+use super::{broken, derived, uri};
 use crate::{Error, Place, Resources, Result, Warning, image};
 use durer::math::{DMat3, DVec2, DVec3, Vec3, Vec4};
 use durer::scene::{
@@ -10,15 +11,17 @@ use durer::scene::{
     Texture, TextureRef, Wrap,
 };
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 /// Emission is cut at this factor, so that light stays finite whatever a file says.
-const BRIGHTEST: f32 = 1e6;
+pub const BRIGHTEST: f32 = 1e6;
 
 /// Reads all materials, and the textures and images that they use. Their indices in the scene are
-/// those of the file; images that nothing uses, or that cannot be read, are empty (white).
+/// those of the file; images that nothing uses, or that cannot be read, are empty (white). Textures that are made
+/// of those of the file come after them.
 ///
 /// # Errors
-/// Where an image lies outside of the model's folder or above the limits.
+/// Where an image is above the limits.
 pub fn read(
     source: &Source<'_>,
     resources: &dyn Resources,
@@ -26,20 +29,10 @@ pub fn read(
     warnings: &mut Vec<Warning>,
 ) -> Result<()> {
     let root = source.root;
-    scene.materials =
-        root.materials.iter().enumerate().map(|(i, m)| material(i, m, warnings)).collect();
-    let mut used = vec![false; root.images.len()];
-    for texture in scene.materials.iter().flat_map(Material::textures) {
-        match root.textures[texture.texture].source {
-            Some(image) => used[image.index()] = true,
-            None => {
-                let place = Place::Path(format!("textures[{}]", texture.texture));
-                let message = "has no PNG or JPEG image; drawn white".to_owned();
-                warnings.push(Warning { place, message });
-            }
-        }
-    }
-    for (i, used) in used.into_iter().enumerate() {
+    let mut todo = Todo::default();
+    let materials = root.materials.iter().enumerate();
+    scene.materials = materials.map(|(i, m)| material(i, m, &mut todo, warnings)).collect();
+    for (i, used) in used_images(root, scene, &todo, warnings).into_iter().enumerate() {
         scene.images.push(if used {
             read_image(source, i, resources, warnings)?
         } else {
@@ -49,17 +42,52 @@ pub fn read(
     // One more image, for textures that have none.
     let none = scene.images.len();
     scene.images.push(Image::default());
-    scene.textures = root
-        .textures
-        .iter()
-        .map(|t| Texture {
-            image: t.source.map_or(none, Whole::index),
-            sampler: t
-                .sampler
-                .map_or(SceneSampler::default(), |s| sampler(&root.samplers[s.index()])),
-        })
-        .collect();
+    let sampler = |t: &json::Texture| t.sampler.map(|s| sampler(&root.samplers[s.index()]));
+    let texture = |t: &json::Texture| Texture {
+        image: image_of(t).map_or(none, Whole::index),
+        sampler: sampler(t).unwrap_or_default(),
+    };
+    scene.textures = root.textures.iter().map(texture).collect();
+    derived::run(source, scene, &mut todo)?;
+    todo.tell(warnings);
     Ok(())
+}
+
+/// Which of its images a texture shows: that of EXT_texture_webp before the one for readers that do not know it.
+fn image_of(texture: &json::Texture) -> Option<Whole> {
+    let webp = texture.extensions.webp.as_ref().and_then(|webp| webp.source);
+    webp.or(texture.source)
+}
+
+/// Which images are used; tells of textures that have none.
+fn used_images(root: &Root, scene: &Scene, todo: &Todo, warnings: &mut Vec<Warning>) -> Vec<bool> {
+    let mut used = vec![false; root.images.len()];
+    let mut without = BTreeSet::new();
+    let others = todo.jobs.iter().filter_map(|job| job.texture.as_ref());
+    for texture in scene.materials.iter().flat_map(Material::textures).chain(others) {
+        match image_of(&root.textures[texture.texture]) {
+            Some(image) => used[image.index()] = true,
+            None => {
+                without.insert(texture.texture);
+            }
+        }
+    }
+    if let Some(first) = without.first() {
+        let basisu = |t: &&usize| root.textures[**t].extensions.basisu.is_some();
+        let message = match (without.iter().filter(basisu).count(), without.len()) {
+            (0, 1) => "has no image that can be read; drawn white".to_owned(),
+            (0, n) => format!(
+                "this and {} more textures have no image that can be read; drawn white",
+                n - 1
+            ),
+            (_, n) => format!(
+                "KTX 2 (KHR_texture_basisu) is not decoded, and no other image is given: {n} drawn white"
+            ),
+        };
+        let place = Place::Path(format!("textures[{first}]"));
+        warnings.push(Warning { place, message });
+    }
+    used
 }
 
 /// An image; one that is missing or broken is empty, with a warning.
@@ -70,23 +98,14 @@ fn read_image(
     warnings: &mut Vec<Warning>,
 ) -> Result<Image> {
     let at = format!("images[{index}]");
-    match decode_image(source, index, resources, &at) {
+    match decode_image(source, index, resources, &at, warnings) {
         Err(error @ Error::Limit { .. }) => Err(error),
         Err(error) => {
-            let message = format!("{}; drawn white", without_place(error));
+            let message = format!("{}; drawn white", broken::apart(error).1);
             warnings.push(Warning { place: Place::Path(at), message });
             Ok(Image::default())
         }
         ok => ok,
-    }
-}
-
-/// What an error says, without the place, which the warning has.
-fn without_place(error: Error) -> String {
-    match error {
-        Error::Decode { message, .. } => message,
-        Error::Resource { uri, message, .. } => format!("cannot read `{uri}`: {message}"),
-        other => other.to_string(),
     }
 }
 
@@ -95,13 +114,19 @@ fn decode_image(
     index: usize,
     resources: &dyn Resources,
     at: &str,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Image> {
     let image = &source.root.images[index];
     let uri = image.uri.as_deref().filter(|uri| !uri::is_data(uri));
     let name = image.name.as_deref().or(uri).map_or_else(|| at.to_owned(), str::to_owned);
     let limits = source.budget.rest();
     let bytes = match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => Cow::Owned(uri::load(uri, at, resources, limits.decoded_bytes)?),
+        (Some(uri), _) => {
+            let found = uri::load(uri, at, resources, limits.decoded_bytes)?;
+            let place = || Place::Path(at.to_owned());
+            warnings.extend(found.note.map(|message| Warning { place: place(), message }));
+            Cow::Owned(found.bytes)
+        }
         (None, Some(view)) => source.view(view, at)?.whole()?,
         (None, None) => return Err(Error::path(at, "has neither a URI nor a buffer view")),
     };
@@ -130,7 +155,12 @@ fn sampler(sampler: &Sampler) -> SceneSampler {
     SceneSampler { mag, min, mip, wrap_u: wrap(sampler.wrap_s), wrap_v: wrap(sampler.wrap_t) }
 }
 
-fn material(index: usize, m: &json::Material, warnings: &mut Vec<Warning>) -> Material {
+fn material(
+    index: usize,
+    m: &json::Material,
+    todo: &mut Todo,
+    warnings: &mut Vec<Warning>,
+) -> Material {
     let pbr = &m.pbr_metallic_roughness;
     let normal = m.normal_texture.as_ref();
     let occlusion = m.occlusion_texture.as_ref();
@@ -167,26 +197,12 @@ fn material(index: usize, m: &json::Material, warnings: &mut Vec<Warning>) -> Ma
             warnings.push(Warning { place: place(), message });
         }
     }
-    extend(&mut material, &m.extensions);
+    surface::extend(index, &mut material, &m.extensions, todo);
     material
 }
 
-/// What extensions change.
-fn extend(material: &mut Material, extensions: &MaterialExtensions) {
-    if let Some(glossy) = &extensions.specular_glossiness {
-        // Its diffuse part as a dielectric; the specular colour has no place here.
-        material.base_color = Vec4::from(glossy.diffuse_factor.unwrap_or([1.0; 4]));
-        material.base_color_texture = texture(glossy.diffuse_texture.as_ref());
-        material.metallic = 0.0;
-        material.roughness = 1.0 - glossy.glossiness_factor.unwrap_or(1.0).clamp(0.0, 1.0);
-        material.metallic_roughness_texture = None;
-    }
-    if extensions.unlit.is_some() {
-        material.model = ShadingModel::Unlit;
-    }
-}
-
-fn texture(info: Option<&TextureInfo>) -> Option<TextureRef> {
+/// A texture as a material names it.
+pub fn texture(info: Option<&TextureInfo>) -> Option<TextureRef> {
     let info = info?;
     let transform = info.extensions.transform.as_ref();
     let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);

@@ -3,21 +3,24 @@
 //! What is read: meshes of all seven primitive modes, as one [`durer::scene::Mesh`] per primitive and
 //! one instance per node and primitive; the nodes of the default scene depth first; sparse,
 //! interleaved, normalized and quantized accessors; buffer views compressed by meshopt; primitives
-//! compressed by Draco (feature `draco`); materials with their textures; cameras; lights; skins and
-//! morph targets, posed at one moment of an animation. What is known of extensions stands in
-//! `extension.rs`.
+//! compressed by Draco (feature `draco`); materials with their textures, layers and variants; cameras;
+//! lights; skins and morph targets, posed at one moment of an animation; instances by attributes. What is
+//! known of extensions stands in `extension.rs`.
 //!
 //! Every reference and size of a file is checked before any data are read, also in parts that are
-//! not drawn; what is wrong is told with its path. Nothing recurses, and memory is charged to
+//! not drawn; what is wrong is told with its path. Where data themselves are broken or missing, what needs
+//! them is left out if something else remains. Nothing recurses, and memory is charged to
 //! [`crate::Limits`] before it is taken.
 
 mod accessor;
 mod animation;
+mod broken;
 mod buffer;
 mod bytes;
 mod check;
 mod container;
 mod deform;
+mod derived;
 #[cfg(feature = "draco")]
 mod draco;
 #[cfg(not(feature = "draco"))]
@@ -25,21 +28,29 @@ mod draco;
 mod draco;
 mod extension;
 mod eye;
+mod instancing;
 mod json;
 mod material;
 mod meshopt;
 mod node;
 mod normals;
+mod old;
+mod placing;
 mod primitive;
+mod specular_glossiness;
+mod surface;
 pub(crate) mod uri;
+mod variant;
 
 use crate::{Error, Model, Place, ReadOptions, Resources, Result};
 use animation::Override;
+use broken::Broken;
 use buffer::{Budget, Source};
 use bytes::Bytes;
 use durer::math::DMat4;
 use durer::scene::{Instance, Mesh, Part, Scene, UpAxis};
 use json::{Node, Root, Whole};
+use placing::Placing;
 use primitive::Geometry;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -59,9 +70,9 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 
 /// Reads a model, `.gltf` or `.glb`, posed as `options.pose` says.
 ///
-/// Buffers and images that the file refers to come from `resources`; a reference that is absolute,
-/// leads out of the model's folder or has a scheme is refused without asking. An image that is missing
-/// or broken is drawn white, with a warning. Linear in the data that are drawn.
+/// Buffers and images that the file refers to come from `resources`, which decides where references may
+/// lead. An image that is missing or broken is drawn white, and a primitive that is broken, or whose buffer
+/// is missing, is left out where something else remains, each with a warning. Linear in the data that are drawn.
 ///
 /// ```
 /// use durer_formats::{NoResources, ReadOptions, gltf};
@@ -77,7 +88,8 @@ pub fn is_binary(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`Error::Decode`] with the byte of the container, the line of the JSON or the path in it;
 /// [`Error::Unsupported`] for a required extension or a version that is not known;
-/// [`Error::Resource`] for a buffer that cannot be had; [`Error::Limit`].
+/// [`Error::Resource`] for a buffer that cannot be had, and [`Error::Decode`] for a broken primitive, where
+/// nothing is left to draw without it; [`Error::Limit`].
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     read_parts(&Bytes::Held(bytes), resources, options)
 }
@@ -108,10 +120,12 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     check_version(&root)?;
     extension::check(&root, &mut model)?;
     check::references(&root)?;
-    let tree = node::Tree::of(&root, options.limits.depth)?;
+    let tree = node::Tree::of(&root, options.limits.instances)?;
     let budget = Budget::new(options.limits);
-    let source = Source::load(&root, &container, resources, &budget)?;
+    let source = Source::load(&root, &container, resources, &budget, &mut model.warnings)?;
     model.animations = animation::names(&root);
+    model.variants = variant::names(&root);
+    let variant = variant::find(&model.variants, options.variant.as_deref())?;
     let pose = animation::pose(&source, options.pose.as_ref())?;
     if options.pose.is_some() && root.animations.is_empty() {
         model.warn(Place::Path("animations".into()), "there is none; the rest pose is taken");
@@ -123,15 +137,29 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
             "stands in the scene but has a parent; drawn once, below its parent".to_owned();
         warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
     });
-    let mut builder =
-        Builder { source: &source, world: &world, pose: &pose, made: BTreeMap::new() };
-    for &n in &nodes {
+    if root.scenes.is_empty() && !nodes.is_empty() {
+        model.warn(Place::Path("scenes".into()), "there is none; all root nodes are shown");
+    }
+    let visible = tree.visible(&root);
+    let mut builder = Builder {
+        source: &source,
+        world: &world,
+        pose: &pose,
+        variant,
+        made: BTreeMap::new(),
+        broken: Broken::default(),
+    };
+    for &n in nodes.iter().filter(|n| visible[**n]) {
         builder.place(n, &mut model)?;
     }
+    builder.broken.tell(source.missing(), &mut model)?;
     model.scene.up_axis = UpAxis::Y;
     material::read(&source, resources, &mut model.scene, &mut model.warnings)?;
-    model.scene.lights = eye::lights(&source, &nodes, &world, &mut model.warnings);
+    // A hidden camera sees all the same; a hidden light does not shine.
     eye::cameras(&source, &nodes, &world, &mut model.scene, &mut model.warnings);
+    let mut shining = nodes;
+    shining.retain(|n| visible[*n]);
+    model.scene.lights = eye::lights(&source, &shining, &world, &mut model.warnings);
     model.scene.check()?;
     Ok(model)
 }
@@ -148,11 +176,7 @@ fn check_version(root: &Root) -> Result<()> {
     if known {
         return Ok(());
     }
-    Err(Error::Unsupported {
-        place: Place::Path("asset.version".to_owned()),
-        what: format!("glTF {wanted}"),
-        hint: "glTF 2.0 is read".to_owned(),
-    })
+    Err(old::unsupported(Place::Path("asset.version".to_owned()), wanted))
 }
 
 /// Makes the meshes and instances of nodes.
@@ -160,38 +184,62 @@ struct Builder<'a> {
     source: &'a Source<'a>,
     world: &'a [DMat4],
     pose: &'a [Override],
+    /// The number of the variant that is shown.
+    variant: Option<u64>,
     /// Scene meshes of a file's mesh and primitive as it stands in the file, neither morphed nor
     /// skinned; `None` for a primitive that draws nothing.
     made: BTreeMap<(usize, usize), Option<usize>>,
+    /// What could not be read.
+    broken: Broken,
 }
 
 impl Builder<'_> {
-    /// Adds the instances of a node's mesh.
+    /// Adds the instances of a node's mesh. Primitives that are broken, or whose data are missing, are left out.
+    ///
+    /// # Errors
+    /// A limit; [`Error::Io`].
     fn place(&mut self, n: usize, model: &mut Model) -> Result<()> {
-        let node = &self.source.root.nodes[n];
-        let Some(mesh) = node.mesh.map(Whole::index) else { return Ok(()) };
-        let weights = self.weights(n, mesh);
-        let joints = match node.skin {
-            Some(skin) => Some(deform::joint_matrices(self.source, skin, self.world)?),
-            None => None,
+        let Some(mesh) = self.source.root.nodes[n].mesh.map(Whole::index) else { return Ok(()) };
+        let placing = match Placing::of(self.source, self.world, self.weights(n, mesh), n, model) {
+            Ok(placing) => placing,
+            Err(error) => return self.broken.take(error, path(mesh, 0)),
         };
         let primitives = self.source.root.meshes[mesh].primitives.len();
-        self.source.budget.instances(primitives as u64, &format!("nodes[{n}]"))?;
+        let name = name(&self.source.root.nodes[n]);
+        self.charge(placing.places.len() as u64, primitives as u64, name.len(), n)?;
         for p in 0..primitives {
-            let (made, skinned) = match &joints {
-                None if weights.iter().all(|w| *w == 0.0) => (self.unposed(mesh, p, model)?, false),
-                joints => self.posed(mesh, p, &weights, joints.as_deref(), model)?,
-            };
-            // Skins bring vertices to the world themselves; their node's place means nothing.
-            let world_from_mesh = if skinned { DMat4::IDENTITY } else { self.world[n] };
-            if !world_from_mesh.is_finite() {
-                let place = Place::Path(format!("nodes[{n}]"));
-                model.warn(place, "its place in the world is not finite; left out");
-            } else if let Some(mesh) = made {
-                model.scene.instances.push(Instance { mesh, world_from_mesh, name: name(node) });
+            match self.mesh(mesh, p, &placing, model) {
+                Ok(Some((mesh, skinned))) => placing.add(mesh, skinned, &name, model),
+                Ok(None) => {}
+                Err(error) => self.broken.take(error, path(mesh, p))?,
             }
         }
         Ok(())
+    }
+
+    /// Charges the instances of so many primitives at so many places.
+    fn charge(&self, places: u64, primitives: u64, name: usize, n: usize) -> Result<()> {
+        let (count, at) = (places.saturating_mul(primitives), format!("nodes[{n}]"));
+        self.source.budget.instances(count, &at)?;
+        let bytes = (size_of::<Instance>() as u64).saturating_add(name as u64);
+        self.source.budget.bytes(count.saturating_mul(bytes), &at)
+    }
+
+    /// The scene mesh of a primitive, and whether it is skinned; `None` where it draws nothing.
+    fn mesh(
+        &mut self,
+        mesh: usize,
+        p: usize,
+        placing: &Placing,
+        model: &mut Model,
+    ) -> Result<Option<(usize, bool)>> {
+        let (made, skinned) = match &placing.joints {
+            None if placing.weights.iter().all(|w| *w == 0.0) => {
+                (self.unposed(mesh, p, model)?, false)
+            }
+            joints => self.posed(mesh, p, &placing.weights, joints.as_deref(), model)?,
+        };
+        Ok(made.map(|mesh| (mesh, skinned)))
     }
 
     /// The weights of a node's morph targets: of the animation, else the node's, else the mesh's.
@@ -206,7 +254,10 @@ impl Builder<'_> {
         if let Some(made) = self.made.get(&(mesh, p)) {
             return Ok(*made);
         }
-        let geometry = self.geometry(mesh, p, model)?;
+        let geometry = self.geometry(mesh, p, model).inspect_err(|_| {
+            // It is left out wherever it stands, and told once.
+            self.made.insert((mesh, p), None);
+        })?;
         let made = geometry.map(|g| self.add(g, mesh, p, &mut model.scene));
         self.made.insert((mesh, p), made);
         Ok(made)
@@ -254,7 +305,7 @@ impl Builder<'_> {
     /// Adds a mesh to the scene.
     fn add(&self, g: Geometry, mesh: usize, p: usize, scene: &mut Scene) -> usize {
         let file_mesh = &self.source.root.meshes[mesh];
-        let material = file_mesh.primitives[p].material.map(Whole::index);
+        let material = variant::material(&file_mesh.primitives[p], self.variant).map(Whole::index);
         let mut made = Mesh {
             name: file_mesh.name.clone().unwrap_or_default(),
             topology: g.topology,

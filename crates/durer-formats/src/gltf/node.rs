@@ -15,11 +15,16 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Checks that the nodes are a forest of bounded depth.
+    /// Checks that the nodes are a forest. It may be as deep as there are nodes: nothing recurses.
     ///
     /// # Errors
-    /// Where a node has two parents or is its own ancestor, or the depth is above `max_depth`.
-    pub fn of(root: &Root, max_depth: u32) -> Result<Self> {
+    /// Where a node has two parents or is its own ancestor, or there are more than `most` nodes.
+    pub fn of(root: &Root, most: u64) -> Result<Self> {
+        let (value, limit) = (root.nodes.len() as u64, most);
+        if value > limit {
+            let place = Place::Path("nodes".to_owned());
+            return Err(Error::Limit { place, what: "number of nodes", value, limit });
+        }
         let parents = parents(root)?;
         let roots = (0..parents.len()).filter(|&n| parents[n].is_none());
         let order: Vec<usize> = walk(root, roots).collect();
@@ -28,18 +33,6 @@ impl Tree {
             order.iter().for_each(|&n| reached[n] = true);
             let first = reached.iter().position(|r| !r).unwrap_or_default();
             return Err(Error::path(format!("nodes[{first}]"), "is its own ancestor"));
-        }
-        let mut depths = vec![1u32; parents.len()];
-        for &node in &order {
-            depths[node] = parents[node].map_or(1, |p| depths[p].saturating_add(1));
-            if depths[node] > max_depth {
-                return Err(Error::Limit {
-                    place: Place::Path(format!("nodes[{node}]")),
-                    what: "depth of the tree of nodes",
-                    value: u64::from(depths[node]),
-                    limit: u64::from(max_depth),
-                });
-            }
         }
         Ok(Self { parents, order })
     }
@@ -66,15 +59,30 @@ impl Tree {
         roots.iter().copied().filter(|&n| self.parents[n].is_some()).for_each(&mut odd);
         let mut listed = vec![false; self.parents.len()];
         roots.iter().for_each(|&n| listed[n] = true);
-        let under = |n: usize| self.ancestors(n).any(|a| listed[a]);
-        let tops: Vec<usize> = roots.into_iter().filter(|&n| !under(n)).collect();
+        let under = self.below(|n| listed[n]);
+        let tops: Vec<usize> = roots.into_iter().filter(|&n| !under[n]).collect();
         let first_time = |n: &usize| std::mem::replace(&mut listed[*n], false);
         let tops: Vec<usize> = tops.into_iter().filter(first_time).collect();
         walk(root, tops.into_iter()).collect()
     }
 
-    fn ancestors(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
-        std::iter::successors(self.parents[node], |&n| self.parents[n])
+    /// For each node, whether `is` says so of one of its ancestors.
+    fn below(&self, is: impl Fn(usize) -> bool) -> Vec<bool> {
+        let mut below = vec![false; self.parents.len()];
+        for &n in &self.order {
+            below[n] = self.parents[n].is_some_and(|p| below[p] || is(p));
+        }
+        below
+    }
+
+    /// For each node, whether KHR_node_visibility lets it be seen: itself and all of its ancestors.
+    pub fn visible(&self, root: &Root) -> Vec<bool> {
+        let hidden = |n: usize| {
+            let visibility = root.nodes[n].extensions.visibility.as_ref();
+            visibility.and_then(|v| v.visible) == Some(false)
+        };
+        let below = self.below(hidden);
+        below.into_iter().enumerate().map(|(n, below)| !below && !hidden(n)).collect()
     }
 }
 

@@ -1,29 +1,25 @@
 //! References to other files: data URIs, relative paths, and what is refused.
 
-use crate::{Error, Place, Resources, Result};
+use crate::{Error, Found, Place, Resources, Result};
 
 /// The bytes behind a URI, at most `limit` of them.
 ///
 /// # Errors
-/// [`Error::Resource`] where the URI leaves the model's folder, has a scheme, or cannot be read;
-/// [`Error::Decode`] for a broken data URI.
-pub fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -> Result<Vec<u8>> {
+/// [`Error::Resource`] where the URI cannot be followed or read; [`Error::Decode`] for a broken data URI.
+pub fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -> Result<Found> {
     if let Some(data) = strip_data_scheme(uri) {
-        return decode_data(data, at);
+        return decode_data(data, at).map(|bytes| Found { bytes, note: None });
     }
-    let path = relative_path(uri).map_err(|message| refused(uri, at, message))?;
-    resources.read(&path, limit).map_err(|message| refused(uri, at, &message))
+    let path = path(uri).map_err(|message| refused(uri, at, message))?;
+    resources.find(&path, limit).map_err(|message| refused(uri, at, &message))
 }
 
-/// Checks a URI without reading anything.
+/// Checks a data URI without decoding it; others are for [`load`].
 ///
 /// # Errors
-/// As [`load`], where the URI itself is at fault.
+/// As [`load`], where the URI is broken.
 pub fn check(uri: &str, at: &str) -> Result<()> {
-    match strip_data_scheme(uri) {
-        Some(data) => data_parts(data, at).map(|_| ()),
-        None => relative_path(uri).map(|_| ()).map_err(|message| refused(uri, at, message)),
-    }
+    strip_data_scheme(uri).map_or(Ok(()), |data| data_parts(data, at).map(|_| ()))
 }
 
 /// The longest piece of a URI that a message quotes, in characters.
@@ -44,30 +40,37 @@ fn strip_data_scheme(uri: &str) -> Option<&str> {
     scheme.eq_ignore_ascii_case("data:").then_some(rest)
 }
 
-/// A percent-decoded path below the model's own folder, with `/` as separator.
-pub(crate) fn relative_path(uri: &str) -> std::result::Result<String, &'static str> {
-    if uri.is_empty() {
-        return Err("it is empty");
-    }
-    // A scheme is letters, digits, +, - or . before a colon (RFC 3986); a colon in the first
-    // segment of a relative path is not allowed, and on some systems it names a drive or a stream.
-    let first = uri.split('/').next().unwrap_or_default();
-    if first.contains(':') {
-        return Err("only relative paths are followed, no schemes and no network addresses");
-    }
-    let bytes = percent_decode(uri).ok_or("a `%` must be followed by two hexadecimal digits")?;
+/// A percent-decoded path with `/` as separator, as [`Resources::find`] takes it. A `%` without two
+/// hexadecimal digits stands for itself, as programs that do not encode write it.
+pub(crate) fn path(uri: &str) -> std::result::Result<String, &'static str> {
+    let bytes = percent_decode(uri).unwrap_or_else(|| uri.as_bytes().to_vec());
     let path = String::from_utf8(bytes).map_err(|_| "it is not UTF-8 when percent-decoded")?;
-    if path.contains(['\\', ':', '\0']) {
-        return Err("a backslash, colon or zero byte has no place in a relative path");
+    if path.contains('\0') {
+        return Err("a zero byte has no place in a path");
     }
-    if path.starts_with('/') {
-        return Err("absolute paths are not followed");
+    // What Windows programs write; no glTF names a file with a backslash in it.
+    let path = path.replace('\\', "/");
+    let absolute = if path.starts_with('/') { "/" } else { "" };
+    let parts = steps(&path);
+    match parts.as_slice() {
+        [] => Err("it names no file"),
+        // A network address keeps its two strokes.
+        _ if path.contains("://") => Ok(path),
+        _ => Ok(format!("{absolute}{}", parts.join("/"))),
     }
-    if path.split('/').any(|part| part == "..") {
-        return Err("paths out of the model's folder are not followed");
+}
+
+/// The steps of a path with `/` as separator, without `.` and without folders that a `..` leaves again (RFC 3986,
+/// §5.2.4): they need not exist. What is left of `..` stands at the beginning.
+pub(crate) fn steps(path: &str) -> Vec<&str> {
+    let mut steps = Vec::new();
+    for step in path.split('/').filter(|step| !matches!(*step, "" | ".")) {
+        match steps.last() {
+            Some(last) if step == ".." && *last != ".." => drop(steps.pop()),
+            _ => steps.push(step),
+        }
     }
-    let parts: Vec<&str> = path.split('/').filter(|p| !p.is_empty() && *p != ".").collect();
-    if parts.is_empty() { Err("it names no file") } else { Ok(parts.join("/")) }
+    steps
 }
 
 fn percent_decode(text: &str) -> Option<Vec<u8>> {
@@ -138,37 +141,59 @@ mod tests {
 
     #[test]
     fn paths_are_decoded_and_kept_inside() {
-        assert_eq!(relative_path("a%20b/./c.png").unwrap(), "a b/c.png");
-        assert_eq!(relative_path("a..b/c%2e.png").unwrap(), "a..b/c..png");
-        for bad in [
-            "",
-            ".",
+        for (uri, expected) in [
+            ("a%20b/./c.png", "a b/c.png"),
+            ("a..b/c%2e.png", "a..b/c..png"),
+            ("a\\b%5Cc.png", "a/b/c.png"),
+            ("100%.png", "100%.png"),
+            ("a%zz%20.png", "a%zz%20.png"),
+            ("//host//a", "/host/a"),
+            ("..%2fa", "../a"),
+            ("./tex/../a.png", "a.png"),
+            ("a/b/../../../../c", "../../c"),
+        ] {
+            assert_eq!(path(uri).unwrap(), expected);
+        }
+        for bad in ["", ".", "//", "a%ff", "a%00b"] {
+            assert!(path(bad).is_err(), "{bad}");
+        }
+        for outside in [
             "../a",
             "a/../../b",
-            "a/%2e%2E/b",
+            "../a/../b",
+            "a/%2e%2E/%2e./b",
             "..%2fa",
             "..%5Ca",
-            "a\\..\\b",
+            "a\\..\\..\\b",
             "/etc/passwd",
             "%2fetc",
             "//host/a",
+            "\\\\host\\a",
             "http://host/a",
             "HTTPS://host/a",
             "file:///a",
             "c:/a",
             "c%3a/a",
-            "a%0",
-            "a%zz",
-            "a%ff",
-            "a%00b",
+            "a/b:c",
         ] {
-            assert!(relative_path(bad).is_err(), "{bad}");
+            let error = load(outside, "here", &Everything, 100).unwrap_err();
+            assert!(error.to_string().contains("here: cannot read"), "{outside}: {error}");
+        }
+        assert_eq!(load("a/b", "here", &Everything, 100).unwrap().bytes, b"a/b");
+    }
+
+    /// Answers every request with its path.
+    struct Everything;
+
+    impl Resources for Everything {
+        fn read(&self, path: &str, _: u64) -> std::result::Result<Vec<u8>, String> {
+            Ok(path.as_bytes().to_vec())
         }
     }
 
     #[test]
     fn data_uris_are_decoded() {
-        let load = |uri| load(uri, "here", &crate::NoResources, 100);
+        let load = |uri| load(uri, "here", &crate::NoResources, 100).map(|found| found.bytes);
         assert_eq!(load("data:application/octet-stream;base64,AQIDBA==").unwrap(), [1, 2, 3, 4]);
         assert_eq!(load("DATA:;base64,AQID").unwrap(), [1, 2, 3]);
         assert_eq!(load("data:;base64,AQIDBA").unwrap(), [1, 2, 3, 4]);

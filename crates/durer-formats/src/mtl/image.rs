@@ -1,7 +1,7 @@
 //! Pictures of a material library: each read once, single channels joined where the scene wants
 //! them in one picture.
 
-use crate::{Limits, Model, Place, Resources, image};
+use crate::{Found, Limits, Model, Place, Resources, image, texels};
 use durer::scene::Image;
 use std::collections::HashMap;
 
@@ -22,8 +22,11 @@ impl<'a> Images<'a> {
     /// The picture behind `path`; `None` after a warning.
     fn decode(&mut self, model: &mut Model, path: &str) -> Option<&Image> {
         if !self.decoded.contains_key(path) {
-            let read = self.resources.read(path, self.left.decoded_bytes);
-            let image = read.and_then(|bytes| {
+            let found = self.resources.find(path, self.left.decoded_bytes);
+            let image = found.and_then(|Found { bytes, note }| {
+                if let Some(note) = note {
+                    model.warn(Place::Whole, format!("texture `{path}`: {note}"));
+                }
                 image::decode(&bytes, path, &self.left).map_err(|e| e.to_string())
             });
             let image = image
@@ -87,18 +90,9 @@ impl<'a> Images<'a> {
             self.decode(model, path);
         }
         let found = paths.map(|p| self.decoded.get(p?)?.as_ref());
-        let width = found.iter().flatten().map(|i| i.width).max()?;
-        let height = found.iter().flatten().map(|i| i.height).max()?;
-        let pixel = |image: &Image, x: u32, y: u32| {
-            let scale =
-                |at: u32, to: u32, from: u32| u64::from(at) * u64::from(to) / u64::from(from);
-            let (x, y) = (scale(x, image.width, width), scale(y, image.height, height));
-            image.data.get((y * u64::from(image.width) + x) as usize).copied()
-        };
-        let at = |x, y| join(found.map(|image| image.and_then(|i| pixel(i, x, y))));
-        let data = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| at(x, y));
+        let [width, height] = texels::size(found)?;
         let name = paths.into_iter().flatten().collect::<Vec<_>>().join(" + ");
-        let image = Image { name, width, height, data: data.collect() };
+        let image = Image { name, width, height, data: texels::join(found, join) };
         Some(self.add(model, key, image))
     }
 

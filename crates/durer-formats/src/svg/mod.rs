@@ -33,8 +33,8 @@ mod values;
 
 pub use fonts::{Fonts, no_glyphs};
 
-use crate::gltf::uri::relative_path;
-use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
+use crate::gltf::uri::path;
+use crate::{Error, Found, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
 use std::collections::BTreeSet;
@@ -289,9 +289,14 @@ fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a
             _ => default(mime, bytes, usvg_options),
         }),
         resolve_string: Box::new(move |href, usvg_options| {
-            let path = relative_path(href).map_err(str::to_owned);
-            match path.and_then(|path| resources.read(&path, limit)) {
-                Ok(bytes) => kind_of(bytes.into(), usvg_options, told),
+            let path = path(href).map_err(str::to_owned);
+            match path.and_then(|path| resources.find(&path, limit)) {
+                Ok(Found { bytes, note }) => {
+                    if let Some(note) = note {
+                        told.tell(format!("image `{href}`: {note}"));
+                    }
+                    kind_of(bytes.into(), usvg_options, told)
+                }
                 Err(why) => {
                     told.tell(format!("image `{href}` is left out: {why}"));
                     None

@@ -19,13 +19,13 @@ macro_rules! bytes {
 }
 
 /// A data URI in percent notation.
-fn uri(bytes: &[u8]) -> String {
+pub fn uri(bytes: &[u8]) -> String {
     let digits: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
     format!("data:,{digits}")
 }
 
 /// A file of one buffer, with a view over all of it, and the members given.
-fn file(buffer: &[u8], members: &str) -> String {
+pub fn file(buffer: &[u8], members: &str) -> String {
     let (uri, length) = (uri(buffer), buffer.len());
     format!(
         r#"{{"asset": {{"version": "2.0"}},
@@ -36,34 +36,35 @@ fn file(buffer: &[u8], members: &str) -> String {
 }
 
 /// The positions of a triangle, its accessor, and a mesh of it.
-const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-const ACCESSOR: &str = r#"{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}"#;
+pub const TRIANGLE: [f32; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+pub const ACCESSOR: &str =
+    r#"{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}"#;
 
-fn triangle_bytes() -> Vec<u8> {
+pub fn triangle_bytes() -> Vec<u8> {
     TRIANGLE.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
 /// A file of one triangle as mesh 0, with the members given.
-fn triangle(members: &str) -> String {
+pub fn triangle(members: &str) -> String {
     let mesh = r#"{"name": "t", "primitives": [{"attributes": {"POSITION": 0}}]}"#;
     let members = format!(r#""accessors": [{ACCESSOR}], "meshes": [{mesh}], {members}"#);
     file(&triangle_bytes(), &members)
 }
 
-fn read(text: &str) -> Result<Model> {
+pub fn read(text: &str) -> Result<Model> {
     gltf::read(text.as_bytes(), &NoResources, &ReadOptions::default())
 }
 
-fn scene(text: &str) -> durer::scene::Scene {
+pub fn scene(text: &str) -> durer::scene::Scene {
     read(text).unwrap().scene
 }
 
-fn error(text: &str) -> String {
+pub fn error(text: &str) -> String {
     read(text).unwrap_err().to_string()
 }
 
 /// A binary file of a JSON text and a binary chunk.
-fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
+pub fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
     let length = (12 + 8 + json.len() + 8 + bin.len()) as u32;
     let mut file = bytes![u32: [0x4654_6c67, 2, length, json.len() as u32, 0x4e4f_534a]];
@@ -111,11 +112,14 @@ fn nodes_are_drawn_depth_first_and_share_meshes() {
 
 #[test]
 fn a_file_without_scenes_draws_its_roots() {
-    let scene = scene(&triangle(
+    let model = read(&triangle(
         r#""nodes": [{"name": "child", "mesh": 0}, {"name": "root", "mesh": 0, "children": [0]}]"#,
-    ));
-    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    ))
+    .unwrap();
+    let names: Vec<&str> = model.scene.instances.iter().map(|i| i.name.as_str()).collect();
     assert_eq!(names, ["root", "child"]);
+    let told: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(told, ["scenes: there is none; all root nodes are shown"]);
 }
 
 #[test]
@@ -126,8 +130,29 @@ fn trees_must_be_trees() {
     assert!(nodes(r#"{"children": [2]}, {"children": [2]}, {}"#).contains("two parents"));
     assert!(nodes(r#"{"children": [1, 1]}, {}"#).contains("two parents"));
     assert!(nodes(r#"{"children": [7]}"#).contains("no node 7: there are 1"));
-    let chain: Vec<String> = (1..600).map(|i| format!(r#"{{"children": [{i}]}}"#)).collect();
-    assert!(nodes(&format!("{}, {{}}", chain.join(","))).contains("limit of 512"));
+}
+
+#[test]
+fn trees_may_be_deep() {
+    // Every node moves its children by one along x and turns them by half a turn around x.
+    let node = |i: usize| {
+        format!(r#"{{"children": [{i}], "matrix": [1,0,0,0, 0,-1,0,0, 0,0,-1,0, 1,0,0,1]}}"#)
+    };
+    let chain: Vec<String> = (1..100_000).map(node).collect();
+    let text = triangle(&format!(r#""nodes": [{}, {{"mesh": 0}}]"#, chain.join(",")));
+    let scene = scene(&text);
+    let place = scene.instances[0].world_from_mesh;
+    // 99,999 half turns are one.
+    assert_eq!(place.transform_point3(DVec3::ONE), DVec3::new(100_000.0, -1.0, -1.0));
+    // All of them in the scene, from the last on: each has its parent there too.
+    let all: Vec<String> = (0..100_000).rev().map(|i| i.to_string()).collect();
+    let text = text.replace(
+        r#""nodes": ["#,
+        &format!(r#""scenes": [{{"nodes": [{}]}}], "nodes": ["#, all.join(",")),
+    );
+    assert_eq!(self::scene(&text).instances.len(), 1);
+    let closed = text.replace(r#"{"mesh": 0}]"#, r#"{"mesh": 0, "children": [0]}]"#);
+    assert!(error(&closed).contains("its own ancestor"));
 }
 
 #[test]
@@ -173,7 +198,10 @@ fn accessors_may_be_interleaved_sparse_and_normalized() {
     assert_eq!(all.meshes[1].positions[2], Vec3::ZERO);
     // The sparse index 2 as 3: one too far.
     let wrong = text.replace("%01%00%02%00", "%01%00%03%00");
-    assert!(error(&wrong).starts_with("accessors[0].sparse.indices: "), "{}", error(&wrong));
+    let model = read(&wrong).unwrap();
+    let told = model.warnings[1].to_string();
+    assert!(told.starts_with("accessors[0].sparse.indices: "), "{told}");
+    assert!(told.ends_with("meshes[0].primitives[0] is left out"), "{told}");
 }
 
 #[test]
@@ -253,19 +281,34 @@ fn broken_primitives_tell_their_path() {
 #[test]
 fn extensions_are_refused_or_warned_about() {
     let nodes = r#""nodes": [{"mesh": 0}]"#;
-    let required = triangle(&format!(r#"{nodes}, "extensionsRequired": ["KHR_texture_basisu"]"#));
+    let required = triangle(&format!(r#"{nodes}, "extensionsRequired": ["X_shape"]"#));
     let Err(Error::Unsupported { what, .. }) = read(&required) else { panic!() };
-    assert_eq!(what, "KHR_texture_basisu");
-    let used = ["KHR_materials_sheen", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"];
+    assert_eq!(what, "X_shape");
+    let used = ["KHR_materials_iridescence", "KHR_mesh_quantization", "X_shape"];
     let model = read(&triangle(&format!(r#"{nodes}, "extensionsUsed": {used:?}"#))).unwrap();
     assert_eq!(model.extensions, used);
     let warnings: Vec<String> = model.warnings.iter().map(|w| w.message.clone()).collect();
-    assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].starts_with("KHR_materials_sheen"));
-    assert!(warnings[1].starts_with("EXT_mesh_gpu_instancing"));
-    let old = r#"{"asset": {"version": "1.0"}}"#;
-    assert!(matches!(read(old), Err(Error::Unsupported { .. })));
+    assert_eq!(warnings.len(), 3, "{warnings:?}");
+    assert!(warnings[0].starts_with("KHR_materials_iridescence"));
+    assert!(warnings[1].starts_with("X_shape"));
     assert!(error("{}").contains("asset"));
+}
+
+#[test]
+fn gltf_1_is_told_by_name() {
+    let told =
+        "asset.version: glTF 1.0 is not supported; export the model as glTF 2.0, or convert it";
+    for old in [
+        r#"{"asset": {"version": "1.0"}}"#,
+        r#"{"asset": {"version": "1.0"}, "accessors": {}, "scenes": {}}"#,
+        r#"{"accessors": {"a": {}}, "asset": {"generator": "x"}}"#,
+    ] {
+        assert!(error(old).starts_with(told), "{}", error(old));
+    }
+    let mut file = binary("{}", b"");
+    file[4] = 1;
+    let error = gltf::read(&file, &NoResources, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.starts_with("byte 4: glTF 1.0 (binary) is not supported"), "{error}");
 }
 
 #[test]
@@ -298,7 +341,9 @@ fn materials_are_read_whole() {
     assert_eq!((base.texture, base.tex_coord), (0, 2));
     assert_eq!(base.transform.transform_point2(DVec2::ONE), DVec2::new(2.5, 3.25));
     assert_eq!((unlit.model, unlit.alpha_mode), (ShadingModel::Unlit, AlphaMode::Blend));
-    assert_eq!((glossy.metallic, glossy.roughness), (0.0, 0.25));
+    // Its specular factor is left to be 1: all is reflected, nothing scattered.
+    assert!(glossy.metallic > 1.0 - 1e-6 && glossy.roughness == 0.25);
+    assert!((glossy.base_color - Vec4::ONE).length() < 1e-6);
     let sampler = model.scene.textures[0].sampler;
     assert_eq!(
         (sampler.mag, sampler.min, sampler.mip),
@@ -308,7 +353,8 @@ fn materials_are_read_whole() {
     // The image is rubbish and texture 1 has none: both are white, and both are told.
     assert!(model.scene.images.iter().all(|i| i.data.is_empty()));
     let places: Vec<&Place> = model.warnings.iter().map(|w| &w.place).collect();
-    assert_eq!(places, [&Place::Path("textures[1]".into()), &Place::Path("images[0]".into())]);
+    let expected = ["scenes", "textures[1]", "images[0]"].map(|at| Place::Path(at.into()));
+    assert_eq!(places, expected.iter().collect::<Vec<_>>());
 }
 
 /// Answers every request with nothing, and remembers it.
@@ -335,11 +381,23 @@ fn references_stay_in_the_folder() {
     let read = |uri: &str| gltf::read(file(uri).as_bytes(), &asked, &ReadOptions::default());
     let model = read("./maps/a%20b%2epng").unwrap();
     assert_eq!(*asked.0.borrow(), ["maps/a b.png"]);
-    assert!(model.warnings[0].to_string().contains("cannot read `./maps/a%20b%2epng`: no"));
-    for bad in ["../a.png", "http://h/a.png", "/a.png", "a/%2e%2e/%2e%2e/b", "%5c%5ch%5ca"] {
-        assert!(matches!(read(bad), Err(Error::Resource { .. })), "{bad}");
+    assert!(model.warnings[1].to_string().contains("cannot read `./maps/a%20b%2epng`: no"));
+    for bad in
+        ["../a.png", "http://h/a.png", "/a.png", "a/%2e%2e/%2e%2e/b", "%5c%5ch%5ca", "c:\\\\a"]
+    {
+        let model = read(bad).unwrap();
+        let told = model.warnings[1].to_string();
+        assert!(
+            told.starts_with("images[0]: cannot read") && told.ends_with("drawn white"),
+            "{told}"
+        );
+        assert_eq!(model.scene.triangle_count(), 1);
     }
     assert_eq!(asked.0.borrow().len(), 1);
+    for (written, path) in [("maps\\\\a.png", "maps/a.png"), ("100%.png", "100%.png")] {
+        read(written).unwrap();
+        assert_eq!(asked.0.borrow().last().unwrap(), path);
+    }
 }
 
 #[test]
@@ -374,7 +432,7 @@ fn cameras_and_lights_stand_in_the_world() {
     assert_eq!((position, direction), (DVec3::new(1.0, 2.0, 3.0), -DVec3::Z));
     assert_eq!((range, inner, outer), (Some(9.0), 0.0, 0.5));
     assert_eq!(sun.kind, LightKind::Directional { direction: -DVec3::Z });
-    assert_eq!(model.warnings.len(), 2, "{:?}", model.warnings);
+    assert_eq!(model.warnings.len(), 3, "{:?}", model.warnings);
 }
 
 /// A triangle with a morph target that lifts it by one, a skin of two joints, and an animation that
@@ -480,7 +538,6 @@ fn limits_are_kept() {
     assert!(limited(Limits { instances: 1, ..Limits::default() }));
     assert!(limited(Limits { primitives: 0, ..Limits::default() }));
     assert!(limited(Limits { decoded_bytes: 35, ..Limits::default() }));
-    assert!(limited(Limits { depth: 0, ..Limits::default() }));
 }
 
 #[test]

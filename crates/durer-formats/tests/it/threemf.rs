@@ -119,7 +119,7 @@ fn cycles_gaps_and_nonsense_are_errors() {
 
 #[test]
 fn bombs_are_refused() {
-    let options = |limits| ReadOptions { limits, pose: None };
+    let options = |limits| ReadOptions { limits, ..ReadOptions::default() };
     // Each object names the one before it ten times: 10^9 placements in a few lines.
     let mut resources = String::from(r#"<object id="0"></object>"#);
     for i in 1..10 {

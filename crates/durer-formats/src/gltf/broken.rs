@@ -1,0 +1,67 @@
+//! What could not be read, and is left out where something else remains.
+
+use crate::{Error, Model, Place, Result};
+use std::collections::BTreeMap;
+
+/// What is wrong with primitives that could not be read.
+#[derive(Default)]
+pub struct Broken {
+    /// By what they have in common, a missing file or being broken: the first error, the primitive it is of,
+    /// and how many there are.
+    kinds: BTreeMap<String, (Error, String, u64)>,
+    /// The kind that came first.
+    first: Option<String>,
+}
+
+impl Broken {
+    /// Notes an error; one that is not the primitive's own is given back.
+    pub fn take(&mut self, error: Error, at: String) -> Result<()> {
+        let kind = match &error {
+            Error::Resource { .. } => error.to_string(),
+            Error::Decode { .. } => String::new(),
+            _ => return Err(error),
+        };
+        self.first.get_or_insert_with(|| kind.clone());
+        self.kinds.entry(kind).or_insert((error, at, 0)).2 += 1;
+        Ok(())
+    }
+
+    /// Warns of what is left out, and of missing buffers; where nothing is left to show, the first of it is an
+    /// error.
+    pub fn tell(mut self, missing: impl Iterator<Item = Error>, model: &mut Model) -> Result<()> {
+        let unasked = missing.filter(|error| !self.kinds.contains_key(&error.to_string()));
+        let mut unasked = unasked.collect::<Vec<_>>().into_iter();
+        if model.scene.instances.is_empty() {
+            let first = self.first.and_then(|kind| self.kinds.remove(&kind));
+            if let Some(error) = first.map(|(error, ..)| error).or_else(|| unasked.next()) {
+                return Err(error);
+            }
+        }
+        for (error, at, count) in self.kinds.into_values() {
+            let left_out = match count {
+                1 => format!("{at} is left out"),
+                _ => format!("{at} and {} more primitives are left out", count - 1),
+            };
+            warn(error, &left_out, model);
+        }
+        unasked.for_each(|error| warn(error, "nothing that is shown needs it", model));
+        Ok(())
+    }
+}
+
+/// Warns of an error and what became of it.
+fn warn(error: Error, then: &str, model: &mut Model) {
+    let (place, what) = apart(error);
+    model.warn(place, format!("{what}; {then}"));
+}
+
+/// The place of an error, and what it says without it.
+pub fn apart(error: Error) -> (Place, String) {
+    match error {
+        Error::Resource { place, uri, message } => {
+            (place, format!("cannot read `{uri}`: {message}"))
+        }
+        Error::Decode { place, message } => (place, message),
+        other => (Place::Whole, other.to_string()),
+    }
+}

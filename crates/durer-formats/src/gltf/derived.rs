@@ -1,0 +1,234 @@
+//! Textures that the scene needs and the file does not have: made of those that it has, texel by texel.
+
+use super::buffer::Source;
+use super::specular_glossiness::Glossy;
+use super::surface::Todo;
+use crate::{Result, texels};
+use durer::math::{Vec3, Vec4};
+use durer::scene::{AlphaMode, Image, Material, Scene, Texture, TextureRef};
+use durer::shade::color::{decode_rgba8, decode_unorm8, encode_unorm8};
+use std::collections::BTreeMap;
+
+/// How much of the light a clear pane lets through; the rest shows the pane itself.
+const CLEAR: f32 = 0.85;
+
+/// Something to be done to a material once its images are there.
+pub struct Job {
+    /// Its number.
+    pub material: usize,
+    /// The texture that the scene's material has no place for.
+    pub texture: Option<TextureRef>,
+    /// What.
+    pub what: What,
+}
+
+/// What is to be done to a material.
+#[derive(Clone, Copy)]
+pub enum What {
+    /// Multiply a factor by the mean of the texture.
+    Mean {
+        /// Whether its colours are stored as sRGB.
+        srgb: bool,
+        /// Sets the factor, given the linear mean.
+        set: fn(&mut Material, Vec4),
+    },
+    /// Make base colour, metalness and roughness of the diffuse and the specular-glossiness texture.
+    Glossy(Glossy),
+    /// Make what transmits light blended: its alpha is what it keeps of the light behind it.
+    Glass,
+}
+
+/// Does all that is to be done.
+///
+/// # Errors
+/// Where the new images are above the limits.
+pub fn run(source: &Source<'_>, scene: &mut Scene, todo: &mut Todo) -> Result<()> {
+    let jobs = std::mem::take(&mut todo.jobs);
+    let mut maker = Maker { source, scene, todo, means: BTreeMap::new(), made: BTreeMap::new() };
+    for job in &jobs {
+        match job.what {
+            What::Mean { srgb, set } => {
+                let mean = maker.mean(job.texture, srgb);
+                set(&mut maker.scene.materials[job.material], mean);
+            }
+            What::Glossy(glossy) => maker.glossy(job, glossy)?,
+            What::Glass => maker.glass(job)?,
+        }
+    }
+    if !jobs.is_empty() {
+        forget_unused(scene);
+    }
+    Ok(())
+}
+
+/// Empties images that no material uses any longer.
+fn forget_unused(scene: &mut Scene) {
+    let mut used = vec![false; scene.images.len()];
+    for texture in scene.materials.iter().flat_map(Material::textures) {
+        used[scene.textures[texture.texture].image] = true;
+    }
+    let unused = scene.images.iter_mut().zip(used).filter(|(_, used)| !used);
+    unused.for_each(|(image, _)| *image = Image::default());
+}
+
+/// What a texture is made of: two textures, and the factors' bits.
+type Key = ([Option<usize>; 2], Vec<u32>);
+
+struct Maker<'a> {
+    source: &'a Source<'a>,
+    scene: &'a mut Scene,
+    todo: &'a mut Todo,
+    /// Of images, as sRGB or not.
+    means: BTreeMap<(usize, bool), Vec4>,
+    made: BTreeMap<Key, Vec<usize>>,
+}
+
+impl Maker<'_> {
+    /// The image of a texture; `None` where there is none, or it could not be read.
+    fn image(&self, texture: Option<TextureRef>) -> Option<&Image> {
+        let image = &self.scene.images[self.scene.textures[texture?.texture].image];
+        Some(image).filter(|image| !image.data.is_empty())
+    }
+
+    /// The linear mean of a texture; white where it has no image.
+    fn mean(&mut self, texture: Option<TextureRef>, srgb: bool) -> Vec4 {
+        let Some(image) = self.image(texture) else { return Vec4::ONE };
+        let key = (self.scene.textures[texture.map_or(0, |t| t.texture)].image, srgb);
+        if let Some(mean) = self.means.get(&key) {
+            return *mean;
+        }
+        let linear = |texel: &[u8; 4]| {
+            if srgb { decode_rgba8(*texel) } else { Vec4::from(texel.map(decode_unorm8)) }
+        };
+        let sum: durer::math::DVec4 = image.data.iter().map(|t| linear(t).as_dvec4()).sum();
+        let mean = (sum / image.data.len() as f64).as_vec4();
+        self.means.insert(key, mean);
+        mean
+    }
+
+    /// Makes N textures of two, laid on as the first of them that is there; each is made once.
+    fn make<const N: usize>(
+        &mut self,
+        job: &Job,
+        from: [Option<TextureRef>; 2],
+        factors: &[f32],
+        texel: impl Fn([Option<[u8; 4]>; 2]) -> [[u8; 4]; N],
+    ) -> Result<Option<[TextureRef; N]>> {
+        let Some(placed) = from[0].or(from[1]) else { return Ok(None) };
+        let textures = from.map(|texture| texture.map(|t| t.texture));
+        let key = (textures, factors.iter().map(|f| f.to_bits()).chain([N as u32]).collect());
+        if !self.made.contains_key(&key) {
+            let images = from.map(|texture| self.image(texture));
+            let Some([width, height]) = texels::size(images) else { return Ok(None) };
+            let at = format!("materials[{}]", job.material);
+            let bytes = u64::from(width) * u64::from(height) * 4 * N as u64;
+            // Twice: what is made comes out of one list of all.
+            self.source.budget.bytes(2 * bytes, &at)?;
+            let name = images.iter().flatten().map(|i| i.name.as_str()).collect::<Vec<_>>();
+            let name = name.join(" + ");
+            let all = texels::join(images, texel);
+            let sampler = self.scene.textures[placed.texture].sampler;
+            let mut numbers = Vec::new();
+            for i in 0..N {
+                let data = all.iter().map(|texels| texels[i]).collect();
+                let image = self.scene.images.len();
+                self.scene.images.push(Image { name: name.clone(), width, height, data });
+                numbers.push(self.scene.textures.len());
+                self.scene.textures.push(Texture { image, sampler });
+            }
+            self.made.insert(key.clone(), numbers);
+        }
+        let made = self.made.get(&key).and_then(|numbers| numbers.as_slice().try_into().ok());
+        Ok(made.map(|made: [usize; N]| made.map(|texture| TextureRef { texture, ..placed })))
+    }
+
+    /// Whether texels of two textures that lie at one place of a mesh can be joined.
+    fn lie_alike(a: Option<TextureRef>, b: Option<TextureRef>) -> bool {
+        let place = |t: TextureRef| (t.tex_coord, t.transform);
+        a.zip(b).is_none_or(|(a, b)| place(a) == place(b))
+    }
+
+    fn glossy(&mut self, job: &Job, mut glossy: Glossy) -> Result<()> {
+        let base = self.scene.materials[job.material].base_color_texture;
+        let mut specular = job.texture;
+        if !Self::lie_alike(base, specular) {
+            let mean = self.mean(specular, true);
+            glossy.specular *= mean.truncate();
+            glossy.glossiness *= mean.w;
+            let name = "KHR_materials_pbrSpecularGlossiness";
+            self.todo.leave_out(
+                name,
+                "lies otherwise than the diffuse one, its mean is taken",
+                job.material,
+            );
+            specular = None;
+        } else if specular.is_some() && self.image(specular).is_none() {
+            // Not read, which was told: rather a plastic than the mirror that white would be.
+            glossy = Glossy { specular: Vec3::ZERO, glossiness: 0.5, ..glossy };
+            specular = None;
+        }
+        let made = if specular.is_none() && glossy.is_dielectric() {
+            None
+        } else {
+            let Glossy { diffuse, specular: s, glossiness } = glossy;
+            let factors = [diffuse.x, diffuse.y, diffuse.z, s.x, s.y, s.z, glossiness];
+            self.make(job, [base, specular], &factors, |texels| glossy.texels(texels))?
+        };
+        let material = &mut self.scene.materials[job.material];
+        if let Some([color, rough]) = made {
+            material.base_color = Vec3::ONE.extend(glossy.diffuse.w);
+            (material.metallic, material.roughness) = (1.0, 1.0);
+            material.base_color_texture = Some(color);
+            material.metallic_roughness_texture = Some(rough);
+        } else {
+            let metallic = glossy.metallic();
+            material.base_color = metallic.base_color;
+            (material.metallic, material.roughness) = (metallic.metallic, metallic.roughness);
+        }
+        Ok(())
+    }
+
+    /// Alpha is what the surface keeps: all where it does not transmit, and the more the darker its colour is,
+    /// which is what stains the light that goes through.
+    fn glass(&mut self, job: &Job) -> Result<()> {
+        let mut mask = job.texture;
+        let mean = self.mean(mask, false).x;
+        let material = &self.scene.materials[job.material];
+        let (base, color) = (material.base_color_texture, material.base_color.truncate());
+        let mut through = CLEAR * material.transmission;
+        // A texture says where there is metal, which is rarely all over.
+        if material.metallic_roughness_texture.is_none() {
+            through *= 1.0 - material.metallic;
+        }
+        if !Self::lie_alike(base, mask) {
+            through *= mean;
+            self.todo.leave_out(
+                "KHR_materials_transmission",
+                "lies otherwise than the base colour's, its mean is taken",
+                job.material,
+            );
+            mask = None;
+        }
+        let opaque = self.scene.materials[job.material].alpha_mode == AlphaMode::Opaque;
+        let kept = move |texels: [Option<[u8; 4]>; 2]| {
+            let [base, mask] = texels.map(|texel| texel.unwrap_or([255; 4]));
+            let stained = color * decode_rgba8(base).truncate();
+            let clear = stained.element_sum() / 3.0 * decode_unorm8(mask[0]);
+            let alpha = if opaque { 1.0 } else { decode_unorm8(base[3]) };
+            [base[0], base[1], base[2], encode_unorm8(alpha * (1.0 - through * clear))]
+        };
+        let factors = [color.x, color.y, color.z, through, f32::from(u8::from(opaque))];
+        let made = self.make(job, [base, mask], &factors, |texels| [kept(texels)])?;
+        let material = &mut self.scene.materials[job.material];
+        if opaque {
+            material.base_color.w = 1.0;
+        }
+        match made {
+            Some([texture]) => material.base_color_texture = Some(texture),
+            None => material.base_color.w *= 1.0 - through * color.element_sum() / 3.0,
+        }
+        material.transmission *= mean;
+        material.alpha_mode = AlphaMode::Blend;
+        Ok(())
+    }
+}
