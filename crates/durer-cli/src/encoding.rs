@@ -14,7 +14,7 @@ pub const FLATTENED: &str = "a JPEG has no transparency; what is not opaque lies
 /// Formats and sizes of files.
 #[derive(Debug, Clone, Args)]
 pub struct EncodingArgs {
-    /// How small a PNG or JPEG is to be: `fast` or `small`; the pixels are the same
+    /// How small a PNG is to be: `fast` or `small`; the pixels are the same
     #[arg(long, value_name = "HOW", default_value = "fast")]
     pub compression: Compression,
     /// How fine a JPEG is, 1 to 100 [default: 90]
@@ -41,7 +41,7 @@ pub struct PictureFileArgs {
 pub enum Compression {
     /// Some twenty times faster than `small`
     Fast,
-    /// PNGs a quarter to a half smaller, JPEGs a tenth
+    /// Files a quarter to a half smaller
     Small,
 }
 
