@@ -494,17 +494,31 @@ impl<'a> Parser<'a> {
         let (out, repairs) = (&self.out, &self.out.repairs);
         let no_element =
             out.triangles.indices.is_empty() && out.lines.is_empty() && out.points.is_empty();
-        let no_place = || !out.positions.iter().any(|p| p.is_finite());
         let error = |tally: &Tally, message: &String| {
             Err(Error::Decode { place: tally.first.clone(), message: message.clone() })
         };
         if no_element && repairs.bad_corners.count > 0 {
             return error(&repairs.bad_corners, &repairs.bad_corner);
         }
-        if repairs.bad_numbers.count > 0 && no_place() {
+        if repairs.bad_numbers.count > 0 && !self.has_place(no_element) {
             return error(&repairs.bad_numbers, &repairs.bad_number);
         }
         Ok(())
+    }
+
+    /// Whether any triangle, line or point has all its coordinates; of a cloud of points, any vertex.
+    fn has_place(&self, cloud: bool) -> bool {
+        let out = &self.out;
+        let finite = |&i: &u32| out.positions.get(i as usize).is_some_and(|p| p.is_finite());
+        let keys = &out.triangles.keys;
+        let corner = |i: &u32| match keys.get(*i as usize) {
+            Some(key) => finite(&key.position),
+            None => finite(i),
+        };
+        (cloud && out.positions.iter().any(|p| p.is_finite()))
+            || out.triangles.indices.as_chunks::<3>().0.iter().any(|t| t.iter().all(corner))
+            || out.lines.as_chunks::<2>().0.iter().any(|line| line.iter().all(finite))
+            || out.points.iter().any(finite)
     }
 
     /// Where lines that look like vertices were the continuation of others, there are fewer things
