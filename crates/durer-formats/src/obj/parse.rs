@@ -2,6 +2,7 @@
 
 use super::corners::{Corner, Corners, NONE};
 use super::count::{Counts, is_off};
+use super::repairs::{Repairs, note};
 use crate::text::{self, Cursor, Tally, quote};
 use crate::{Error, Limits, Place, Result};
 use durer::math::{DVec3, Vec2, Vec3};
@@ -18,38 +19,6 @@ pub(super) struct Run {
     pub start: usize,
     pub material: Option<usize>,
     pub name: String,
-}
-
-/// Things that were left out or repaired.
-#[derive(Debug, Default)]
-pub(super) struct Repairs {
-    pub unknown: Tally,
-    pub unknown_word: String,
-    pub short_faces: Tally,
-    pub non_finite: Tally,
-    pub sloppy: Tally,
-    pub unnamed_parts: Tally,
-    pub byte_colors: bool,
-    /// Corners with a texture coordinate or normal in a file that has none of them.
-    pub no_attributes: Tally,
-    /// Vertices with no color, or no finite one, where others have one.
-    pub no_color: Tally,
-    /// Faces, lines and points that were left out for a corner, and what was wrong with the first.
-    pub bad_corners: Tally,
-    pub bad_corner: String,
-    /// Vertices, texture coordinates and normals whose numbers are none, and what was wrong with the first.
-    pub bad_numbers: Tally,
-    pub bad_number: String,
-}
-
-/// Counts an error that only one element suffers from.
-fn note(tally: &mut Tally, first: &mut String, error: Error) -> Result<()> {
-    let Error::Decode { place, message } = error else { return Err(error) };
-    if tally.count == 0 {
-        *first = message;
-    }
-    tally.add(|| place);
-    Ok(())
 }
 
 /// What the statements say.
