@@ -133,7 +133,8 @@ fn area(scene: &Scene) -> Option<f64> {
         let area = |i| triangle_area(mesh.triangle(i).map(corner)).length();
         Some((0..mesh.triangle_count()).map(area).filter(|area| area.is_finite()).sum::<f64>())
     };
-    let sum = scene.instances.iter().filter_map(of_instance).sum();
+    // A sum of nothing is -0.
+    let sum = scene.instances.iter().filter_map(of_instance).sum::<f64>() + 0.0;
     (scene.triangle_count() > 0).then_some(sum)
 }
 

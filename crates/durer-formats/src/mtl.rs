@@ -25,6 +25,7 @@ use durer::scene::Material;
 use image::Images;
 use notes::Notes;
 use parse::{Library, Statements};
+use std::collections::HashSet;
 
 /// Fills `model.scene.materials` with one material per name in `names`, in their order, from the
 /// libraries that `mtllib` statements name (line, operand).
@@ -36,7 +37,10 @@ pub(crate) fn load(
     options: &ReadOptions,
 ) {
     let mut all = Library::default();
-    for (line, operand) in libraries {
+    // Some writers name the library for each object; the first time is enough, as is the first of two
+    // materials with one name.
+    let mut seen = HashSet::new();
+    for (line, operand) in libraries.iter().filter(|(_, operand)| seen.insert(operand)) {
         read_libraries(model, &mut all, Place::Line(*line, 0), operand, resources, options);
     }
     let mut images = Images::new(resources, options.limits);
@@ -262,6 +266,33 @@ mod tests {
         assert_eq!(model.scene.materials[0].base_color.y, 1.0);
         let words: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
         assert!(words[0].contains("`y z.mtl`") && words[1].contains("`Blätt.png`"), "{words:?}");
+    }
+
+    #[test]
+    fn a_library_that_is_named_again_is_read_once() {
+        struct Counting(std::cell::Cell<usize>);
+        impl Resources for Counting {
+            fn read(&self, _path: &str, _limit: u64) -> Result<Vec<u8>, String> {
+                self.0.set(self.0.get() + 1);
+                Ok(b"newmtl m\nKd 1 0 0\n".to_vec())
+            }
+        }
+        let (files, mut model) = (Counting(0.into()), Model::default());
+        let libraries: Vec<(u64, String)> = (1..1000).map(|i| (i, "a.mtl".to_owned())).collect();
+        load(&mut model, &libraries, &["m".to_owned()], &files, &ReadOptions::default());
+        assert_eq!((files.0.get(), model.scene.materials[0].base_color.x), (1, 1.0));
+    }
+
+    #[test]
+    fn pictures_of_other_formats_are_textures_too() {
+        let tga =
+            [&[0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 8, 0x20][..], &[7, 9]].concat();
+        let mtl = "newmtl a\nKd 1 1 1\nmap_Kd t.tga\nnewmtl b\nmap_Kd k.ktx2";
+        let ktx = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
+        let model = loaded(mtl, &["a", "b"], vec![("t.tga", tga), ("k.ktx2", ktx)]);
+        assert_eq!(model.scene.images[0].data, [[7, 7, 7, 255], [9, 9, 9, 255]]);
+        let [warning] = &model.warnings[..] else { panic!("{:?}", model.warnings) };
+        assert!(warning.message.contains("KTX 2 (Basis Universal) is not supported"), "{warning}");
     }
 
     #[test]

@@ -82,9 +82,10 @@ fn info_tells_the_same_in_words_and_in_json() {
     let info = folder.must("info cube.obj --json").json();
     assert_eq!((&info["triangles"], &info["vertices"]), (&12.into(), &8.into()));
     assert_eq!(info["bounds"]["min"], serde_json::json!([-1.0, -1.0, -1.0]));
-    assert_eq!(info["closed"], true);
+    assert_eq!((&info["area"], &info["closed"]), (&24.0.into(), &true.into()));
     let text = String::from_utf8(folder.must("info cube.obj").out).unwrap();
-    for part in ["cube.obj", "triangles   12", "(-1, -1, -1)", "closed      yes"] {
+    for part in ["cube.obj", "triangles   12", "(-1, -1, -1)", "area        24", "closed      yes"]
+    {
         assert!(text.contains(part), "{part} is missing in {text}");
     }
     let both = folder.must("info cube.obj cube.obj --json").json();

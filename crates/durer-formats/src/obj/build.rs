@@ -1,7 +1,7 @@
 //! From the statements of an OBJ file to meshes and materials.
 
 use super::corners::{Corner, NONE};
-use super::parse::{Parsed, Repairs, Run};
+use super::parse::{Parsed, Run};
 use super::smooth;
 use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place, polygon};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
@@ -17,7 +17,7 @@ pub(super) fn build(
     options: &ReadOptions,
 ) -> Result<Model> {
     let mut model = Model { format: "OBJ".to_owned(), ..Model::default() };
-    warn_of_repairs(&mut model, &parsed.repairs);
+    parsed.repairs.tell(&mut model);
     mtl::load(&mut model, &parsed.libraries, &parsed.materials, resources, options);
     let origin = place::origin(&parsed.positions);
     let nothing_drawn =
@@ -68,48 +68,6 @@ fn whiten(model: &mut Model) {
     }
     if used {
         model.scene.materials.push(color::vertex_color_material());
-    }
-}
-
-fn warn_of_repairs(model: &mut Model, repairs: &Repairs) {
-    let word = &repairs.unknown_word;
-    let (corner, number) = (&repairs.bad_corner, &repairs.bad_number);
-    for (tally, message) in [
-        (
-            &repairs.unknown,
-            format!("statements are not known and were skipped, the first: `{word}`"),
-        ),
-        (
-            &repairs.bad_corners,
-            format!(
-                "faces, lines or points have a wrong corner and were left out, the first: {corner}"
-            ),
-        ),
-        (
-            &repairs.bad_numbers,
-            format!(
-                "vertices, texture coordinates or normals are not readable, the first: {number}"
-            ),
-        ),
-        (&repairs.short_faces, "elements have too few corners and were left out".to_owned()),
-        (&repairs.non_finite, "vertices have a coordinate that is NaN or infinite".to_owned()),
-        (&repairs.sloppy, "numbers have something behind them, which was ignored".to_owned()),
-        (
-            &repairs.no_attributes,
-            "corners name texture coordinates or normals, of which the file has none".to_owned(),
-        ),
-        (
-            &repairs.no_color,
-            "vertices have no color where others have one; they are white".to_owned(),
-        ),
-        (&repairs.unnamed_parts, "further groups were joined to the last: too many".to_owned()),
-    ] {
-        if tally.count > 0 {
-            model.warn(tally.first.clone(), format!("{} {message}", tally.count));
-        }
-    }
-    if repairs.byte_colors {
-        model.warn(Place::Whole, "vertex colors go up to 255 instead of 1; they were scaled");
     }
 }
 

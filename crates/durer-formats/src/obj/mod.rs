@@ -23,6 +23,7 @@ mod build;
 mod corners;
 mod count;
 mod parse;
+mod repairs;
 mod smooth;
 #[cfg(test)]
 mod tests;

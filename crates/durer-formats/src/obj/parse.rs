@@ -2,6 +2,7 @@
 
 use super::corners::{Corner, Corners, NONE};
 use super::count::{Counts, is_off};
+use super::repairs::{Repairs, note};
 use crate::text::{self, Cursor, Tally, quote};
 use crate::{Error, Limits, Place, Result};
 use durer::math::{DVec3, Vec2, Vec3};
@@ -18,38 +19,6 @@ pub(super) struct Run {
     pub start: usize,
     pub material: Option<usize>,
     pub name: String,
-}
-
-/// Things that were left out or repaired.
-#[derive(Debug, Default)]
-pub(super) struct Repairs {
-    pub unknown: Tally,
-    pub unknown_word: String,
-    pub short_faces: Tally,
-    pub non_finite: Tally,
-    pub sloppy: Tally,
-    pub unnamed_parts: Tally,
-    pub byte_colors: bool,
-    /// Corners with a texture coordinate or normal in a file that has none of them.
-    pub no_attributes: Tally,
-    /// Vertices with no color, or no finite one, where others have one.
-    pub no_color: Tally,
-    /// Faces, lines and points that were left out for a corner, and what was wrong with the first.
-    pub bad_corners: Tally,
-    pub bad_corner: String,
-    /// Vertices, texture coordinates and normals whose numbers are none, and what was wrong with the first.
-    pub bad_numbers: Tally,
-    pub bad_number: String,
-}
-
-/// Counts an error that only one element suffers from.
-fn note(tally: &mut Tally, first: &mut String, error: Error) -> Result<()> {
-    let Error::Decode { place, message } = error else { return Err(error) };
-    if tally.count == 0 {
-        *first = message;
-    }
-    tally.add(|| place);
-    Ok(())
 }
 
 /// What the statements say.
@@ -494,17 +463,31 @@ impl<'a> Parser<'a> {
         let (out, repairs) = (&self.out, &self.out.repairs);
         let no_element =
             out.triangles.indices.is_empty() && out.lines.is_empty() && out.points.is_empty();
-        let no_place = || !out.positions.iter().any(|p| p.is_finite());
         let error = |tally: &Tally, message: &String| {
             Err(Error::Decode { place: tally.first.clone(), message: message.clone() })
         };
         if no_element && repairs.bad_corners.count > 0 {
             return error(&repairs.bad_corners, &repairs.bad_corner);
         }
-        if repairs.bad_numbers.count > 0 && no_place() {
+        if repairs.bad_numbers.count > 0 && !self.has_place(no_element) {
             return error(&repairs.bad_numbers, &repairs.bad_number);
         }
         Ok(())
+    }
+
+    /// Whether any triangle, line or point has all its coordinates; of a cloud of points, any vertex.
+    fn has_place(&self, cloud: bool) -> bool {
+        let out = &self.out;
+        let finite = |&i: &u32| out.positions.get(i as usize).is_some_and(|p| p.is_finite());
+        let keys = &out.triangles.keys;
+        let corner = |i: &u32| match keys.get(*i as usize) {
+            Some(key) => finite(&key.position),
+            None => finite(i),
+        };
+        (cloud && out.positions.iter().any(|p| p.is_finite()))
+            || out.triangles.indices.as_chunks::<3>().0.iter().any(|t| t.iter().all(corner))
+            || out.lines.as_chunks::<2>().0.iter().any(|line| line.iter().all(finite))
+            || out.points.iter().any(finite)
     }
 
     /// Where lines that look like vertices were the continuation of others, there are fewer things

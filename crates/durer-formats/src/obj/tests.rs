@@ -125,6 +125,8 @@ fn a_vertex_without_numbers_keeps_its_number() {
         "{words:?}"
     );
     assert!(words[0].contains("line 2, column 7: ") && words[0].contains("`oops` is not a number"));
+    let error = read("v 0 0 0\nv 1 0 0\nv 0 one 0\nf 1 2 3\n").unwrap_err().to_string();
+    assert_eq!(error, "line 3, column 5: `one` is not a number");
     assert!(read("v a b c\nv 1\nf 1 1 1").unwrap_err().to_string().contains("`a` is not a number"));
 }
 
