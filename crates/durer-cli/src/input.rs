@@ -98,7 +98,7 @@ fn resources(path: &Path, root: Option<&Path>) -> Result<Box<dyn Resources>, Fai
     let folder = match (folder, root) {
         (Some(folder), Some(root)) => Some(folder.widen(root).map_err(|e| of_root(root, e))?),
         (None, Some(root)) => Some(Folder::itself(root).map_err(|e| of_root(root, e))?),
-        (folder, None) => folder,
+        (folder, None) => folder.map(|folder| folder.hint("; --root allows a wider one")),
     };
     Ok(folder.map_or_else(|| Box::new(NoResources) as Box<dyn Resources>, |f| Box::new(f)))
 }

@@ -23,6 +23,8 @@ pub struct Folder {
     base: PathBuf,
     /// Below which folders files may lie; without links and `..`.
     roots: Vec<PathBuf>,
+    /// What can be done where a file lies elsewhere, for the end of the message.
+    hint: &'static str,
     /// Folders in which names were looked for in other cases.
     names: Mutex<BTreeMap<PathBuf, Names>>,
 }
@@ -40,13 +42,18 @@ impl Folder {
     }
 
     fn at(base: PathBuf) -> Self {
-        Self { roots: vec![base.clone()], base, names: Mutex::default() }
+        Self { roots: vec![base.clone()], base, hint: "", names: Mutex::default() }
     }
 
     /// Lets references lead to any file below a further folder.
     pub fn widen(mut self, folder: &Path) -> io::Result<Self> {
         self.roots.push(directory(folder)?);
         Ok(self)
+    }
+
+    /// Tells what can be done where a file lies elsewhere.
+    pub fn hint(self, hint: &'static str) -> Self {
+        Self { hint, ..self }
     }
 
     /// The file's true place, if that is where files may lie; and what is to be told where its name is written
@@ -70,13 +77,11 @@ impl Folder {
         if self.allows(&full) {
             return Ok((full, note));
         }
-        let why = match self.roots.len() {
-            1 => {
-                "it lies outside the model's folder, where nothing is read; --root allows a wider one"
-            }
-            _ => "it lies outside the model's folder and the one of --root, where nothing is read",
-        };
-        Err(why.to_owned())
+        let roots = if self.roots.len() > 1 { " and the one of --root" } else { "" };
+        Err(format!(
+            "it lies outside the model's folder{roots}, where nothing is read{}",
+            self.hint
+        ))
     }
 
     fn allows(&self, full: &Path) -> bool {

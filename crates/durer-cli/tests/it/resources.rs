@@ -1,7 +1,8 @@
 //! What a model refers to is read from its own folder only.
 
-use crate::harness::{CUBE, Folder};
+use crate::harness::{CUBE, Ended, Folder};
 use std::fs;
+use std::process::Stdio;
 
 /// A triangle whose positions are in another file.
 fn gltf(uri: &str) -> String {
@@ -63,6 +64,8 @@ fn links_do_not_lead_out_of_the_folder() {
     std::os::unix::fs::symlink("ok.bin", folder.path("model/inner.bin")).unwrap();
     folder.write("model/m.gltf", gltf("link.bin"));
     folder.run("info model/m.gltf").fails(1, "outside the model's folder");
+    folder.run("info model/m.gltf").fails(1, "--root allows a wider one");
+    folder.must("info model/m.gltf --root .");
     folder.write("model/m.gltf", gltf("inner.bin"));
     folder.must("info model/m.gltf");
 }
@@ -130,6 +133,21 @@ fn the_root_widens_where_references_lead() {
     folder.write("model/m.gltf", gltf("ok.bin"));
     fs::create_dir_all(folder.path("other")).unwrap();
     folder.must("info model/m.gltf --root other");
+}
+
+#[test]
+fn what_a_model_from_standard_input_refers_to_is_below_the_root() {
+    use std::io::Write;
+    let folder = folder();
+    for (options, code) in [("", 1), (" --root model", 0), (" --root other", 1)] {
+        let mut command = folder.command(&format!("info -{options}"));
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        // Where the root is no folder nobody reads.
+        let _ = child.stdin.take().unwrap().write_all(gltf("sub/a%20b.bin").as_bytes());
+        let ended = Ended::of(child.wait_with_output().unwrap());
+        assert_eq!(ended.code, code, "{options}: {ended:?}");
+    }
 }
 
 // Where names that differ in case are names of different files.

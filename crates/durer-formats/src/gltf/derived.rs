@@ -122,15 +122,20 @@ impl Maker<'_> {
             let Some([width, height]) = texels::size(images) else { return Ok(None) };
             let at = format!("materials[{}]", job.material);
             let bytes = u64::from(width) * u64::from(height) * 4 * N as u64;
-            // Twice: what is made comes out of one list of all.
-            self.source.budget.bytes(2 * bytes, &at)?;
+            // Several come out of one list of all.
+            self.source.budget.bytes(if N > 1 { 2 * bytes } else { bytes }, &at)?;
             let name = images.iter().flatten().map(|i| i.name.as_str()).collect::<Vec<_>>();
             let name = name.join(" + ");
-            let all = texels::join(images, texel);
+            let mut all = texels::join(images, texel);
             let sampler = self.scene.textures[placed.texture].sampler;
             let mut numbers = Vec::new();
             for i in 0..N {
-                let data = all.iter().map(|texels| texels[i]).collect();
+                let of_all = |texels: [[u8; 4]; N]| texels[i];
+                let data = if i + 1 == N {
+                    std::mem::take(&mut all).into_iter().map(of_all).collect()
+                } else {
+                    all.iter().copied().map(of_all).collect()
+                };
                 let image = self.scene.images.len();
                 self.scene.images.push(Image { name: name.clone(), width, height, data });
                 numbers.push(self.scene.textures.len());
