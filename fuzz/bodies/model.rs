@@ -16,7 +16,7 @@ fn options() -> ReadOptions {
         image_side: 256,
         depth: 64,
     };
-    ReadOptions { limits, pose: Some(Pose { animation: None, time: 0.5 }) }
+    ReadOptions { limits, pose: Some(Pose { animation: None, time: 0.5 }), plate: None }
 }
 
 /// Every file that a model refers to has the same bytes.
@@ -333,6 +333,22 @@ const THREEMF: &[&str] = &[
     "<m:colorgroup id=\"3\">",
     "<m:color color=\"#10203040\"/>",
     "</m:colorgroup>",
+    "<triangle v1=\"0\" v2=\"1\" v3=\"2\" paint_color=\"48403\"/>",
+    "<triangle v1=\"2\" v2=\"1\" v3=\"0\" pid=\"4\" p1=\"0\" p2=\"1\" p3=\"0\" mmu_segmentation=\"0C5\"/>",
+    "<texture2d id=\"5\" path=\"/a.png\"/>",
+    "<texture2dgroup id=\"4\" texid=\"5\">",
+    "<tex2coord u=\"0.5\" v=\"1e9\"/>",
+    "</texture2dgroup>",
+    "<compositematerials id=\"4\" matid=\"3\" matindices=\"0 1\">",
+    "<composite values=\"0.5 0.5\"/>",
+    "</compositematerials>",
+    "<multiproperties id=\"4\" pids=\"3 4\" blendmethods=\"multiply\">",
+    "<multi pindices=\"0 0\"/>",
+    "</multiproperties>",
+    "<beamlattice radius=\"0.5\" minlength=\"0.01\" cap=\"butt\">",
+    "<beam v1=\"0\" v2=\"1\" r1=\"2\" cap1=\"sphere\"/>",
+    "<ball vindex=\"1\" r=\"1\"/>",
+    "</beamlattice>",
     "<",
     ">",
     "\"",
@@ -352,7 +368,14 @@ fn archive(model: &[u8]) -> Option<Vec<u8>> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     let stored =
         zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
-    for (name, content) in [("_rels/.rels", root), ("a.model", model)] {
+    let project: &[u8] = br##"{"filament_colour":["#ff0000"]}"##;
+    let settings: &[u8] = br#"<config><object id="1"><metadata key="extruder" value="2"/><volume firstid="1" lastid="1"><metadata key="modifier" value="1"/></volume></object></config>"#;
+    for (name, content) in [
+        ("_rels/.rels", root),
+        ("a.model", model),
+        ("Metadata/project_settings.config", project),
+        ("Metadata/model_settings.config", settings),
+    ] {
         zip.start_file(name, stored).ok()?;
         zip.write_all(content).ok()?;
     }

@@ -325,6 +325,9 @@ pub struct ReadingArgs {
     /// Pose the model at this time of the animation
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::not_negative)]
     pub time: Option<f64>,
+    /// Read only what stands on this plate, counted from 1, of a project of Bambu Studio or OrcaSlicer [default: all plates]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub plate: Option<u32>,
     /// Refuse models of more triangles, lines and points [default: 100 million]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub max_triangles: Option<u64>,

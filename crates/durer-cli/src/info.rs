@@ -32,6 +32,7 @@ struct Info {
     cameras: Vec<String>,
     lights: Vec<&'static str>,
     animations: Vec<String>,
+    plates: Vec<String>,
     extensions: Vec<String>,
     warnings: Vec<String>,
 }
@@ -106,6 +107,7 @@ fn of_model(name: String, model: &Model) -> Info {
         cameras: scene.cameras.iter().map(|c| c.name.clone()).collect(),
         lights: scene.lights.iter().map(|l| light(&l.kind)).collect(),
         animations: model.animations.clone(),
+        plates: model.plates.clone(),
         extensions: model.extensions.clone(),
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
     }
@@ -193,6 +195,8 @@ impl Info {
         list("cameras", self.cameras.clone());
         list("lights", self.lights.iter().map(ToString::to_string).collect());
         list("animations", self.animations.iter().map(unnamed).collect());
+        let numbered = |(i, name): (usize, &String)| format!("{} {name}", i + 1).trim_end().to_owned();
+        list("plates", self.plates.iter().enumerate().map(numbered).collect());
         list("extensions", self.extensions.clone());
         lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
         let mut text = format!("{}\n", self.model);

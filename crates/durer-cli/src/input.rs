@@ -44,6 +44,7 @@ pub fn read_options(args: &ReadingArgs) -> ReadOptions {
             ..default
         },
         pose: posed.then_some(pose),
+        plate: args.plate,
     }
 }
 
@@ -54,6 +55,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Model, Failure> {
     if options.pose.is_some() && !model.format.starts_with("glTF") {
         let message =
             format!("{} has no animations; --animation and --time do nothing", model.format);
+        model.warn(Place::Whole, message);
+    }
+    if options.plate.is_some() && model.format != "3MF" {
+        let message = format!("{} has no plates; --plate does nothing", model.format);
         model.warn(Place::Whole, message);
     }
     Ok(model)

@@ -27,6 +27,7 @@ pub mod stl;
 pub mod svg;
 mod text;
 pub mod threemf;
+mod xml;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Limits, Model, NoResources, Pose, ReadOptions, Resources};

@@ -71,6 +71,8 @@ pub struct ReadOptions {
     pub limits: Limits,
     /// The moment to pose at; `None` = the rest pose of the file.
     pub pose: Option<Pose>,
+    /// Only what stands on this plate, counted from 1, of a project that has plates; `None` = all.
+    pub plate: Option<u32>,
 }
 
 /// A model as read.
@@ -84,6 +86,8 @@ pub struct Model {
     pub extensions: Vec<String>,
     /// Names of the animations.
     pub animations: Vec<String>,
+    /// Names of the plates of a slicer's project, empty where they have none.
+    pub plates: Vec<String>,
     /// What was repaired or left out.
     pub warnings: Vec<Warning>,
 }

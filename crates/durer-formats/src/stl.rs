@@ -554,8 +554,10 @@ mod tests {
 
     #[test]
     fn a_limit_is_kept() {
-        let options =
-            ReadOptions { limits: Limits { primitives: 1, ..Limits::default() }, pose: None };
+        let options = ReadOptions {
+            limits: Limits { primitives: 1, ..Limits::default() },
+            ..ReadOptions::default()
+        };
         let two = binary(b"x", 2, &[(ONE, 0), (ONE, 0)]);
         assert!(matches!(read(&two, &NoResources, &options), Err(Error::Limit { value: 2, .. })));
     }

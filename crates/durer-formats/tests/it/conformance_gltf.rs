@@ -448,7 +448,11 @@ fn no_damage_of_real_files_panics() {
         (random % below as u64) as usize
     };
     let limits = durer_formats::Limits { decoded_bytes: 64 << 20, ..Default::default() };
-    let options = ReadOptions { limits, pose: Some(durer_formats::Pose::default()) };
+    let options = ReadOptions {
+        limits,
+        pose: Some(durer_formats::Pose::default()),
+        ..ReadOptions::default()
+    };
     let mut refused = 0;
     for name in [
         "Box_Draco.glb",

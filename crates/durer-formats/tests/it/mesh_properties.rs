@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 fn options() -> ReadOptions {
     let limits = Limits { primitives: 1 << 20, decoded_bytes: 1 << 24, ..Limits::default() };
-    ReadOptions { limits, pose: None }
+    ReadOptions { limits, ..ReadOptions::default() }
 }
 
 fn read(bytes: &[u8], name: &str) -> Result<Model> {
