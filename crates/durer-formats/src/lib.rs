@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+pub mod collada;
 mod color;
 pub mod css;
 pub mod drawing;

@@ -11,7 +11,7 @@
 //! counterpart and are left out; bump maps too, with a warning. Colors are sRGB values.
 
 mod convert;
-mod image;
+pub(crate) mod image;
 mod parse;
 
 use crate::{Model, Place, ReadOptions, Resources, text};

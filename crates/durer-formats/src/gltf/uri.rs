@@ -70,7 +70,7 @@ pub(crate) fn relative_path(uri: &str) -> std::result::Result<String, &'static s
     if parts.is_empty() { Err("it names no file") } else { Ok(parts.join("/")) }
 }
 
-fn percent_decode(text: &str) -> Option<Vec<u8>> {
+pub(crate) fn percent_decode(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.bytes();
     while let Some(byte) = rest.next() {
