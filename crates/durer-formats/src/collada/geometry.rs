@@ -2,10 +2,10 @@
 
 use super::Budget;
 use super::document::Document;
+use super::faults::Faults;
 use super::piece::{Builder, Corner, NONE, Piece, SETS, Slots};
 use super::source::{self, Source};
 use crate::Result;
-use crate::text::Tally;
 use durer::math::DVec3;
 use durer::scene::Topology;
 use std::collections::HashMap;
@@ -15,17 +15,6 @@ use std::rc::Rc;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Geometry {
     pub pieces: Vec<Piece>,
-}
-
-/// What was left out or repaired.
-#[derive(Debug, Default)]
-pub(super) struct Faults {
-    pub numbers: Tally,
-    pub indices: Tally,
-    pub short: Tally,
-    pub unknown: Tally,
-    pub sources: Tally,
-    pub holes: Tally,
 }
 
 /// What corners of a primitive are made of.
@@ -212,10 +201,12 @@ impl Reader<'_, '_> {
             if corner.len() < stride {
                 continue;
             }
-            let vertex =
-                key(inputs, &sources, &corner).map(|key| self.builders[builder].vertex(key));
-            if vertex.is_none() {
-                self.faults.indices.add(|| document.place(p));
+            let key = key(inputs, &sources, &corner);
+            let vertex = key.map(|(key, _)| self.builders[builder].vertex(key));
+            match key {
+                None => self.faults.indices.add(|| document.place(p)),
+                Some((_, false)) => self.faults.attributes.add(|| document.place(p)),
+                Some(_) => {}
             }
             vertices.push(vertex);
             corner.clear();
@@ -367,34 +358,21 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The indices of a corner in its sources; `None` where one is beyond the end.
-fn key(inputs: &[Input], sources: &[Option<Rc<Source>>], corner: &[Option<u32>]) -> Option<Corner> {
+/// The indices of a corner in its sources, and whether they are all there; `None` where that of its
+/// position is not.
+fn key(
+    inputs: &[Input],
+    sources: &[Option<Rc<Source>>],
+    corner: &[Option<u32>],
+) -> Option<(Corner, bool)> {
     let mut key = [NONE; 3 + SETS];
+    let mut whole = true;
     for (input, source) in inputs.iter().zip(sources).filter(|(i, _)| i.slot < 3 + SETS) {
         let index = corner.get(input.offset).copied().flatten();
-        let there =
-            index.filter(|&i| source.as_ref().is_some_and(|s| s.get::<1>(i, 0.0).is_some()));
-        // Only without a position is there nothing to show.
+        let has = |i: u32| source.as_ref().is_some_and(|s| s.get::<1>(i, 0.0).is_some());
+        let there = index.filter(|&i| has(i));
+        whole &= there.is_some();
         key[input.slot] = if input.slot == 0 { there? } else { there.unwrap_or(NONE) };
     }
-    Some(key)
-}
-
-/// Tells what was left out or repaired.
-pub(super) fn warn(model: &mut crate::Model, faults: &Faults) {
-    for (tally, what) in [
-        (&faults.numbers, "numbers of arrays are none or not finite; they are 0"),
-        (&faults.indices, "corners have an index beyond their source; their faces are left out"),
-        (&faults.short, "faces or lists have too few indices; they are left out"),
-        (&faults.unknown, "geometries are no meshes (splines, bodies); they are left out"),
-        (
-            &faults.sources,
-            "inputs name a source that is not there or has no numbers; they are left out",
-        ),
-        (&faults.holes, "holes of polygons could not be cut; they are filled"),
-    ] {
-        if tally.count > 0 {
-            model.warn(tally.first.clone(), format!("{} {what}", tally.count));
-        }
-    }
+    Some((key, whole))
 }

@@ -24,6 +24,8 @@ pub(super) struct Materials<'d, 'a> {
     /// Whether the file counts transparency from the opaque, as old exporters of SketchUp, Blender and
     /// 3ds Max do.
     reversed: bool,
+    /// Whether colours are linear light instead of sRGB values.
+    linear: bool,
     lost: Tally,
 }
 
@@ -43,8 +45,8 @@ impl<'d, 'a> Materials<'d, 'a> {
             model.warn(document.place(element), message);
         }
         let (known, textures) = Default::default();
-        let lost = Tally::default();
-        Self { document, images, known, textures, reversed: reversed.is_some(), lost }
+        let (linear, lost) = (is_linear(document), Tally::default());
+        Self { document, images, known, textures, reversed: reversed.is_some(), linear, lost }
     }
 
     /// The scene's number of a material; `None` where the document does not have it.
@@ -210,10 +212,20 @@ impl<'d, 'a> Materials<'d, 'a> {
                 let parameter = self.parameter(profile, document.attribute(child, "ref")?)?;
                 let is_color = |n: &usize| document.name(*n).starts_with("float");
                 let color = document.children(parameter).find(is_color)?;
-                Some(Value::Color(color_of(document, color)))
+                Some(Value::Color(self.linear_color(color)))
             }
-            _ => Some(Value::Color(color_of(document, child))),
+            _ => Some(Value::Color(self.linear_color(child))),
         }
+    }
+
+    /// A colour with alpha as linear light.
+    fn linear_color(&self, element: usize) -> Vec4 {
+        let floats = self.document.floats(element);
+        let mut floats = floats.map(|v| v.filter(|v| v.is_finite()).unwrap_or(0.0));
+        let mut next = |none: f64| floats.next().unwrap_or(none) as f32;
+        let rgb = [next(0.0), next(0.0), next(0.0)].map(|v| v.max(0.0));
+        let rgb = if self.linear { Vec3::from(rgb) } else { color::linear3(rgb) };
+        rgb.extend(next(1.0))
     }
 
     fn number(&self, profile: usize, shader: usize, name: &str) -> Option<f64> {
@@ -285,12 +297,19 @@ impl<'d, 'a> Materials<'d, 'a> {
     }
 }
 
-/// An sRGB colour with alpha as linear light.
-fn color_of(document: &Document<'_>, element: usize) -> Vec4 {
-    let mut floats = document.floats(element).map(|v| v.filter(|v| v.is_finite()).unwrap_or(0.0));
-    let mut next = |none: f64| floats.next().unwrap_or(none) as f32;
-    let rgb = [next(0.0), next(0.0), next(0.0)].map(|v| v.max(0.0));
-    color::linear3(rgb).extend(next(1.0))
+/// Whether the file comes from a Blender since 2.80, which writes the linear values of its nodes.
+fn is_linear(document: &Document<'_>) -> bool {
+    let contributors = document.root().and_then(|root| document.find(root, &["asset"]));
+    let mut contributors = contributors.into_iter().flat_map(|a| document.named(a, "contributor"));
+    contributors.any(|c| {
+        let tool = document.find(c, &["authoring_tool"]).map(|t| document.text(t));
+        let version = tool.as_deref().and_then(|t| t.strip_prefix("Blender "));
+        let version = version.and_then(|v| {
+            let mut numbers = v.split(|c: char| !c.is_ascii_digit()).map(str::parse::<u32>);
+            Some((numbers.next()?.ok()?, numbers.next()?.ok()?))
+        });
+        version.is_some_and(|v| v >= (2, 80))
+    })
 }
 
 /// Which sides an effect asks for, in what the schema leaves to programs.

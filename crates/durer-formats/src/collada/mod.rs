@@ -6,9 +6,10 @@
 //! texture coordinates, the nodes of the scene with all transforms, materials of the common profile,
 //! and skins and morphs at the shape that they were bound at. Not read are lights, cameras, animations,
 //! splines and physics. Lengths become metres through the matrices of the instances. Colours are sRGB
-//! values. An x axis that is up becomes y.
+//! values, those of materials from Blender since 2.80 linear. An x axis that is up becomes y.
 
 mod document;
+mod faults;
 mod geometry;
 mod material;
 mod nodes;

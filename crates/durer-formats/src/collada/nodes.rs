@@ -2,12 +2,14 @@
 
 use super::Budget;
 use super::document::Document;
-use super::geometry::{self, Faults, Geometry};
+use super::faults::{self, Faults};
+use super::geometry::{self, Geometry};
 use super::material::Materials;
+use super::piece::Piece;
 use crate::text::Tally;
-use crate::{Error, Limits, Model, Result, color, place};
+use crate::{Error, Limits, Model, Result, color, place, polygon};
 use durer::math::{DMat4, DVec3, DVec4};
-use durer::scene::{Instance, Topology};
+use durer::scene::Instance;
 use std::collections::{HashMap, HashSet};
 
 /// Places what nodes hold.
@@ -105,7 +107,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
 
     /// Tells what was left out.
     pub fn warn(&self, model: &mut Model) {
-        geometry::warn(model, &self.faults);
+        faults::warn(model, &self.faults);
         self.materials.warn(model);
         for (tally, what) in [
             (&self.missing, "instances name what the file does not have; they are left out"),
@@ -204,7 +206,10 @@ impl<'d, 'a> Nodes<'d, 'a> {
         }
         if !self.geometries.contains_key(&geometry) {
             let (budget, faults) = (&mut self.budget, &mut self.faults);
-            let read = geometry::read(document, geometry, budget, faults)?;
+            let mut read = geometry::read(document, geometry, budget, faults)?;
+            for piece in &mut read.pieces {
+                polygon::recut(model, &mut piece.mesh, &self.limits)?;
+            }
             self.geometries.insert(geometry, read);
         }
         let symbol = |n: usize| document.attribute(n, "symbol").unwrap_or_default();
@@ -215,38 +220,48 @@ impl<'d, 'a> Nodes<'d, 'a> {
         for mut piece in pieces {
             let count = piece.mesh.primitive_count() as u64;
             self.budget.copied(count, || document.place(instance))?;
-            for (part, symbol) in piece.mesh.parts.iter_mut().zip(&piece.symbols) {
-                let element = symbols.get(symbol.as_str()).copied();
-                let target = element.and_then(|n| document.attribute(n, "target"));
-                let channels = |channel: &str| {
-                    let inputs =
-                        element.into_iter().flat_map(|n| document.named(n, "bind_vertex_input"));
-                    let mut inputs =
-                        inputs.filter(|&n| document.attribute(n, "semantic") == Some(channel));
-                    let set = inputs.find_map(|n| document.whole(n, "input_set"));
-                    let at = set.and_then(|set| piece.sets.iter().position(|s| *s == set));
-                    at.unwrap_or(0) as u32
-                };
-                // Without a binding the symbol is the material's id in many files.
-                let id = target.unwrap_or(symbol);
-                part.material = self.materials.get(model, id, &channels);
-                if part.material.is_none() && !symbol.is_empty() {
-                    self.missing.add(|| document.place(element.unwrap_or(instance)));
-                }
-            }
-            if !piece.mesh.colors.is_empty() {
-                for part in piece.mesh.parts.iter_mut().filter(|p| p.material.is_none()) {
-                    part.material = Some(self.plain(model));
-                }
-            }
-            if piece.mesh.topology == Topology::Lines {
-                piece.mesh.normals.clear();
-            }
+            self.bind(model, &mut piece, &symbols, instance);
             made.push((model.scene.meshes.len(), piece.origin));
             model.scene.meshes.push(piece.mesh);
         }
         self.made.insert(key, made.clone());
         Ok(made)
+    }
+
+    /// Gives the parts of a piece the materials that an instance binds to their symbols.
+    fn bind(
+        &mut self,
+        model: &mut Model,
+        piece: &mut Piece,
+        symbols: &HashMap<&str, usize>,
+        instance: usize,
+    ) {
+        let document = self.document;
+        for (part, symbol) in piece.mesh.parts.iter_mut().zip(&piece.symbols) {
+            let element = symbols.get(symbol.as_str()).copied();
+            let target = element.and_then(|n| document.attribute(n, "target"));
+            let is_input =
+                |n: usize, channel: &str| document.attribute(n, "semantic") == Some(channel);
+            let channels = |channel: &str| {
+                let inputs =
+                    element.into_iter().flat_map(|n| document.named(n, "bind_vertex_input"));
+                let mut inputs = inputs.filter(|&n| is_input(n, channel));
+                let set = inputs.find_map(|n| document.whole(n, "input_set"));
+                let at = set.and_then(|set| piece.sets.iter().position(|s| *s == set));
+                at.unwrap_or(0) as u32
+            };
+            // Without a binding the symbol is the material's id in many files.
+            let id = target.unwrap_or(symbol);
+            part.material = self.materials.get(model, id, &channels);
+            if part.material.is_none() && !symbol.is_empty() {
+                self.missing.add(|| document.place(element.unwrap_or(instance)));
+            }
+        }
+        if !piece.mesh.colors.is_empty() {
+            for part in piece.mesh.parts.iter_mut().filter(|p| p.material.is_none()) {
+                part.material = Some(self.plain(model));
+            }
+        }
     }
 }
 

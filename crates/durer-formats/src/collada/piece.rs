@@ -77,7 +77,7 @@ impl Builder {
         let origin = place::origin(&points);
         let mut mesh = Mesh { name: name.to_owned(), topology, ..Mesh::default() };
         mesh.positions = place::narrow(&points, origin);
-        if let Some(normals) = source(1) {
+        if let Some(normals) = source(1).filter(|_| topology == Topology::Triangles) {
             let of = |c: &Corner| normals.get(c[1], 0.0).map_or(DVec3::ZERO, DVec3::from);
             mesh.normals = corners.iter().map(|c| of(c).normalize_or_zero().as_vec3()).collect();
         }

@@ -73,6 +73,23 @@ fn all_primitives_have_their_area() {
     }
 }
 
+/// What a fan from the first corner would get wrong.
+#[test]
+fn concave_polygons_and_holes() {
+    for (primitives, expected) in [
+        ("<polylist count=\"1\">V<vcount>5</vcount><p>0 1 5 2 3</p></polylist>", 7.5),
+        ("<polygons count=\"1\">V<ph><p>0 1 2 3</p><h>4 7 6 5</h></ph></polygons>", 8.0),
+        (
+            "<polygons count=\"1\">V<ph><p>3 2 1 0</p><h>4 5 6 7</h></ph><p>4 5 6 7</p></polygons>",
+            9.0,
+        ),
+    ] {
+        let model = read(&document(&primitives.replace('V', VERTEX), "", SHOWN));
+        assert_eq!(warnings(&model), [""; 0], "{primitives}");
+        assert_eq!(area(&model.scene.meshes[0]), expected, "{primitives}");
+    }
+}
+
 #[test]
 fn polygons_say_their_faces() {
     let primitives =
@@ -179,6 +196,21 @@ fn shaders_become_materials() {
         (m.model, m.base_color, m.emissive),
         (ShadingModel::Unlit, Vec4::new(0.0, 0.0, 1.0, 1.0), Vec3::ZERO)
     );
+}
+
+#[test]
+fn colors_of_new_blenders_are_linear() {
+    let text = shaded("<lambert><diffuse><color>0.5 0 0 1</color></diffuse></lambert>", "");
+    let red = |tool: &str| {
+        let tool =
+            format!("<asset><contributor><authoring_tool>{tool}</authoring_tool></contributor>");
+        read(&text.replace("<asset>", &tool)).scene.materials[0].base_color.x
+    };
+    assert_eq!(
+        (red("Blender 2.80.75 commit"), red("Blender 4.0.2"), red("Blender 3")),
+        (0.5, 0.5, red("x"))
+    );
+    assert!((red("Blender 2.79.0") - 0.214).abs() < 1e-3);
 }
 
 #[test]
@@ -298,6 +330,10 @@ fn what_is_wrong_is_left_out_with_a_word() {
         (
             "<triangles>V<input semantic=\"NORMAL\" source=\"#zz\" offset=\"0\"/><p>0 1 2</p></triangles>",
             "1 inputs name a source",
+        ),
+        (
+            "<triangles>V<input semantic=\"NORMAL\" source=\"#n\" offset=\"0\"/><p>0 1 2</p></triangles>",
+            "2 corners have a normal, color or place",
         ),
     ] {
         let model = read(&document(&primitives.replace('V', VERTEX), "", SHOWN).replace('\n', " "));
