@@ -301,13 +301,14 @@ impl Reader<'_, '_> {
                 }
             }
             "tristrips" => {
-                for (i, &[a, b, c]) in c.array_windows::<3>().enumerate() {
-                    self.polygon(builder, &if i % 2 == 0 { [a, b, c] } else { [b, a, c] }, at)?;
+                for (i, w) in c.windows(3).enumerate() {
+                    let odd = i % 2;
+                    self.polygon(builder, &[w[odd], w[1 - odd], w[2]], at)?;
                 }
             }
             "trifans" => {
-                for &[b, second] in c.get(1..).unwrap_or_default().array_windows::<2>() {
-                    self.polygon(builder, &[c[0], b, second], at)?;
+                for w in c.get(1..).unwrap_or_default().windows(2) {
+                    self.polygon(builder, &[c[0], w[0], w[1]], at)?;
                 }
             }
             "lines" => {
@@ -316,8 +317,8 @@ impl Reader<'_, '_> {
                 }
             }
             _ => {
-                for ends in c.array_windows::<2>() {
-                    self.line(builder, *ends, at)?;
+                for w in c.windows(2) {
+                    self.line(builder, [w[0], w[1]], at)?;
                 }
             }
         }
@@ -351,8 +352,8 @@ impl Reader<'_, '_> {
         self.budget.primitives(rest.len() as u64 - 1, || document.place(at))?;
         let builder = &mut self.builders[builder];
         builder.faces.push((builder.indices.len() / 3) as u32);
-        for &[b, c] in rest.array_windows::<2>() {
-            builder.indices.extend([*first, b, c]);
+        for w in rest.windows(2) {
+            builder.indices.extend([*first, w[0], w[1]]);
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ pub(super) struct Nodes<'d, 'a> {
     pub faults: Faults,
     geometries: HashMap<usize, Geometry>,
     /// Scene's meshes by geometry and the materials of its symbols.
-    made: HashMap<(usize, Vec<(String, String)>), Vec<(usize, DVec3)>>,
+    made: HashMap<Key, Vec<(usize, DVec3)>>,
     plain: Option<usize>,
     visits: u64,
     missing: Tally,
@@ -30,6 +30,9 @@ pub(super) struct Nodes<'d, 'a> {
     /// Lights, whose place is taken by those of the picture.
     pub lights: Tally,
 }
+
+/// A geometry, and the symbols and targets of an instance's materials.
+type Key = (usize, Vec<(String, String)>);
 
 /// What is still to be done.
 enum Step {

@@ -110,7 +110,7 @@ impl Builder {
 fn parts(mesh: &mut Mesh, runs: Vec<(usize, String)>, per: usize, count: usize) -> Vec<String> {
     let starts: Vec<usize> = runs.iter().map(|(start, _)| start / per).chain([count]).collect();
     let mut symbols = Vec::new();
-    for ((_, symbol), ends) in runs.into_iter().zip(starts.array_windows::<2>()) {
+    for ((_, symbol), ends) in runs.into_iter().zip(starts.windows(2)) {
         let range: Range<u32> = ends[0] as u32..ends[1] as u32;
         if !range.is_empty() {
             mesh.parts.push(Part { range, material: None, name: String::new() });

@@ -9,7 +9,8 @@ use crate::text::Tally;
 use crate::{Error, Limits, Model, Place, Result, image, place};
 use durer::math::{DMat4, DVec3};
 use durer::scene::{self, Image, Instance, Sampler};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
+use std::collections::hash_map::{Entry, HashMap};
 
 /// An object of a part, by the part's number and the object's id.
 type Id = (usize, u64);
@@ -220,11 +221,10 @@ impl<'a, 'b> Assembly<'a, 'b> {
             // Only runs of triangles make a mesh depend on the item.
             let volumes = self.settings.object(p.item).is_some_and(|s| !s.volumes.is_empty());
             let key = (p.object, p.filament, volumes.then_some(p.item));
-            if !made.contains_key(&key) {
-                let new = self.meshes(&p, &mut repairs)?;
-                made.insert(key, new);
-            }
-            let Some((meshes, origin)) = made.get(&key) else { continue };
+            let (meshes, origin) = match made.entry(key) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => new.insert(self.meshes(&p, &mut repairs)?),
+            };
             let object = self.parts[p.object.0].objects.get(&p.object.1);
             let name = object.map_or("", |o| &o.name);
             let world_from_mesh = p.world_from_object * place::matrix(*origin);
