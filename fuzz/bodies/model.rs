@@ -1,10 +1,10 @@
 //! What must hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`,
-//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply` and `threemf`, which the tests call as well.
+//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf` and `collada`, which the tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer_formats::{
-    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, gltf, image, obj, ply, stl,
-    threemf,
+    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, collada, gltf, image, obj, ply,
+    stl, threemf,
 };
 use std::io::{Cursor, Write};
 
@@ -357,6 +357,22 @@ const THREEMF: &[&str] = &[
     "<m:colorgroup id=\"3\">",
     "<m:color color=\"#10203040\"/>",
     "</m:colorgroup>",
+    "<triangle v1=\"0\" v2=\"1\" v3=\"2\" paint_color=\"48403\"/>",
+    "<triangle v1=\"2\" v2=\"1\" v3=\"0\" pid=\"4\" p1=\"0\" p2=\"1\" p3=\"0\" mmu_segmentation=\"0C5\"/>",
+    "<texture2d id=\"5\" path=\"/a.png\"/>",
+    "<texture2dgroup id=\"4\" texid=\"5\">",
+    "<tex2coord u=\"0.5\" v=\"1e9\"/>",
+    "</texture2dgroup>",
+    "<compositematerials id=\"4\" matid=\"3\" matindices=\"0 1\">",
+    "<composite values=\"0.5 0.5\"/>",
+    "</compositematerials>",
+    "<multiproperties id=\"4\" pids=\"3 4\" blendmethods=\"multiply\">",
+    "<multi pindices=\"0 0\"/>",
+    "</multiproperties>",
+    "<beamlattice radius=\"0.5\" minlength=\"0.01\" cap=\"butt\">",
+    "<beam v1=\"0\" v2=\"1\" r1=\"2\" cap1=\"sphere\"/>",
+    "<ball vindex=\"1\" r=\"1\"/>",
+    "</beamlattice>",
     "<",
     ">",
     "\"",
@@ -376,9 +392,102 @@ fn archive(model: &[u8]) -> Option<Vec<u8>> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     let stored =
         zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
-    for (name, content) in [("_rels/.rels", root), ("a.model", model)] {
+    let project: &[u8] = br##"{"filament_colour":["#ff0000"]}"##;
+    let settings: &[u8] = br#"<config><object id="1"><metadata key="extruder" value="2"/><volume firstid="1" lastid="1"><metadata key="modifier" value="1"/></volume></object></config>"#;
+    for (name, content) in [
+        ("_rels/.rels", root),
+        ("a.model", model),
+        ("Metadata/project_settings.config", project),
+        ("Metadata/model_settings.config", settings),
+    ] {
         zip.start_file(name, stored).ok()?;
         zip.write_all(content).ok()?;
     }
     Some(zip.finish().ok()?.into_inner())
+}
+
+const COLLADA: &[&str] = &[
+    "<COLLADA version=\"1.4.1\">",
+    "</COLLADA>",
+    "<asset><unit meter=\"0,01\"/><up_axis>X_UP</up_axis></asset>",
+    "<library_geometries>",
+    "</library_geometries>",
+    "<geometry id=\"g\"><mesh>",
+    "</mesh></geometry>",
+    "<source id=\"p\"><float_array>0 0 0 1 0 0 0 1 0 1e39 nan 2</float_array>",
+    "<technique_common><accessor count=\"4\" stride=\"3\" offset=\"1\"><param name=\"X\"/><param/></accessor></technique_common>",
+    "</source>",
+    "<vertices id=\"v\">",
+    "</vertices>",
+    "<input semantic=\"POSITION\" source=\"#p\"/>",
+    "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>",
+    "<input semantic=\"NORMAL\" source=\"#p\" offset=\"1\"/>",
+    "<input semantic=\"TEXCOORD\" source=\"#p\" offset=\"1\" set=\"1\"/>",
+    "<input semantic=\"COLOR\" source=\"#p\" offset=\"0\"/>",
+    "<triangles material=\"m\">",
+    "</triangles>",
+    "<polylist><vcount>4 3</vcount>",
+    "</polylist>",
+    "<polygons>",
+    "</polygons>",
+    "<ph><p>0 1 2 3</p><h>1 2 0</h></ph>",
+    "<tristrips>",
+    "</tristrips>",
+    "<trifans>",
+    "</trifans>",
+    "<linestrips>",
+    "</linestrips>",
+    "<p>0 1 2 3 1 2 0</p>",
+    "<p>0 0 1 1 2 2</p>",
+    "<library_images><image id=\"i\"><init_from>a.png</init_from></image></library_images>",
+    "<library_effects><effect id=\"e\"><profile_COMMON>",
+    "</profile_COMMON></effect></library_effects>",
+    "<newparam sid=\"w\"><sampler2D><source>u</source><wrap_s>CLAMP</wrap_s></sampler2D></newparam>",
+    "<newparam sid=\"u\"><surface><init_from>i</init_from></surface></newparam>",
+    "<technique><phong>",
+    "</phong></technique>",
+    "<diffuse><texture texture=\"w\" texcoord=\"c\"/></diffuse>",
+    "<diffuse><color>1 0 0 1</color></diffuse>",
+    "<transparent><color>1 1 1 0.5</color></transparent>",
+    "<transparency><float>0</float></transparency>",
+    "<library_materials><material id=\"m\"><instance_effect url=\"#e\"/></material></library_materials>",
+    "<library_controllers><controller id=\"k\"><skin source=\"#g\"/></controller></library_controllers>",
+    "<library_visual_scenes><visual_scene id=\"s\">",
+    "</visual_scene></library_visual_scenes>",
+    "<node id=\"n\">",
+    "</node>",
+    "<rotate>0 0 1 90</rotate>",
+    "<skew>45 0 1 0 1 0 0</skew>",
+    "<lookat>0 0 9 0 0 0 0 1 0</lookat>",
+    "<instance_node url=\"#n\"/>",
+    "<instance_geometry url=\"#g\"/>",
+    "<instance_controller url=\"#k\"/>",
+    "<scene><instance_visual_scene url=\"#s\"/></scene>",
+    "<",
+    ">",
+    "&lt;",
+    "\"",
+];
+
+/// What a mesh of words is shown by.
+const SHOWN: &str = "<library_visual_scenes><visual_scene><node><instance_geometry url=\"#g\"/></node>\
+    </visual_scene></library_visual_scenes></COLLADA>";
+
+/// COLLADA: as it is, as words, and as words within a mesh that is shown.
+pub fn collada(bytes: &[u8]) {
+    check(collada::read(bytes, &Same(bytes), &options()));
+    let Ok(words) = text(bytes, COLLADA) else { return };
+    check(collada::read(&words, &Same(bytes), &options()));
+    let mesh: &[&str] = &[
+        &COLLADA[0..1],
+        &COLLADA[3..4],
+        &COLLADA[5..6],
+        &COLLADA[7..11],
+        &COLLADA[12..13],
+        &COLLADA[11..12],
+    ]
+    .concat();
+    let start: Vec<u8> = mesh.iter().flat_map(|w| w.bytes()).collect();
+    let end = format!("</mesh></geometry></library_geometries>{SHOWN}");
+    check(collada::read(&[&start[..], &words, end.as_bytes()].concat(), &Same(bytes), &options()));
 }

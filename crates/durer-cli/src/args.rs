@@ -116,7 +116,7 @@ pub struct InfoArgs {
 /// The options of `durer render`.
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs {
-    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF; `-` reads one from standard input
+    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF, COLLADA; `-` reads one from standard input
     #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
     /// Where the picture goes
@@ -377,6 +377,9 @@ pub struct ReadingArgs {
     /// references start there.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub root: Option<PathBuf>,
+    /// Read only what stands on this plate, counted from 1, of a project of Bambu Studio or OrcaSlicer [default: all plates]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub plate: Option<u32>,
     /// Refuse models of more triangles, lines and points [default: 100 million]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
     pub max_triangles: Option<u64>,

@@ -37,6 +37,7 @@ struct Info {
     animations: Vec<String>,
     /// Of its materials.
     variants: Vec<String>,
+    plates: Vec<String>,
     extensions: Vec<String>,
     warnings: Vec<String>,
 }
@@ -112,6 +113,7 @@ fn of_model(name: String, model: &Model) -> Info {
         lights: scene.lights.iter().map(|l| light(&l.kind)).collect(),
         animations: model.animations.clone(),
         variants: model.variants.clone(),
+        plates: model.plates.clone(),
         extensions: model.extensions.clone(),
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
     }
@@ -221,6 +223,9 @@ impl Info {
         list("lights", self.lights.iter().map(ToString::to_string).collect());
         list("animations", self.animations.iter().map(unnamed).collect());
         list("variants", self.variants.iter().map(unnamed).collect());
+        let numbered =
+            |(i, name): (usize, &String)| format!("{} {name}", i + 1).trim_end().to_owned();
+        list("plates", self.plates.iter().enumerate().map(numbered).collect());
         list("extensions", self.extensions.clone());
         lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
         let mut text = format!("{}\n", self.model);

@@ -52,6 +52,7 @@ pub fn read_options(args: &ReadingArgs) -> Reading {
         },
         pose: posed.then_some(pose),
         variant: args.variant.clone(),
+        plate: args.plate,
     };
     Reading { options, root: args.root.clone() }
 }
@@ -73,6 +74,10 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
                 model.warn(Place::Whole, message);
             }
         }
+    }
+    if options.plate.is_some() && model.format != "3MF" {
+        let message = format!("{} has no plates; --plate does nothing", model.format);
+        model.warn(Place::Whole, message);
     }
     Ok(model)
 }

@@ -18,14 +18,38 @@ pub(crate) fn linear_bytes() -> [f32; 256] {
     std::array::from_fn(|i| linear(i as f32 / 255.0))
 }
 
+/// Linear colour of `#RRGGBB` or `#RRGGBBAA`, sRGB; `None` for what is neither.
+pub(crate) fn hex(text: &str) -> Option<Vec4> {
+    let digits = text.strip_prefix('#').filter(|d| matches!(d.len(), 6 | 8))?;
+    let digits = Some(digits).filter(|d| d.bytes().all(|b| b.is_ascii_hexdigit()))?;
+    let bits = u32::from_str_radix(digits, 16).ok()?;
+    let bits = if digits.len() == 6 { bits << 8 | 0xff } else { bits };
+    let [r, g, b, a] = bits.to_be_bytes().map(|v| f32::from(v) / 255.0);
+    Some(linear3([r, g, b]).extend(a))
+}
+
+/// The name of the material that shows vertex colours.
+pub(crate) const VERTEX_COLORS: &str = "vertex colors";
+
 /// What shows vertex colors as they are: the default material, but white.
 pub(crate) fn vertex_color_material() -> Material {
-    Material { name: "vertex colors".to_owned(), base_color: Vec4::ONE, ..Material::default() }
+    Material { name: VERTEX_COLORS.to_owned(), base_color: Vec4::ONE, ..Material::default() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hexadecimal_colors() {
+        assert_eq!(hex("#ff000080"), Some(Vec4::new(1.0, 0.0, 0.0, 128.0 / 255.0)));
+        assert_eq!(hex("#00FF00"), Some(Vec4::new(0.0, 1.0, 0.0, 1.0)));
+        for wrong in
+            ["", "#", "ff0000", "#ff000", "#ff00000", "#+f0000", "#gg0000", "#\u{20ac}\u{20ac}"]
+        {
+            assert_eq!(hex(wrong), None, "{wrong}");
+        }
+    }
 
     #[test]
     fn ends_and_middle_are_right() {

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+pub mod collada;
 mod color;
 pub mod css;
 pub mod drawing;
@@ -30,6 +31,7 @@ pub mod svg;
 mod texels;
 mod text;
 pub mod threemf;
+mod xml;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Found, Limits, Model, NoResources, Pose, ReadOptions, Resources};

@@ -119,6 +119,8 @@ pub struct ReadOptions {
     /// Name or number of the variant whose materials are shown (KHR_materials_variants); `None` = the
     /// materials that the file shows by default.
     pub variant: Option<String>,
+    /// Only what stands on this plate, counted from 1, of a project that has plates; `None` = all.
+    pub plate: Option<u32>,
 }
 
 /// A model as read.
@@ -134,6 +136,8 @@ pub struct Model {
     pub animations: Vec<String>,
     /// Names of the variants of its materials.
     pub variants: Vec<String>,
+    /// Names of the plates of a slicer's project, empty where they have none.
+    pub plates: Vec<String>,
     /// What was repaired or left out.
     pub warnings: Vec<Warning>,
 }

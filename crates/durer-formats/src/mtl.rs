@@ -15,7 +15,7 @@
 //! sees is no use. Where libraries have `Tr 1` and nowhere `Tr 0`, `Tr` is the opacity of all materials.
 
 mod convert;
-mod image;
+pub(crate) mod image;
 mod notes;
 mod parse;
 

@@ -1,7 +1,7 @@
 //! Which format a model is in: by its content first, then by its name.
 
 use crate::text::{Cursor, utf8};
-use crate::{Error, Model, ReadOptions, Resources, Result, gltf, obj, ply, stl, threemf};
+use crate::{Error, Model, ReadOptions, Resources, Result, collada, gltf, obj, ply, stl, threemf};
 
 /// How much of a file is looked at.
 const PROBE: usize = 64 << 10;
@@ -19,11 +19,14 @@ pub enum ModelFormat {
     Ply,
     /// 3D Manufacturing Format.
     ThreeMf,
+    /// COLLADA 1.4 and 1.5.
+    Collada,
 }
 
 impl ModelFormat {
     /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 5] = [Self::Gltf, Self::Obj, Self::Stl, Self::Ply, Self::ThreeMf];
+    pub const ALL: [Self; 6] =
+        [Self::Gltf, Self::Obj, Self::Stl, Self::Ply, Self::ThreeMf, Self::Collada];
 
     /// Its usual name.
     pub fn name(self) -> &'static str {
@@ -33,6 +36,7 @@ impl ModelFormat {
             Self::Stl => "STL",
             Self::Ply => "PLY",
             Self::ThreeMf => "3MF",
+            Self::Collada => "COLLADA",
         }
     }
 
@@ -44,6 +48,7 @@ impl ModelFormat {
             Self::Stl => &["stl"],
             Self::Ply => &["ply"],
             Self::ThreeMf => &["3mf"],
+            Self::Collada => &["dae"],
         }
     }
 
@@ -55,6 +60,8 @@ impl ModelFormat {
             Some(Self::Ply)
         } else if bytes.starts_with(b"PK\x03\x04") {
             Some(Self::ThreeMf)
+        } else if collada::sniff(bytes.get(..PROBE).unwrap_or(bytes)) {
+            Some(Self::Collada)
         } else if stl::sniff(bytes) {
             Some(Self::Stl)
         } else {
@@ -111,7 +118,7 @@ fn is_obj(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither content nor name tell the format; else those of the reader:
-/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`].
+/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`].
 pub fn read_model(
     bytes: &[u8],
     name: &str,
@@ -124,6 +131,7 @@ pub fn read_model(
         Some(ModelFormat::Stl) => stl::read(bytes, resources, options),
         Some(ModelFormat::Ply) => ply::read(bytes, resources, options),
         Some(ModelFormat::ThreeMf) => threemf::read(bytes, resources, options),
+        Some(ModelFormat::Collada) => collada::read(bytes, resources, options),
         None => Err(Error::Unknown(unknown(bytes))),
     }
 }
@@ -154,6 +162,12 @@ mod tests {
             (b"{}", None),
             (b"ply\r\n", Some(ModelFormat::Ply)),
             (b"PK\x03\x04", Some(ModelFormat::ThreeMf)),
+            (
+                b"\xef\xbb\xbf<?xml version=\"1.0\"?>\n<!-- x -->\n<COLLADA",
+                Some(ModelFormat::Collada),
+            ),
+            (b"<\0C\0O\0L\0L\0A\0D\0A\0", Some(ModelFormat::Collada)),
+            (b"<svg/>", None),
             (b" solid x\nfacet", Some(ModelFormat::Stl)),
             (&binary_stl, Some(ModelFormat::Stl)),
             (b"# text\r\n\r\n  v 1 2 3\n", Some(ModelFormat::Obj)),

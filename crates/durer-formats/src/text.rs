@@ -63,10 +63,20 @@ fn windows_1252(byte: u8) -> char {
 pub(crate) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     match bytes {
         [0xef, 0xbb, 0xbf, rest @ ..] => Cow::Borrowed(rest),
-        [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16(rest, u16::from_le_bytes)),
-        [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16(rest, u16::from_be_bytes)),
+        [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16_le(rest)),
+        [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16_be(rest)),
         _ => Cow::Borrowed(bytes),
     }
+}
+
+/// UTF-8 from UTF-16 whose low bytes come first, without a mark.
+pub(crate) fn utf16_le(bytes: &[u8]) -> Vec<u8> {
+    utf16(bytes, u16::from_le_bytes)
+}
+
+/// UTF-8 from UTF-16 whose high bytes come first, without a mark.
+pub(crate) fn utf16_be(bytes: &[u8]) -> Vec<u8> {
+    utf16(bytes, u16::from_be_bytes)
 }
 
 fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {

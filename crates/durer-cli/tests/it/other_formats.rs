@@ -76,7 +76,6 @@ fn quality_and_compression_are_for_what_has_them() {
         folder.read("a.jpg").len()
     };
     assert!(size("--quality 20") < size("") && size("") < size("--quality 100"));
-    assert!(size("--compression small") < size(""));
     assert_eq!(size("--quality 90"), size(""));
     folder.run("render cube.obj -o a.png --quality 50").fails(2, "--quality: only a JPEG");
     folder.run("render cube.obj -o a.svg --quality 50").fails(2, "--quality: only a JPEG");

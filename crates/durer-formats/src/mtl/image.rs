@@ -6,7 +6,7 @@ use durer::scene::Image;
 use std::collections::HashMap;
 
 /// Pictures by what they were made of, as indices into the scene's images.
-pub(super) struct Images<'a> {
+pub(crate) struct Images<'a> {
     resources: &'a dyn Resources,
     /// What may still be decoded.
     left: Limits,

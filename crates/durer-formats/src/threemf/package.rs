@@ -1,8 +1,9 @@
 //! The archive: parts by name, and the relationship that tells which is the model.
 
-use crate::{Error, Limits, Place, Result};
+use crate::{Error, Limits, Place, Result, xml};
 use quick_xml::Reader;
 use quick_xml::events::Event;
+use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
@@ -26,14 +27,43 @@ impl<'a> Package<'a> {
         Ok(Self { archive, left: limits.decoded_bytes, limit: limits.decoded_bytes })
     }
 
+    /// Whether there is a part of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.number(name).is_some()
+    }
+
+    /// Bytes that may still be inflated or decoded.
+    pub fn left(&self) -> u64 {
+        self.left
+    }
+
+    /// Takes so many of the bytes that may still be decoded.
+    pub fn charge(&mut self, bytes: u64) {
+        self.left = self.left.saturating_sub(bytes);
+    }
+
+    /// The archive's number of a part; case does not count, as the Open Packaging Conventions say.
+    fn number(&self, name: &str) -> Option<usize> {
+        let name = name.trim_start_matches('/');
+        let same = |n: &str| n.eq_ignore_ascii_case(name);
+        let alike = || self.archive.file_names().position(|n| n.is_ok_and(|n| same(&n)));
+        self.archive.index_for_name(name).or_else(alike)
+    }
+
+    /// The inflated text of a part, as UTF-8.
+    pub fn read_text(&mut self, name: &str) -> Result<Vec<u8>> {
+        let bytes = self.read(name)?;
+        let recoded = match xml::utf8(&bytes) {
+            Cow::Borrowed(text) if text.len() == bytes.len() => None,
+            text => Some(text.into_owned()),
+        };
+        Ok(recoded.unwrap_or(bytes))
+    }
+
     /// The inflated bytes of a part.
     pub fn read(&mut self, name: &str) -> Result<Vec<u8>> {
         let at = |message: String| Error::path(name, message);
-        let name_in_zip = name.trim_start_matches('/');
-        let number = self
-            .archive
-            .index_for_name(name_in_zip)
-            .ok_or_else(|| at("is not in the archive".to_owned()))?;
+        let number = self.number(name).ok_or_else(|| at("is not in the archive".to_owned()))?;
         let file = self.archive.by_index(number).map_err(|e| at(format!("cannot be read: {e}")))?;
         let (what, limit) = ("size of the inflated parts", self.limit);
         let too_large = |size: u64| {
@@ -57,7 +87,7 @@ impl<'a> Package<'a> {
 
     /// The name of the part that the package's relationships call the 3D model.
     pub fn root(&mut self) -> Result<String> {
-        let Ok(xml) = self.read(RELATIONSHIPS) else { return Ok(USUAL.to_owned()) };
+        let Ok(xml) = self.read_text(RELATIONSHIPS) else { return Ok(USUAL.to_owned()) };
         let mut reader = Reader::from_reader(xml.as_slice());
         loop {
             let at = reader.buffer_position();

@@ -1,7 +1,12 @@
-//! One model part: its XML as objects, colors and build items.
+//! One model part: its XML as objects, properties and build items.
 
-use crate::{Error, Limits, Place, Result, color, number};
-use durer::math::{DMat4, DVec3, DVec4, Vec4};
+use super::extension;
+use super::lattice::Lattice;
+use super::property::{Group, Properties};
+use crate::text::Tally;
+use crate::xml::{self, Here, attribute};
+use crate::{Error, Limits, Place, Result, number};
+use durer::math::{DMat4, DVec3, DVec4};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
@@ -15,62 +20,66 @@ pub(super) struct Use {
     pub transform: DMat4,
 }
 
-/// A triangle with colors of its own: its number, the group, and an index per corner.
+/// A triangle with colours of its own: its number, the group, and an index per corner.
 pub(super) type Property = (u32, u64, [u64; 3]);
 
 /// A mesh, or components.
 #[derive(Debug, Default)]
 pub(super) struct Object {
     pub name: String,
+    /// Whether it is there to help others, and is not to be built.
+    pub aside: bool,
     pub vertices: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// The group and index of the whole object's color.
+    /// The group and index of the whole object's colour.
     pub property: Option<(u64, u64)>,
     pub properties: Vec<Property>,
+    /// Numbers of triangles with what slicers painted onto them.
+    pub paint: Vec<(u32, Box<str>)>,
+    pub lattice: Option<Lattice>,
     pub components: Vec<Use>,
-    /// The scene's mesh, once there is one, and what its positions are relative to.
-    pub placed: Option<(usize, DVec3)>,
 }
 
 /// A part.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Part {
     /// Length of the part's unit.
     pub millimetres: f64,
     pub objects: HashMap<u64, Object>,
-    /// Linear colors by group.
-    pub colors: HashMap<u64, Vec<Vec4>>,
+    pub properties: Properties,
     pub items: Vec<Use>,
     pub triangles: u64,
-    pub unknown_properties: bool,
+    pub faults: Faults,
+}
+
+/// What was repaired or left out, with the first place of each.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
+    pub colors: Tally,
+    pub vertices: Tally,
+    pub beams: Tally,
+    pub clipped: Tally,
+    pub layers: Tally,
 }
 
 /// Reads a part; at most `limit` triangles.
 pub(super) fn parse(name: &str, xml: &[u8], limit: u64) -> Result<Part> {
     let mut reader = Reader::from_reader(xml);
     let mut parser = Parser {
-        name,
-        limit,
-        at: 0,
-        part: Part {
-            millimetres: 1.0,
-            objects: HashMap::new(),
-            colors: HashMap::new(),
-            items: Vec::new(),
-            triangles: 0,
-            unknown_properties: false,
-        },
+        here: Here { file: name, byte: 0 },
+        limit: limit.min(u64::from(u32::MAX / 3)),
+        part: Part { millimetres: 1.0, ..Part::default() },
         object: None,
         group: None,
     };
     let mut depth = 0u32;
     loop {
-        parser.at = reader.buffer_position();
-        match reader.read_event().map_err(|e| parser.wrong(e.to_string()))? {
+        parser.here.byte = reader.buffer_position();
+        match reader.read_event().map_err(|e| parser.here.wrong(e.to_string()))? {
             Event::Start(e) => {
                 depth += 1;
                 if depth > Limits::default().depth {
-                    return Err(parser.wrong("elements are nested too deeply".to_owned()));
+                    return Err(parser.here.wrong("elements are nested too deeply"));
                 }
                 parser.open(&e)?;
             }
@@ -83,7 +92,8 @@ pub(super) fn parse(name: &str, xml: &[u8], limit: u64) -> Result<Part> {
                 parser.close(e.local_name().as_ref())?;
             }
             Event::Eof if depth > 0 => {
-                return Err(parser.wrong(format!("the file ends inside {depth} open elements")));
+                let message = format!("the file ends inside {depth} open elements");
+                return Err(parser.here.wrong(message));
             }
             Event::Eof => return Ok(parser.part),
             _ => {}
@@ -91,74 +101,35 @@ pub(super) fn parse(name: &str, xml: &[u8], limit: u64) -> Result<Part> {
     }
 }
 
-struct Parser<'a> {
-    name: &'a str,
+/// Reads a part element by element.
+pub(super) struct Parser<'a> {
+    pub here: Here<'a>,
     limit: u64,
-    at: u64,
-    part: Part,
-    object: Option<(u64, Object)>,
-    group: Option<(u64, Vec<Vec4>)>,
+    pub part: Part,
+    pub object: Option<(u64, Object)>,
+    /// The group whose properties come.
+    pub group: Option<(u64, Group)>,
 }
 
-/// Attributes of an element by local name, raw.
-fn attribute<'e>(e: &'e BytesStart<'_>, key: &str) -> Option<std::borrow::Cow<'e, str>> {
-    let mut attributes = e.attributes();
-    attributes.with_checks(false);
-    attributes.flatten().find(|a| a.key.local_name().as_ref() == key).map(|a| a.value)
+/// The attributes of a triangle.
+#[derive(Default)]
+struct TriangleAttributes {
+    corners: [Option<u64>; 3],
+    group: Option<u64>,
+    indices: [Option<u64>; 3],
+    paint: Option<Box<str>>,
 }
 
 impl Parser<'_> {
-    fn wrong(&self, message: String) -> Error {
-        Error::path(format!("{}, byte {}", self.name, self.at), message)
-    }
-
-    fn text(e: &BytesStart<'_>, key: &str) -> Option<String> {
-        let value = attribute(e, key)?;
-        Some(quick_xml::escape::unescape(&value).map_or(value.to_string(), |t| t.into_owned()))
-    }
-
-    fn index(&self, e: &BytesStart<'_>, key: &str) -> Result<Option<u64>> {
-        let Some(value) = attribute(e, key) else { return Ok(None) };
-        let value = value.trim_ascii();
-        match number::integer(value.as_bytes()) {
-            Some((n, length)) if length == value.len() && n >= 0 => Ok(Some(n as u64)),
-            _ => {
-                Err(self.wrong(format!("`{key}` is `{value}`; a whole number from 0 on is needed")))
-            }
-        }
-    }
-
-    fn needed(&self, e: &BytesStart<'_>, key: &str) -> Result<u64> {
-        self.index(e, key)?.ok_or_else(|| self.wrong(format!("the attribute `{key}` is missing")))
-    }
-
-    fn coordinate(&self, e: &BytesStart<'_>, key: &str) -> Result<f64> {
-        let value = attribute(e, key).unwrap_or_default();
-        let value = value.trim_ascii();
-        match number::float(value.as_bytes()) {
-            Some((n, length)) if length == value.len() => Ok(n),
-            _ => Err(self.wrong(format!("`{key}` is `{value}`; a number is needed"))),
-        }
-    }
-
     fn open(&mut self, e: &BytesStart<'_>) -> Result<()> {
         match e.local_name().as_ref() {
-            "model" => self.part.millimetres = self.unit(e)?,
-            "object" => {
-                let property =
-                    self.index(e, "pid")?.zip(Some(self.index(e, "pindex")?.unwrap_or(0)));
-                let name = Self::text(e, "name").unwrap_or_default();
-                let object = Object { name, property, ..Object::default() };
-                self.object = Some((self.needed(e, "id")?, object));
-            }
-            "vertex" => {
-                let [x, y, z] = ["x", "y", "z"].map(|key| self.coordinate(e, key));
-                let vertex = DVec3::new(x?, y?, z?);
-                if let Some((_, object)) = &mut self.object {
-                    object.vertices.push(vertex);
-                }
-            }
+            "vertex" => self.vertex(e)?,
             "triangle" => self.triangle(e)?,
+            "model" => {
+                self.part.millimetres = self.unit(e)?;
+                extension::check(e, &self.here)?;
+            }
+            "object" => self.object(e)?,
             "component" => {
                 let component = self.used(e)?;
                 if let Some((_, object)) = &mut self.object {
@@ -169,14 +140,12 @@ impl Parser<'_> {
                 let item = self.used(e)?;
                 self.part.items.push(item);
             }
-            "basematerials" | "colorgroup" => {
-                self.group = Some((self.needed(e, "id")?, Vec::new()));
-            }
-            "base" => self.color(e, "displaycolor")?,
-            "color" => self.color(e, "color")?,
-            "texture2dgroup" | "compositematerials" | "multiproperties" => {
-                self.part.unknown_properties = true;
-            }
+            "beamlattice" => self.lattice(e)?,
+            "beam" => self.beam(e)?,
+            "ball" => self.ball(e)?,
+            "basematerials" | "colorgroup" | "texture2dgroup" | "compositematerials"
+            | "multiproperties" | "texture2d" => self.group(e)?,
+            "base" | "color" | "tex2coord" | "composite" | "multi" => self.property(e)?,
             _ => {}
         }
         Ok(())
@@ -185,16 +154,17 @@ impl Parser<'_> {
     fn close(&mut self, element: &str) -> Result<()> {
         match element {
             "object" => {
-                if let Some((id, object)) = self.object.take() {
-                    self.check_indices(id, &object)?;
+                if let Some((id, mut object)) = self.object.take() {
+                    self.drop_dangling(id, &mut object);
                     if self.part.objects.insert(id, object).is_some() {
-                        return Err(self.wrong(format!("a second object has the id {id}")));
+                        return Err(self.here.wrong(format!("a second object has the id {id}")));
                     }
                 }
             }
-            "basematerials" | "colorgroup" => {
-                if let Some((id, colors)) = self.group.take() {
-                    self.part.colors.insert(id, colors);
+            "basematerials" | "colorgroup" | "texture2dgroup" | "compositematerials"
+            | "multiproperties" => {
+                if let Some((id, group)) = self.group.take() {
+                    self.part.properties.groups.insert(id, group);
                 }
             }
             _ => {}
@@ -202,55 +172,125 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn check_indices(&self, id: u64, object: &Object) -> Result<()> {
-        let count = object.vertices.len();
-        let wrong = |t: &&[u32; 3]| t.iter().any(|&v| v as usize >= count);
-        let Some(triangle) = object.triangles.iter().find(wrong) else { return Ok(()) };
-        Err(self.wrong(format!(
-            "object {id}: a triangle has the vertices {triangle:?}, but there are {count}, counted from 0"
-        )))
+    fn object(&mut self, e: &BytesStart<'_>) -> Result<()> {
+        let index = self.here.index(e, "pindex")?.unwrap_or(0);
+        let property = self.here.index(e, "pid")?.map(|group| (group, index));
+        let object = Object {
+            name: attribute(e, "name").unwrap_or_default(),
+            aside: xml::raw(e, "type").is_some_and(|t| t == "other"),
+            property,
+            ..Object::default()
+        };
+        self.object = Some((self.here.needed(e, "id")?, object));
+        Ok(())
     }
 
-    fn unit(&self, e: &BytesStart<'_>) -> Result<f64> {
-        let unit = Self::text(e, "unit").unwrap_or_else(|| "millimeter".to_owned());
-        Ok(match unit.as_str() {
-            "micron" => 0.001,
-            "millimeter" => 1.0,
-            "centimeter" => 10.0,
-            "inch" => 25.4,
-            "foot" => 304.8,
-            "meter" => 1000.0,
-            _ => return Err(self.wrong(format!("`{unit}` is not a unit of 3MF, as millimeter is"))),
-        })
+    fn vertex(&mut self, e: &BytesStart<'_>) -> Result<()> {
+        let mut vertex = [None; 3];
+        for a in e.attributes().with_checks(false).flatten() {
+            let key = a.key.local_name();
+            let Some(axis) = ["x", "y", "z"].iter().position(|k| *k == key.as_ref()) else {
+                continue;
+            };
+            let value = a.value.trim_ascii();
+            vertex[axis] = number::float(value.as_bytes())
+                .filter(|(_, length)| *length == value.len())
+                .map(|(n, _)| n);
+        }
+        let [Some(x), Some(y), Some(z)] = vertex else {
+            return Err(self.here.wrong("the vertex needs three numbers, `x`, `y` and `z`"));
+        };
+        if let Some((_, object)) = &mut self.object {
+            object.vertices.push(DVec3::new(x, y, z));
+        }
+        Ok(())
+    }
+
+    /// Takes memory for so many triangles.
+    pub fn charge(&mut self, triangles: u64) -> Result<()> {
+        self.part.triangles = self.part.triangles.saturating_add(triangles);
+        let (value, limit) = (self.part.triangles, self.limit);
+        if value > limit {
+            let place = Place::Path(self.here.file.to_owned());
+            return Err(Error::Limit { place, what: "number of triangles", value, limit });
+        }
+        Ok(())
+    }
+
+    fn triangle_attributes(&self, e: &BytesStart<'_>) -> Result<TriangleAttributes> {
+        let mut t = TriangleAttributes::default();
+        for a in e.attributes().with_checks(false).flatten() {
+            let value = a.value.trim_ascii();
+            let key = a.key.local_name();
+            let slot = match key.as_ref() {
+                "v1" => &mut t.corners[0],
+                "v2" => &mut t.corners[1],
+                "v3" => &mut t.corners[2],
+                "pid" => &mut t.group,
+                "p1" => &mut t.indices[0],
+                "p2" => &mut t.indices[1],
+                "p3" => &mut t.indices[2],
+                "paint_color" | "mmu_segmentation" => {
+                    t.paint = Some(value).filter(|v| !v.is_empty()).map(Box::from);
+                    continue;
+                }
+                _ => continue,
+            };
+            *slot = Some(self.here.whole(key.as_ref(), value)?);
+        }
+        Ok(t)
     }
 
     fn triangle(&mut self, e: &BytesStart<'_>) -> Result<()> {
-        let [a, b, c] = ["v1", "v2", "v3"].map(|key| self.needed(e, key));
+        let t = self.triangle_attributes(e)?;
+        let missing = |i: usize| self.here.wrong(format!("the attribute `v{}` is missing", i + 1));
+        let corner = |i: usize| t.corners[i].ok_or_else(|| missing(i));
         let small = |v: u64| u32::try_from(v).unwrap_or(u32::MAX);
-        let triangle = [small(a?), small(b?), small(c?)];
-        let group = self.index(e, "pid")?;
-        let [p1, p2, p3] = ["p1", "p2", "p3"].map(|key| self.index(e, key));
-        let (p1, p2, p3) = (p1?, p2?, p3?);
-        self.part.triangles += 1;
-        let (value, limit) = (self.part.triangles, self.limit.min(u64::from(u32::MAX / 3)));
-        if value > limit {
-            let place = Place::Path(self.name.to_owned());
-            return Err(Error::Limit { place, what: "number of triangles", value, limit });
-        }
+        let triangle = [small(corner(0)?), small(corner(1)?), small(corner(2)?)];
+        self.charge(1)?;
         let Some((_, object)) = &mut self.object else { return Ok(()) };
-        let group = group.or(object.property.map(|(group, _)| group));
-        if let (Some(group), Some(p1)) = (group, p1) {
-            let corners = [p1, p2.unwrap_or(p1), p3.unwrap_or(p1)];
-            object.properties.push((object.triangles.len() as u32, group, corners));
+        let number = object.triangles.len() as u32;
+        let group = t.group.or(object.property.map(|(group, _)| group));
+        if let (Some(group), Some(p1)) = (group, t.indices[0]) {
+            let corners = [p1, t.indices[1].unwrap_or(p1), t.indices[2].unwrap_or(p1)];
+            object.properties.push((number, group, corners));
         }
+        object.paint.extend(t.paint.map(|code| (number, code)));
         object.triangles.push(triangle);
         Ok(())
     }
 
+    /// Brings triangles that name vertices which the object has not to a point, so that numbers
+    /// stay, and leaves such beams and balls out.
+    fn drop_dangling(&mut self, id: u64, object: &mut Object) {
+        let count = object.vertices.len();
+        let place = || Place::Path(format!("{}, object {id}", self.here.file));
+        let dangling = |v: u32| v as usize >= count;
+        for t in object.triangles.iter_mut().filter(|t| t.iter().any(|&v| dangling(v))) {
+            self.part.faults.vertices.add(place);
+            *t = [0; 3];
+        }
+        if count == 0 {
+            object.triangles.clear();
+            object.properties.clear();
+            object.paint.clear();
+        }
+        let Some(lattice) = &mut object.lattice else { return };
+        let faults = &mut self.part.faults;
+        let mut keep = |whole: bool| {
+            if !whole {
+                faults.beams.add(place);
+            }
+            whole
+        };
+        lattice.beams.retain(|b| keep(!b.ends.iter().any(|&v| dangling(v))));
+        lattice.balls.retain(|b| keep(!dangling(b.center)));
+    }
+
     fn used(&self, e: &BytesStart<'_>) -> Result<Use> {
-        let path = Self::text(e, "path").map(|p| p.trim_start_matches('/').to_owned());
-        let transform = Self::text(e, "transform").map(|t| self.transform(&t)).transpose()?;
-        let object = self.needed(e, "objectid")?;
+        let path = attribute(e, "path").map(|p| p.trim_start_matches('/').to_owned());
+        let transform = attribute(e, "transform").map(|t| self.transform(&t)).transpose()?;
+        let object = self.here.needed(e, "objectid")?;
         Ok(Use { path, object, transform: transform.unwrap_or(DMat4::IDENTITY) })
     }
 
@@ -261,7 +301,7 @@ impl Parser<'_> {
         let finite = numbers.iter().all(|n: &f64| n.is_finite());
         let (&[a, b, c, d, e, f, g, h, i, x, y, z], true) = (numbers.as_slice(), finite) else {
             let message = format!("the transform `{text}` has not 12 finite numbers");
-            return Err(self.wrong(message));
+            return Err(self.here.wrong(message));
         };
         Ok(DMat4::from_cols(
             DVec4::new(a, b, c, 0.0),
@@ -271,18 +311,19 @@ impl Parser<'_> {
         ))
     }
 
-    /// `#RRGGBB` or `#RRGGBBAA`, sRGB.
-    fn color(&mut self, e: &BytesStart<'_>, key: &str) -> Result<()> {
-        let text = Self::text(e, key).unwrap_or_default();
-        let digits = text.strip_prefix('#').filter(|d| matches!(d.len(), 6 | 8));
-        let Some(bits) = digits.and_then(|d| u32::from_str_radix(d, 16).ok()) else {
-            return Err(self.wrong(format!("the color `{text}` is not #RRGGBB or #RRGGBBAA")));
-        };
-        let bits = if text.len() == 7 { bits << 8 | 0xff } else { bits };
-        let [r, g, b, a] = bits.to_be_bytes().map(|v| f32::from(v) / 255.0);
-        if let Some((_, colors)) = &mut self.group {
-            colors.push(color::linear3([r, g, b]).extend(a));
-        }
-        Ok(())
+    fn unit(&self, e: &BytesStart<'_>) -> Result<f64> {
+        let unit = attribute(e, "unit").unwrap_or_else(|| "millimeter".to_owned());
+        Ok(match unit.as_str() {
+            "micron" => 0.001,
+            "millimeter" => 1.0,
+            "centimeter" => 10.0,
+            "inch" => 25.4,
+            "foot" => 304.8,
+            "meter" => 1000.0,
+            _ => {
+                let message = format!("`{unit}` is not a unit of 3MF, as millimeter is");
+                return Err(self.here.wrong(message));
+            }
+        })
     }
 }

@@ -18,7 +18,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 16] = [
+const TARGETS: [(&str, Body); 17] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -33,6 +33,7 @@ const TARGETS: [(&str, Body); 16] = [
     ("stl", model::stl),
     ("ply", model::ply),
     ("threemf", model::threemf),
+    ("collada", model::collada),
     ("height_map", plot::height_map),
     ("formula", plot::formula),
 ];

@@ -1,5 +1,6 @@
 //! One test binary for the formats.
 
+mod collada;
 mod conformance_geo;
 mod conformance_gltf;
 mod conformance_height_map;

@@ -1,0 +1,70 @@
+//! Sources: arrays of numbers, taken in tuples.
+
+use super::Budget;
+use super::document::Document;
+use crate::Result;
+use crate::text::Tally;
+
+/// Numbers in tuples.
+#[derive(Debug)]
+pub(super) struct Source {
+    values: Vec<f64>,
+    offset: usize,
+    stride: usize,
+    count: usize,
+    /// Which of a tuple's values are the components.
+    components: Vec<usize>,
+}
+
+impl Source {
+    /// The components of a tuple, `fill` where it has fewer; `None` beyond the end.
+    pub fn get<const N: usize>(&self, index: u32, fill: f64) -> Option<[f64; N]> {
+        let first = self.stride.checked_mul(index as usize)?.checked_add(self.offset)?;
+        let values = self.values.get(first..)?;
+        if index as usize >= self.count || values.is_empty() {
+            return None;
+        }
+        Some(std::array::from_fn(|i| {
+            let at = self.components.get(i);
+            at.and_then(|&at| values.get(at)).copied().unwrap_or(fill)
+        }))
+    }
+}
+
+/// Reads a source; `None` where it has no numbers.
+///
+/// # Errors
+/// [`crate::Error::Limit`].
+pub(super) fn read(
+    document: &Document<'_>,
+    element: usize,
+    budget: &mut Budget,
+    broken: &mut Tally,
+) -> Result<Option<Source>> {
+    let accessor = document.find(element, &["technique_common", "accessor"]);
+    let named = accessor.and_then(|a| document.refers(a, "source"));
+    let is_array = |&n: &usize| matches!(document.name(n), "float_array" | "int_array");
+    let array = named.filter(is_array).or_else(|| document.children(element).find(is_array));
+    let Some(array) = array else { return Ok(None) };
+    let mut values = Vec::new();
+    for value in document.floats(array) {
+        let place = || document.place(array);
+        let number = value.filter(|v| v.is_finite());
+        if number.is_none() {
+            broken.add(place);
+        }
+        values.push(number.unwrap_or(0.0));
+    }
+    budget.bytes(8 * values.len() as u64, || document.place(array))?;
+    let params = accessor.into_iter().flat_map(|a| document.named(a, "param"));
+    let named: Vec<bool> = params.map(|p| document.attribute(p, "name").is_some()).collect();
+    let whole = |key| accessor.and_then(|a| document.whole(a, key));
+    let limit = |n: u64| n.min(1 << 32) as usize;
+    let stride = whole("stride").map_or(named.len(), limit).max(1);
+    // Components without a name are passed over; where none has one, all are meant.
+    let components: Vec<usize> = (0..named.len()).filter(|&i| named[i]).collect();
+    let components = if components.is_empty() { (0..stride.min(4)).collect() } else { components };
+    let count = whole("count").map_or(usize::MAX, limit);
+    let offset = whole("offset").map_or(0, limit);
+    Ok(Some(Source { values, offset, stride, count, components }))
+}
