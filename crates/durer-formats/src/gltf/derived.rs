@@ -193,27 +193,28 @@ impl Maker<'_> {
         Ok(())
     }
 
+    /// How much light goes through where colour and mask are white, and the mask, where it can be laid on.
+    fn clearness(&mut self, job: &Job) -> (f32, Option<TextureRef>) {
+        let material = &self.scene.materials[job.material];
+        let base = material.base_color_texture;
+        // A texture says where there is metal, which is rarely all over.
+        let metal = material.metallic_roughness_texture.map_or(material.metallic, |_| 0.0);
+        let through = CLEAR * material.transmission * (1.0 - metal);
+        if Self::lie_alike(base, job.texture) {
+            return (through, job.texture);
+        }
+        let what = "lies otherwise than the base colour's, its mean is taken";
+        self.todo.leave_out("KHR_materials_transmission", what, job.material);
+        (through * self.mean(job.texture, false).x, None)
+    }
+
     /// Alpha is what the surface keeps: all where it does not transmit, and the more the darker its colour is,
     /// which is what stains the light that goes through.
     fn glass(&mut self, job: &Job) -> Result<()> {
-        let mut mask = job.texture;
-        let mean = self.mean(mask, false).x;
+        let mean = self.mean(job.texture, false).x;
+        let (through, mask) = self.clearness(job);
         let material = &self.scene.materials[job.material];
         let (base, color) = (material.base_color_texture, material.base_color.truncate());
-        let mut through = CLEAR * material.transmission;
-        // A texture says where there is metal, which is rarely all over.
-        if material.metallic_roughness_texture.is_none() {
-            through *= 1.0 - material.metallic;
-        }
-        if !Self::lie_alike(base, mask) {
-            through *= mean;
-            self.todo.leave_out(
-                "KHR_materials_transmission",
-                "lies otherwise than the base colour's, its mean is taken",
-                job.material,
-            );
-            mask = None;
-        }
         let opaque = self.scene.materials[job.material].alpha_mode == AlphaMode::Opaque;
         let kept = move |texels: [Option<[u8; 4]>; 2]| {
             let [base, mask] = texels.map(|texel| texel.unwrap_or([255; 4]));
