@@ -22,6 +22,7 @@ pub mod obj;
 mod place;
 pub mod ply;
 pub mod png;
+mod polygon;
 mod sniff;
 pub mod stl;
 pub mod svg;

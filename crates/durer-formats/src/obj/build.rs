@@ -2,7 +2,7 @@
 
 use super::corners::{Corner, NONE};
 use super::parse::{Parsed, Repairs, Run};
-use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place};
+use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place, polygon};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{Instance, Mesh, Part, Topology};
 
@@ -32,7 +32,8 @@ pub(super) fn build(
     let lines = loose(&parsed, &parsed.lines, &parsed.line_runs, Topology::Lines, origin);
     let points = loose(&parsed, &parsed.points, &parsed.point_runs, Topology::Points, origin);
     if !parsed.triangles.indices.is_empty() {
-        let mesh = triangles(&mut model, parsed, origin);
+        let mut mesh = triangles(&mut model, parsed, origin);
+        polygon::recut(&mut model, &mut mesh, &options.limits)?;
         add(&mut model, mesh, origin);
     }
     for mesh in [lines, points].into_iter().flatten() {
