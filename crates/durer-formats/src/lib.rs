@@ -10,6 +10,7 @@ mod color;
 pub mod css;
 pub mod drawing;
 mod error;
+mod facets;
 pub mod formula;
 pub mod geo;
 pub mod gltf;

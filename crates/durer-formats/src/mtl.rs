@@ -13,11 +13,13 @@
 mod convert;
 mod image;
 mod parse;
+mod pictures;
 
 use crate::{Model, Place, ReadOptions, Resources, text};
 use durer::scene::Material;
 use image::Images;
 use parse::{Library, Statements};
+pub(crate) use pictures::add_pictures;
 
 /// Fills `model.scene.materials` with one material per name in `names`, in their order, from the
 /// libraries that `mtllib` statements name (line, operand).

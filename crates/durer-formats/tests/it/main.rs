@@ -13,6 +13,7 @@ mod gltf;
 mod gltf_file;
 mod height_map;
 mod mesh_properties;
+mod ply;
 mod shared;
 mod svg;
 mod threemf;
