@@ -103,7 +103,8 @@ pub struct InfoArgs {
 /// The options of `durer render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF; `-` reads one from standard input
+    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF, OFF, and points in LAS, LAZ, E57, XYZ, PTS; `-` reads one from
+    /// standard input
     #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
     /// Where the picture goes

@@ -6,9 +6,11 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+mod cloud;
 mod color;
 pub mod css;
 pub mod drawing;
+pub mod e57;
 mod error;
 mod facets;
 pub mod formula;
@@ -16,10 +18,12 @@ pub mod geo;
 pub mod gltf;
 pub mod height_map;
 pub mod image;
+pub mod las;
 mod model;
 mod mtl;
 mod number;
 pub mod obj;
+pub mod off;
 mod place;
 pub mod ply;
 pub mod png;
@@ -29,6 +33,7 @@ pub mod stl;
 pub mod svg;
 mod text;
 pub mod threemf;
+pub mod xyz;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Limits, Model, NoResources, Pose, ReadOptions, Resources};

@@ -1,7 +1,9 @@
 //! Which format a model is in: by its content first, then by its name.
 
 use crate::text::{Cursor, utf8};
-use crate::{Error, Model, ReadOptions, Resources, Result, gltf, obj, ply, stl, threemf};
+use crate::{
+    Error, Model, ReadOptions, Resources, Result, e57, gltf, las, obj, off, ply, stl, threemf, xyz,
+};
 
 /// How much of a file is looked at.
 const PROBE: usize = 64 << 10;
@@ -19,11 +21,29 @@ pub enum ModelFormat {
     Ply,
     /// 3D Manufacturing Format.
     ThreeMf,
+    /// Geomview's OFF, as text.
+    Off,
+    /// LAS and LAZ.
+    Las,
+    /// E57.
+    E57,
+    /// Points as text; told by the name alone.
+    Xyz,
 }
 
 impl ModelFormat {
     /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 5] = [Self::Gltf, Self::Obj, Self::Stl, Self::Ply, Self::ThreeMf];
+    pub const ALL: [Self; 9] = [
+        Self::Gltf,
+        Self::Obj,
+        Self::Stl,
+        Self::Ply,
+        Self::ThreeMf,
+        Self::Off,
+        Self::Las,
+        Self::E57,
+        Self::Xyz,
+    ];
 
     /// Its usual name.
     pub fn name(self) -> &'static str {
@@ -33,6 +53,10 @@ impl ModelFormat {
             Self::Stl => "STL",
             Self::Ply => "PLY",
             Self::ThreeMf => "3MF",
+            Self::Off => "OFF",
+            Self::Las => "LAS",
+            Self::E57 => "E57",
+            Self::Xyz => "points as text",
         }
     }
 
@@ -44,6 +68,10 @@ impl ModelFormat {
             Self::Stl => &["stl"],
             Self::Ply => &["ply"],
             Self::ThreeMf => &["3mf"],
+            Self::Off => &["off"],
+            Self::Las => &["las", "laz"],
+            Self::E57 => &["e57"],
+            Self::Xyz => &["xyz", "xyzrgb", "pts", "asc", "txt", "csv"],
         }
     }
 
@@ -55,8 +83,14 @@ impl ModelFormat {
             Some(Self::Ply)
         } else if bytes.starts_with(b"PK\x03\x04") {
             Some(Self::ThreeMf)
+        } else if las::sniff(bytes) {
+            Some(Self::Las)
+        } else if e57::sniff(bytes) {
+            Some(Self::E57)
         } else if stl::sniff(bytes) {
             Some(Self::Stl)
+        } else if off::sniff(bytes) {
+            Some(Self::Off)
         } else {
             is_obj(bytes).then_some(Self::Obj)
         }
@@ -64,8 +98,10 @@ impl ModelFormat {
 
     /// Whether a file that begins so is none of the formats that are asked before STL.
     pub(crate) fn may_be_stl(head: &[u8]) -> bool {
-        let other = head.starts_with(b"glTF") || head.starts_with(b"PK\x03\x04");
-        !other && !starts_as_json(head) && !ply::sniff(head)
+        let other: [&[u8]; 4] = [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC];
+        !other.iter().any(|magic| head.starts_with(magic))
+            && !starts_as_json(head)
+            && !ply::sniff(head)
     }
 
     /// The format that a file's name speaks for, if any does.
@@ -111,7 +147,8 @@ fn is_obj(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither content nor name tell the format; else those of the reader:
-/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`].
+/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`off::read`], [`las::read`],
+/// [`xyz::read`].
 pub fn read_model(
     bytes: &[u8],
     name: &str,
@@ -124,6 +161,10 @@ pub fn read_model(
         Some(ModelFormat::Stl) => stl::read(bytes, resources, options),
         Some(ModelFormat::Ply) => ply::read(bytes, resources, options),
         Some(ModelFormat::ThreeMf) => threemf::read(bytes, resources, options),
+        Some(ModelFormat::Off) => off::read(bytes, resources, options),
+        Some(ModelFormat::Las) => las::read(bytes, resources, options),
+        Some(ModelFormat::E57) => e57::read(bytes, resources, options),
+        Some(ModelFormat::Xyz) => xyz::read(bytes, resources, options),
         None => Err(Error::Unknown(unknown(bytes))),
     }
 }
@@ -160,13 +201,17 @@ mod tests {
             (b"\xff\xfev\0 \0\x31\0", Some(ModelFormat::Obj)),
             (b"mtllib a.mtl\n", Some(ModelFormat::Obj)),
             (b"v for vendetta", None),
-            (b"OFF\n1 2 3", None),
+            (b"OFF\n1 2 3", Some(ModelFormat::Off)),
+            (b"LASF", Some(ModelFormat::Las)),
+            (b"ASTM-E57", Some(ModelFormat::E57)),
+            (b"1 2 3\n", None),
             (b"", None),
         ] {
             assert_eq!(ModelFormat::of_content(content), expected, "{content:?}");
         }
         assert_eq!(ModelFormat::of_name("a.b/X.STL"), Some(ModelFormat::Stl));
         assert_eq!(ModelFormat::of_name("stl"), None);
+        assert_eq!(ModelFormat::of_name("a.PTS"), Some(ModelFormat::Xyz));
     }
 
     #[test]
@@ -175,7 +220,7 @@ mod tests {
             let e = read_model(bytes, name, &NoResources, &ReadOptions::default());
             e.expect_err("unknown").to_string()
         };
-        let text = message(b"OFF\n", "x.off");
+        let text = message(b"GOFF\n", "x.geom");
         assert!(text.contains("neither content") && text.contains("STL (.stl)"), "{text}");
         assert!(message(b"newmtl a\n", "x.mtl").contains("material library"));
         assert!(message(b"", "x").contains("empty"));

@@ -18,7 +18,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 15] = [
+const TARGETS: [(&str, Body); 19] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -32,6 +32,10 @@ const TARGETS: [(&str, Body); 15] = [
     ("stl", model::stl),
     ("ply", model::ply),
     ("threemf", model::threemf),
+    ("off", model::off),
+    ("las", model::las),
+    ("e57", model::e57),
+    ("xyz", model::xyz),
     ("height_map", plot::height_map),
     ("formula", plot::formula),
 ];
