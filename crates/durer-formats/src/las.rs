@@ -19,8 +19,6 @@ use durer::math::{DVec3, Vec4};
 
 /// Least bytes of a header.
 const HEADER: usize = 227;
-/// Bytes of a variable length record before its data.
-const RECORD_HEADER: usize = 54;
 /// Least bytes of a point, by the number of its format, and where its colour is.
 const FORMATS: [(usize, Option<usize>); 11] = [
     (20, None),
@@ -79,8 +77,6 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
 /// What a file says of its points.
 struct Header {
     minor: u8,
-    /// Where the variable length records begin, and how many there are.
-    records: (usize, u32),
     /// Where the points begin.
     data: usize,
     compressed: bool,
@@ -141,7 +137,6 @@ impl Header {
         let count = wide.flatten().filter(|&count| count > 0).unwrap_or(old_count);
         Some(Self {
             minor,
-            records: (size, u32_at(100)?),
             data: u32_at(96)? as usize,
             compressed: *bytes.get(104)? & 0x80 != 0,
             color: None,
@@ -173,23 +168,6 @@ impl Header {
         if let Some(at) = self.color {
             cloud.colors.push(Vec4::new(short(at), short(at + 2), short(at + 4), 1.0));
         }
-    }
-
-    /// The data of the variable length record that a program marked so.
-    #[cfg(feature = "laz")]
-    fn record<'a>(&self, bytes: &'a [u8], user: &str, number: u16) -> Option<&'a [u8]> {
-        let (mut at, count) = self.records;
-        for _ in 0..count {
-            let head = bytes.get(at..at.checked_add(RECORD_HEADER)?)?;
-            let length = usize::from(u16::from_le_bytes(take(head, 20)?));
-            at += RECORD_HEADER;
-            let name = head.get(2..18)?;
-            if name.starts_with(user.as_bytes()) && take(head, 18) == Some(number.to_le_bytes()) {
-                return bytes.get(at..at + length);
-            }
-            at += length;
-        }
-        None
     }
 }
 

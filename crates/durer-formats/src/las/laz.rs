@@ -3,7 +3,7 @@
 //! Source: M. Isenburg, *LASzip: lossless compression of LiDAR data*, Photogrammetric Engineering and
 //! Remote Sensing 79 (2), 2013.
 
-use super::Header;
+use super::{Header, take};
 use crate::{Error, Place, Result};
 use laz::{LasZipDecompressor, LazItemType, LazVlr};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -13,13 +13,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 const EXTRA_BYTES: usize = 1024;
 /// Bytes that a chunk of points takes at least.
 const CHUNK: usize = 8;
+/// Bytes of a variable length record before its data.
+pub(super) const RECORD_HEADER: usize = 54;
 
 /// Gives all points to `each`; how many could be decompressed.
 ///
 /// # Errors
 /// A description of the compression that is missing or broken.
 pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8])) -> Result<u64> {
-    let Some(record) = header.record(bytes, LazVlr::USER_ID, LazVlr::RECORD_ID) else {
+    let Some(record) = record(bytes, LazVlr::USER_ID, LazVlr::RECORD_ID) else {
         return Err(Error::whole("is compressed, but has no record `laszip encoded`"));
     };
     let mut read = 0;
@@ -42,6 +44,22 @@ pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8]))
         Ok(Err(why)) => Err(why),
         _ => Ok(read),
     }
+}
+
+/// The data of the variable length record that a program marked so.
+fn record<'a>(bytes: &'a [u8], user: &str, number: u16) -> Option<&'a [u8]> {
+    let mut at = usize::from(u16::from_le_bytes(take(bytes, 94)?));
+    for _ in 0..u32::from_le_bytes(take(bytes, 100)?) {
+        let head = bytes.get(at..at.checked_add(RECORD_HEADER)?)?;
+        let length = usize::from(u16::from_le_bytes(take(head, 20)?));
+        at += RECORD_HEADER;
+        let name = head.get(2..18)?;
+        if name.starts_with(user.as_bytes()) && take(head, 18) == Some(number.to_le_bytes()) {
+            return bytes.get(at..at + length);
+        }
+        at += length;
+    }
+    None
 }
 
 fn broken(why: &str) -> Error {
@@ -72,13 +90,13 @@ fn check(bytes: &[u8], header: &Header, vlr: &LazVlr) -> Result<()> {
 
 /// How many chunks the table of chunks has.
 fn chunks(bytes: &[u8], data: usize) -> Option<usize> {
-    let offset = |at| super::take(bytes, at).map(i64::from_le_bytes);
+    let offset = |at| take(bytes, at).map(i64::from_le_bytes);
     let mut at = offset(data)?;
     if at <= data as i64 {
         // Written in one go: the offset stands at the end.
         at = offset(bytes.len().checked_sub(8)?)?;
     }
-    let count = super::take(bytes, usize::try_from(at).ok()?.checked_add(4)?)?;
+    let count = take(bytes, usize::try_from(at).ok()?.checked_add(4)?)?;
     Some(u32::from_le_bytes(count) as usize)
 }
 

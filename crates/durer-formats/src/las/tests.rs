@@ -116,6 +116,7 @@ fn short_files_and_false_headers() {
 
 #[cfg(feature = "laz")]
 mod compressed {
+    use super::super::laz::RECORD_HEADER;
     use super::*;
     use ::laz::{LasZipCompressor, LazVlr, LazVlrBuilder};
 
