@@ -92,9 +92,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     let (kind, counts) = header(&mut cursor, &text)?;
     let mut reader = Reader { kind, counts, limits: options.limits, ..Reader::default() };
     match reader.body(&mut cursor) {
-        Err(why) if reader.ended && !reader.points.is_empty() => {
-            reader.warn_of_end(&mut model, why)
-        }
+        Err(why) if reader.has_something() => reader.warn_of_end(&mut model, why)?,
         other => other?,
     }
     reader.into_model(model)
@@ -281,14 +279,23 @@ impl Reader {
         Ok(None)
     }
 
-    fn warn_of_end(&self, model: &mut Model, why: Error) {
-        let [vertices, faces] = self.counts;
-        let (points, read) = (self.points.len(), self.faces);
-        let place = if let Error::Decode { place, .. } = why { place } else { Place::Whole };
+    /// Whether there is something to show of a file that breaks off here.
+    fn has_something(&self) -> bool {
+        !self.facets.triangles.indices.is_empty() || (self.ended && !self.points.is_empty())
+    }
+
+    /// Warns of where the file breaks off.
+    ///
+    /// # Errors
+    /// `why`, where it is a limit.
+    fn warn_of_end(&self, model: &mut Model, why: Error) -> Result<()> {
+        let Error::Decode { place, message } = why else { return Err(why) };
+        let ([vertices, faces], points, read) = (self.counts, self.points.len(), self.faces);
         let message = format!(
-            "the file ends too early: {points} of {vertices} vertices and {read} of {faces} faces are read"
+            "{message}: {points} of {vertices} vertices and {read} of {faces} faces are read"
         );
         model.warn(place, message);
+        Ok(())
     }
 
     fn into_model(mut self, mut model: Model) -> Result<Model> {

@@ -97,7 +97,9 @@ fn read_body(
         let plan = builder.begin(element, rows.min(room(element, values)))?;
         for row in 0..rows {
             match builder.row(&plan, row, values) {
-                Err(why) if values.ended() => return missing(element, row, builder, why).map(Some),
+                Err(why) if values.ended() || builder.has_faces() => {
+                    return missing(element, row, builder, why).map(Some);
+                }
                 other => other?,
             }
         }
@@ -111,20 +113,20 @@ fn room(element: &Element, values: &impl body::Values) -> u64 {
     (values.bytes_left() + 1) / values.least_size(element).max(1)
 }
 
-/// What to say of a file that ends in a row.
+/// What to say of a file that ends, or makes no sense, from a row on.
 ///
 /// # Errors
 /// `why`, where there is nothing to show yet.
 fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result<(Place, String)> {
-    let Error::Decode { place, .. } = &why else { return Err(why) };
+    let Error::Decode { place, message } = why else { return Err(why) };
     if builder.vertices.len() == 0 {
-        return Err(why);
+        return Err(Error::Decode { place, message });
     }
     let Element { name, count, .. } = element;
     let message = format!(
-        "the file ends too early: {row} of {count} rows of element `{name}` are read, and nothing after them"
+        "{message}: {row} of {count} rows of element `{name}` are read, and nothing after them"
     );
-    Ok((place.clone(), message))
+    Ok((place, message))
 }
 
 #[cfg(test)]

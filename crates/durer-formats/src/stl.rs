@@ -72,7 +72,7 @@ fn is_ascii(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Decode`] for a file too short to be binary STL, cut off before its first triangle, or
-/// for a vertex without three numbers (ascii); [`Error::Limit`] for too many triangles.
+/// without any vertex of three numbers (ascii); [`Error::Limit`] for too many triangles.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     if !has_exact_length(bytes) && is_ascii(bytes) {
         ascii::read(&utf8(bytes), &options.limits)

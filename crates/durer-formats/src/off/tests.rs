@@ -95,6 +95,9 @@ fn a_file_that_ends_early_is_read_as_far_as_it_goes() {
     let model = read_ok(&format!("OFF\n4 4000000000 0\n{SQUARE}3 0 1 2\n3 0 2"));
     assert_eq!(model.scene.triangle_count(), 1);
     assert!(warnings(&model).contains("1 of 4000000000 faces"), "{}", warnings(&model));
+    let model = read_ok(&format!("OFF\n4 3 0\n{SQUARE}3 0 1 2\n3 0 x 3\n3 0 1 2\n"));
+    assert_eq!(model.scene.triangle_count(), 1);
+    assert!(warnings(&model).contains("`x` is not a number: 4 of 4 vertices and 1 of 3 faces"));
     let model = read_ok("OFF\n4000000000 1 0\n0 0 0\n1 1");
     assert!(warnings(&model).contains("1 of 4000000000 vertices"), "{}", warnings(&model));
 }

@@ -124,6 +124,11 @@ impl Builder {
         }
     }
 
+    /// Whether there is a triangle to show.
+    pub fn has_faces(&self) -> bool {
+        !self.faces.facets.triangles.indices.is_empty()
+    }
+
     /// Prepares for `count` rows of an element.
     ///
     /// # Errors

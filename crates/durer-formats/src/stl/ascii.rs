@@ -52,6 +52,11 @@ struct Ascii<'a> {
     /// Facets of fewer than three vertices.
     small: Tally,
     decimal_commas: Tally,
+    /// Vertices that are not three numbers, and what is wrong with the first.
+    bad_vertices: Tally,
+    bad_vertex: Option<Error>,
+    /// Whether the facet that is open has such a vertex.
+    spoiled: bool,
     limits: Limits,
 }
 
@@ -75,7 +80,12 @@ impl<'a> Ascii<'a> {
         while let Some(word) = cursor.word() {
             let is = |keyword: &[u8]| word.eq_ignore_ascii_case(keyword);
             if is(b"vertex") {
-                self.vertex(cursor)?;
+                let place = cursor.place();
+                if let Err(why) = self.vertex(cursor) {
+                    self.spoiled = true;
+                    self.bad_vertices.add(|| place);
+                    self.bad_vertex.get_or_insert(why);
+                }
             } else if is(b"facet") {
                 self.begin_facet(cursor)?;
             } else if is(b"endfacet") {
@@ -123,7 +133,7 @@ impl<'a> Ascii<'a> {
     }
 
     fn begin_facet(&mut self, cursor: &Cursor<'a>) -> Result<()> {
-        if self.open > 0 {
+        if self.open > 0 || self.spoiled {
             // The last one's end is missing.
             self.close_facet(cursor)?;
         }
@@ -186,9 +196,12 @@ impl<'a> Ascii<'a> {
     fn close_facet(&mut self, cursor: &Cursor<'_>) -> Result<()> {
         let open = std::mem::take(&mut self.open);
         self.inside_facet = false;
-        if open < 3 {
+        let spoiled = std::mem::take(&mut self.spoiled);
+        if spoiled || open < 3 {
             self.points.truncate(self.points.len() - open);
-            self.small.add(|| cursor.place());
+            if !spoiled {
+                self.small.add(|| cursor.place());
+            }
             return Ok(());
         }
         let first = (self.points.len() - open) / 3;
@@ -215,13 +228,18 @@ impl<'a> Ascii<'a> {
     /// Drops what a cut-off file leaves open.
     fn end(&mut self, model: &mut Model, cursor: &Cursor<'_>) -> Result<()> {
         let cut = self.inside_facet || self.open > 0;
-        if self.open >= 3 {
+        if self.open >= 3 && !self.spoiled {
             // All vertices are there: only the closing words are missing.
             self.close_facet(cursor)?;
         }
         let whole = self.points.len() - self.open;
         self.points.truncate(whole);
         let place = Place::Line(cursor.line(), 0);
+        if whole == 0
+            && let Some(why) = self.bad_vertex.take()
+        {
+            return Err(why);
+        }
         if cut && whole == 0 {
             let message = "the file ends inside its first facet; `endloop`, `endfacet`, `endsolid` are missing";
             return Err(Error::Decode { place, message: message.to_owned() });
@@ -257,6 +275,7 @@ impl<'a> Ascii<'a> {
         for (tally, message) in [
             (&self.unknown, "words are not STL and were skipped"),
             (&self.small, "facets have fewer than three vertices and were left out"),
+            (&self.bad_vertices, "vertices are not three numbers; their facets were left out"),
             (&self.decimal_commas, "numbers have a decimal comma; it was read as a point"),
         ] {
             if tally.count > 0 {

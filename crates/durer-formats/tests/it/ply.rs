@@ -77,7 +77,7 @@ fn a_binary_file_that_ends_early_too() {
         let model = read_with(&bytes[..length], &NoResources).expect("readable");
         let mesh = &model.scene.meshes[0];
         assert_eq!((mesh.triangle_count(), mesh.positions.len()), (triangles, points), "{length}");
-        assert!(warnings(&model).contains("ends too early"), "{}", warnings(&model));
+        assert!(warnings(&model).contains("and nothing after them"), "{}", warnings(&model));
     }
     assert!(read_with(&bytes[..head.len() + 11], &NoResources).is_err());
 }
@@ -328,4 +328,16 @@ fn a_concave_face_is_the_polygon() {
         .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
         .sum();
     assert_eq!((area, &mesh.faces[..]), (7.0, &[0][..]));
+}
+
+#[test]
+fn nonsense_after_some_faces_costs_the_rest() {
+    let head = format!("element face 4\n{FACE}");
+    let model = read(&cube(&head, "3 0 1 2\n3 1 2 3\n-3 what\n3 0 1 2\n"));
+    assert_eq!(model.scene.triangle_count(), 2);
+    let text = warnings(&model);
+    assert!(
+        text.contains("line 20, column 1: `-3` is no length") && text.contains("2 of 4 rows"),
+        "{text}"
+    );
 }

@@ -117,3 +117,18 @@ fn long_lines_cost_no_more_than_their_length() {
     let names = format!("solid {CORNERS} endfacet {}", "endsolid x ".repeat(40_000));
     let _ = stl::read(names.as_bytes(), &NoResources, &ReadOptions::default());
 }
+
+#[test]
+fn a_vertex_that_is_none_costs_its_facet() {
+    let facet = format!("facet normal 0 0 1\nouter loop\n{CORNERS}\nendloop\nendfacet\n");
+    let bad = facet.replace("vertex 1 0 0", "vertex 1 0");
+    let worse = facet.replace("vertex 1 0 0", "vertex x vertex 0 0 0 vertex 0 0 0");
+    let model = read_ok(&format!("solid\n{facet}{bad}{worse}{facet}endsolid\n"));
+    assert_eq!(model.scene.triangle_count(), 2);
+    let text = warnings(&model).join("\n");
+    assert!(text.contains("line 9, column 14: 2 vertices are not three numbers"), "{text}");
+    let model =
+        read_ok(&format!("solid\n{facet}facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0"));
+    assert_eq!(model.scene.triangle_count(), 1);
+    assert!(warnings(&model).join("\n").contains("without `endsolid`"));
+}
