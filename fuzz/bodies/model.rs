@@ -1,10 +1,11 @@
 //! What must hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`,
-//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf` and `collada`, which the tests call as well.
+//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf`, `collada`, `off`, `las`, `e57` and `xyz`, which
+//! the tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer_formats::{
-    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, collada, gltf, image, obj, ply,
-    stl, threemf,
+    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, collada, e57, gltf, image, las,
+    obj, off, ply, stl, threemf, xyz,
 };
 use std::io::{Cursor, Write};
 
@@ -302,6 +303,14 @@ const PLY: &[&str] = &[
     "property list uchar int vertex_indices\n",
     "property list float double vertex_index\n",
     "property",
+    "property list uchar float texcoord\n",
+    "property uchar green\n",
+    "property uchar blue\n",
+    "property int texnumber\n",
+    "element edge 1\n",
+    "property int vertex1\n",
+    "property int vertex2\n",
+    "comment TextureFile a.png\n",
     "comment\n",
     "end_header\n",
     "0 0 0\n",
@@ -314,7 +323,7 @@ const PLY: &[&str] = &[
 
 /// PLY.
 pub fn ply(bytes: &[u8]) {
-    check(ply::read(bytes, &NoResources, &options()));
+    check(ply::read(bytes, &Same(bytes), &options()));
     if let Ok(text) = text(bytes, PLY) {
         check(ply::read(&text, &NoResources, &options()));
         let mut whole = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty \
@@ -323,6 +332,66 @@ pub fn ply(bytes: &[u8]) {
         whole.extend(bytes);
         check(ply::read(&whole, &NoResources, &options()));
     }
+}
+
+const OFF: &[&str] = &[
+    "OFF\n",
+    "COFF\n",
+    "STCN4OFF\n",
+    "4 2 0\n",
+    "0 0 0\n",
+    "1 0 0\n",
+    "1 1 0 1 0 0\n",
+    "0.4 0.2 0\n",
+    "3 0 1 2\n",
+    "4 0 1 2 3\n",
+    "4 0 1 2 3 255 0 0\n",
+    "2 0 1\n",
+    "#",
+    " 1",
+    "\n",
+];
+
+/// OFF.
+pub fn off(bytes: &[u8]) {
+    check(off::read(bytes, &NoResources, &options()));
+    if let Ok(text) = text(bytes, OFF) {
+        check(off::read(&text, &NoResources, &options()));
+        check(off::read(&[b"OFF\n", &text[..]].concat(), &NoResources, &options()));
+    }
+}
+
+const XYZ: &[&str] = &[
+    "0 0 0\n",
+    "1,2,3,255,0,0\n",
+    "1 2 3 -20 255 0 0\n",
+    "// x y z r g b\n",
+    "z;y;x;intensity\n",
+    "2\n",
+    " 1",
+    ",",
+    "\r",
+    "\n",
+    "nan",
+];
+
+/// Points as text.
+pub fn xyz(bytes: &[u8]) {
+    check(xyz::read(bytes, &NoResources, &options()));
+    if let Ok(text) = text(bytes, XYZ) {
+        check(xyz::read(&text, &NoResources, &options()));
+    }
+}
+
+/// LAS and LAZ: as it is, and behind the format's first word.
+pub fn las(bytes: &[u8]) {
+    check(las::read(bytes, &NoResources, &options()));
+    check(las::read(&[b"LASF", bytes].concat(), &NoResources, &options()));
+}
+
+/// E57.
+pub fn e57(bytes: &[u8]) {
+    check(e57::read(bytes, &NoResources, &options()));
 }
 
 const THREEMF: &[&str] = &[

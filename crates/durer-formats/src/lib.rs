@@ -6,20 +6,25 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+mod cloud;
 pub mod collada;
 mod color;
 pub mod css;
 pub mod drawing;
+pub mod e57;
 mod error;
+mod facets;
 pub mod formula;
 pub mod geo;
 pub mod gltf;
 pub mod height_map;
 pub mod image;
+pub mod las;
 mod model;
 mod mtl;
 mod number;
 pub mod obj;
+pub mod off;
 pub mod picture;
 mod place;
 pub mod ply;
@@ -32,6 +37,7 @@ mod texels;
 mod text;
 pub mod threemf;
 mod xml;
+pub mod xyz;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Found, Limits, Model, NoResources, Pose, ReadOptions, Resources};

@@ -18,6 +18,7 @@ mod convert;
 pub(crate) mod image;
 mod notes;
 mod parse;
+mod pictures;
 
 use crate::gltf::uri::steps;
 use crate::{Found, Model, Place, ReadOptions, Resources, text};
@@ -26,6 +27,8 @@ use image::Images;
 use notes::Notes;
 use parse::{Library, Statements};
 use std::collections::HashSet;
+
+pub(crate) use pictures::add_pictures;
 
 /// Fills `model.scene.materials` with one material per name in `names`, in their order, from the
 /// libraries that `mtllib` statements name (line, operand).

@@ -1,7 +1,10 @@
 //! Which format a model is in: by its content first, then by its name.
 
 use crate::text::{Cursor, utf8};
-use crate::{Error, Model, ReadOptions, Resources, Result, collada, gltf, obj, ply, stl, threemf};
+use crate::{
+    Error, Model, ReadOptions, Resources, Result, collada, e57, gltf, las, obj, off, ply, stl,
+    threemf, xyz,
+};
 
 /// How much of a file is looked at.
 const PROBE: usize = 64 << 10;
@@ -21,12 +24,30 @@ pub enum ModelFormat {
     ThreeMf,
     /// COLLADA 1.4 and 1.5.
     Collada,
+    /// Geomview's OFF, as text.
+    Off,
+    /// LAS and LAZ.
+    Las,
+    /// E57.
+    E57,
+    /// Points as text; told by the name alone.
+    Xyz,
 }
 
 impl ModelFormat {
     /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 6] =
-        [Self::Gltf, Self::Obj, Self::Stl, Self::Ply, Self::ThreeMf, Self::Collada];
+    pub const ALL: [Self; 10] = [
+        Self::Gltf,
+        Self::Obj,
+        Self::Stl,
+        Self::Ply,
+        Self::ThreeMf,
+        Self::Collada,
+        Self::Off,
+        Self::Las,
+        Self::E57,
+        Self::Xyz,
+    ];
 
     /// Its usual name.
     pub fn name(self) -> &'static str {
@@ -37,6 +58,10 @@ impl ModelFormat {
             Self::Ply => "PLY",
             Self::ThreeMf => "3MF",
             Self::Collada => "COLLADA",
+            Self::Off => "OFF",
+            Self::Las => "LAS",
+            Self::E57 => "E57",
+            Self::Xyz => "points as text",
         }
     }
 
@@ -49,6 +74,10 @@ impl ModelFormat {
             Self::Ply => &["ply"],
             Self::ThreeMf => &["3mf"],
             Self::Collada => &["dae"],
+            Self::Off => &["off"],
+            Self::Las => &["las", "laz"],
+            Self::E57 => &["e57"],
+            Self::Xyz => &["xyz", "xyzrgb", "pts", "asc", "txt", "csv"],
         }
     }
 
@@ -62,8 +91,14 @@ impl ModelFormat {
             Some(Self::ThreeMf)
         } else if collada::sniff(bytes.get(..PROBE).unwrap_or(bytes)) {
             Some(Self::Collada)
+        } else if las::sniff(bytes) {
+            Some(Self::Las)
+        } else if e57::sniff(bytes) {
+            Some(Self::E57)
         } else if stl::sniff(bytes) {
             Some(Self::Stl)
+        } else if off::sniff(bytes) {
+            Some(Self::Off)
         } else {
             is_obj(bytes).then_some(Self::Obj)
         }
@@ -71,8 +106,10 @@ impl ModelFormat {
 
     /// Whether a file that begins so is none of the formats that are asked before STL.
     pub(crate) fn may_be_stl(head: &[u8]) -> bool {
-        let other = head.starts_with(b"glTF") || head.starts_with(b"PK\x03\x04");
-        !other && !starts_as_json(head) && !ply::sniff(head)
+        let other: [&[u8]; 4] = [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC];
+        !other.iter().any(|magic| head.starts_with(magic))
+            && !starts_as_json(head)
+            && !ply::sniff(head)
     }
 
     /// The format that a file's name speaks for, if any does.
@@ -118,7 +155,8 @@ fn is_obj(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither content nor name tell the format; else those of the reader:
-/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`].
+/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`], [`off::read`],
+/// [`las::read`], [`e57::read`], [`xyz::read`].
 pub fn read_model(
     bytes: &[u8],
     name: &str,
@@ -132,6 +170,10 @@ pub fn read_model(
         Some(ModelFormat::Ply) => ply::read(bytes, resources, options),
         Some(ModelFormat::ThreeMf) => threemf::read(bytes, resources, options),
         Some(ModelFormat::Collada) => collada::read(bytes, resources, options),
+        Some(ModelFormat::Off) => off::read(bytes, resources, options),
+        Some(ModelFormat::Las) => las::read(bytes, resources, options),
+        Some(ModelFormat::E57) => e57::read(bytes, resources, options),
+        Some(ModelFormat::Xyz) => xyz::read(bytes, resources, options),
         None => Err(Error::Unknown(unknown(bytes))),
     }
 }
@@ -174,13 +216,17 @@ mod tests {
             (b"\xff\xfev\0 \0\x31\0", Some(ModelFormat::Obj)),
             (b"mtllib a.mtl\n", Some(ModelFormat::Obj)),
             (b"v for vendetta", None),
-            (b"OFF\n1 2 3", None),
+            (b"OFF\n1 2 3", Some(ModelFormat::Off)),
+            (b"LASF", Some(ModelFormat::Las)),
+            (b"ASTM-E57", Some(ModelFormat::E57)),
+            (b"1 2 3\n", None),
             (b"", None),
         ] {
             assert_eq!(ModelFormat::of_content(content), expected, "{content:?}");
         }
         assert_eq!(ModelFormat::of_name("a.b/X.STL"), Some(ModelFormat::Stl));
         assert_eq!(ModelFormat::of_name("stl"), None);
+        assert_eq!(ModelFormat::of_name("a.PTS"), Some(ModelFormat::Xyz));
     }
 
     #[test]
@@ -189,7 +235,7 @@ mod tests {
             let e = read_model(bytes, name, &NoResources, &ReadOptions::default());
             e.expect_err("unknown").to_string()
         };
-        let text = message(b"OFF\n", "x.off");
+        let text = message(b"GOFF\n", "x.geom");
         assert!(text.contains("neither content") && text.contains("STL (.stl)"), "{text}");
         assert!(message(b"newmtl a\n", "x.mtl").contains("material library"));
         assert!(message(b"", "x").contains("empty"));

@@ -201,6 +201,21 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.word_start..self.at).unwrap_or_default().trim_ascii_end()
     }
 
+    /// The rest of the line as one name, up to a word from which on `stop` holds of the text.
+    pub fn rest_before(&mut self, stop: impl Fn(&'a [u8]) -> bool) -> &'a [u8] {
+        self.skip_blanks();
+        let start = self.at;
+        while self.peek().is_some_and(|b| !ends_line(b)) && !stop(&self.bytes[self.at..]) {
+            // At least one byte, also of a backslash that would join lines.
+            self.at += 1;
+            self.finish_word();
+            while self.peek().is_some_and(is_blank) {
+                self.at += 1;
+            }
+        }
+        self.bytes.get(start..self.at).unwrap_or_default().trim_ascii_end()
+    }
+
     /// Goes to the start of the next line.
     pub fn next_line(&mut self) {
         while self.peek().is_some_and(|b| !ends_line(b)) {

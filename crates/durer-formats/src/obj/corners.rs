@@ -1,7 +1,7 @@
 //! Corners of faces: which position, texture coordinate and normal each has, stored once per triple.
 
 /// Stands for "none" where an index would be.
-pub(super) const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// Triples looked through before one is stored again. Meshes have a handful per position; the
 /// bound keeps a hostile file from making the search quadratic.
@@ -9,7 +9,7 @@ const MAX_SEARCH: usize = 64;
 
 /// A corner: numbers of its position, texture coordinate and normal, the last two may be [`NONE`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Corner {
+pub(crate) struct Corner {
     pub position: u32,
     pub tex_coord: u32,
     pub normal: u32,
@@ -18,7 +18,7 @@ pub(super) struct Corner {
 /// Vertex numbers of corners. While no corner has a texture coordinate or normal, vertices are the
 /// file's positions; from the first that has, each different triple is a vertex.
 #[derive(Debug, Default)]
-pub(super) struct Corners {
+pub(crate) struct Corners {
     /// Vertex numbers, in the order of the corners.
     pub indices: Vec<u32>,
     /// Per vertex: its triple; empty while vertices are positions.

@@ -20,7 +20,7 @@
 //! and the mesh; at most 8 times the file.
 
 mod build;
-mod corners;
+pub(crate) mod corners;
 mod count;
 mod parse;
 mod repairs;

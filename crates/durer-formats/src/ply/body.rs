@@ -6,7 +6,7 @@ use crate::{Error, Place, Result};
 
 /// A source of values.
 pub(super) trait Values {
-    /// The next value. Integers up to 32 bits are exact in a double.
+    /// The next value. Integers up to 53 bits are exact in a double.
     ///
     /// # Errors
     /// The end of the file, or a word that is no number.
@@ -30,6 +30,27 @@ pub(super) trait Values {
     /// Where the last value stood.
     fn place(&self) -> Place;
 
+    /// Notes that the file has no more values.
+    fn end(&mut self);
+
+    /// Checks that the file has room for a list.
+    ///
+    /// # Errors
+    /// Where it has not.
+    fn check_list(&mut self, kind: Type, length: u64) -> Result<()> {
+        let (least, left) = (length.saturating_mul(self.least_value(kind)), self.bytes_left());
+        // The last value of an ascii file needs no blank behind it.
+        if least <= left + 1 {
+            return Ok(());
+        }
+        self.end();
+        let message = format!("a list of {length} values, but only {left} bytes are left");
+        Err(Error::Decode { place: self.place(), message })
+    }
+
+    /// Whether a value was asked for that the file has no more.
+    fn ended(&self) -> bool;
+
     /// What to say about values beyond the last element.
     fn left_over(&mut self) -> Option<(Place, String)>;
 }
@@ -37,11 +58,12 @@ pub(super) trait Values {
 /// Numbers in text. Line ends are blanks: some writers break rows.
 pub(super) struct Ascii<'a> {
     cursor: Cursor<'a>,
+    ended: bool,
 }
 
 impl<'a> Ascii<'a> {
     pub fn new(cursor: Cursor<'a>) -> Self {
-        Self { cursor }
+        Self { cursor, ended: false }
     }
 }
 
@@ -52,6 +74,7 @@ impl Values for Ascii<'_> {
                 return Ok(value);
             }
             if self.cursor.at_end() {
+                self.ended = true;
                 let line = self.cursor.line();
                 return Err(Error::line(line, 0, "the file ends before all elements are there"));
             }
@@ -80,6 +103,14 @@ impl Values for Ascii<'_> {
         self.cursor.place()
     }
 
+    fn end(&mut self) {
+        self.ended = true;
+    }
+
+    fn ended(&self) -> bool {
+        self.ended
+    }
+
     fn left_over(&mut self) -> Option<(Place, String)> {
         while !self.cursor.at_end() {
             if self.cursor.word().is_some() {
@@ -98,11 +129,12 @@ pub(super) struct Binary<'a, const LITTLE: bool> {
     last: usize,
     /// Where `bytes` begins in the file.
     offset: u64,
+    ended: bool,
 }
 
 impl<'a, const LITTLE: bool> Binary<'a, LITTLE> {
     pub fn new(bytes: &'a [u8], offset: u64) -> Self {
-        Self { bytes, at: 0, last: 0, offset }
+        Self { bytes, at: 0, last: 0, offset, ended: false }
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
@@ -118,7 +150,8 @@ impl<'a, const LITTLE: bool> Binary<'a, LITTLE> {
         Ok(bytes)
     }
 
-    fn too_short(&self) -> Error {
+    fn too_short(&mut self) -> Error {
+        self.ended = true;
         let end = self.offset + self.bytes.len() as u64;
         Error::byte(end, "the file ends before all elements are there")
     }
@@ -133,6 +166,8 @@ impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
             Type::U16 => f64::from(u16::from_le_bytes(self.take()?)),
             Type::I32 => f64::from(i32::from_le_bytes(self.take()?)),
             Type::U32 => f64::from(u32::from_le_bytes(self.take()?)),
+            Type::I64 => i64::from_le_bytes(self.take()?) as f64,
+            Type::U64 => u64::from_le_bytes(self.take()?) as f64,
             Type::F32 => f64::from(f32::from_le_bytes(self.take()?)),
             Type::F64 => f64::from_le_bytes(self.take()?),
         })
@@ -161,6 +196,14 @@ impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
 
     fn place(&self) -> Place {
         Place::Byte(self.offset + self.last as u64)
+    }
+
+    fn end(&mut self) {
+        self.ended = true;
+    }
+
+    fn ended(&self) -> bool {
+        self.ended
     }
 
     fn left_over(&mut self) -> Option<(Place, String)> {

@@ -20,6 +20,8 @@ pub(super) enum Type {
     U16,
     I32,
     U32,
+    I64,
+    U64,
     F32,
     F64,
 }
@@ -46,6 +48,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Pictures that `comment TextureFile` names.
+    pub textures: Vec<String>,
     /// Bytes up to the data.
     pub length: usize,
     /// Lines up to the data.
@@ -59,7 +63,7 @@ impl Type {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
@@ -72,6 +76,8 @@ impl Type {
             Self::U16 => 65_535.0,
             Self::I32 => f64::from(i32::MAX),
             Self::U32 => f64::from(u32::MAX),
+            Self::I64 => i64::MAX as f64,
+            Self::U64 => u64::MAX as f64,
             Self::F32 | Self::F64 => 1.0,
         }
     }
@@ -84,6 +90,8 @@ impl Type {
             b"ushort" | b"uint16" => Self::U16,
             b"int" | b"int32" => Self::I32,
             b"uint" | b"uint32" => Self::U32,
+            b"int64" | b"longlong" => Self::I64,
+            b"uint64" | b"ulonglong" => Self::U64,
             b"float" | b"float32" => Self::F32,
             b"double" | b"float64" => Self::F64,
             _ => return None,
@@ -92,9 +100,9 @@ impl Type {
 }
 
 impl Header {
-    /// The element of a name.
+    /// The element of a name, in any case.
     pub fn element(&self, name: &str) -> Option<&Element> {
-        self.elements.iter().find(|e| e.name == name)
+        self.elements.iter().find(|e| e.name.eq_ignore_ascii_case(name))
     }
 }
 
@@ -105,6 +113,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
         return Err(Error::line(1, 0, "a PLY file begins with `ply`"));
     }
     let (mut encoding, mut elements) = (None, Vec::<Element>::new());
+    let mut textures = Vec::new();
     loop {
         cursor.next_line();
         if cursor.at_end() {
@@ -123,7 +132,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
                 };
                 element.properties.push(property);
             }
-            Some(b"comment" | b"obj_info") | None => {}
+            Some(b"comment") => textures.extend(texture(&mut cursor)),
+            Some(b"obj_info") | None => {}
             Some(b"end_header") => break,
             Some(other) => {
                 let message = format!("`{}` is not a word of a PLY header", quote(other));
@@ -148,7 +158,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
             "`format ascii|binary_little_endian|binary_big_endian 1.0` is missing",
         ));
     };
-    Ok(Header { encoding, elements, length, lines: cursor.line() + 1 })
+    Ok(Header { encoding, elements, textures, length, lines: cursor.line() + 1 })
+}
+
+/// The picture that a comment names, as VCG's library and those that follow it write it.
+fn texture(cursor: &mut Cursor<'_>) -> Option<String> {
+    let names = cursor.word()?.eq_ignore_ascii_case(b"TextureFile");
+    let name = names.then(|| String::from_utf8_lossy(cursor.rest()).into_owned());
+    name.filter(|name| !name.is_empty())
 }
 
 fn wrong(cursor: &Cursor<'_>, message: String) -> Error {
@@ -192,7 +209,7 @@ fn kind(cursor: &mut Cursor<'_>, word: Option<&[u8]>) -> Result<Type> {
     let word = word.or_else(|| cursor.word()).unwrap_or_default();
     Type::from_name(word).ok_or_else(|| {
         let message = format!(
-            "`{}` is not a type; char, uchar, short, ushort, int, uint, float and double are",
+            "`{}` is not a type; char, uchar, short, ushort, int, uint, int64, uint64, float and double are",
             quote(word)
         );
         wrong(cursor, message)

@@ -18,7 +18,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 17] = [
+const TARGETS: [(&str, Body); 21] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -34,6 +34,10 @@ const TARGETS: [(&str, Body); 17] = [
     ("ply", model::ply),
     ("threemf", model::threemf),
     ("collada", model::collada),
+    ("off", model::off),
+    ("las", model::las),
+    ("e57", model::e57),
+    ("xyz", model::xyz),
     ("height_map", plot::height_map),
     ("formula", plot::formula),
 ];

@@ -16,6 +16,7 @@ mod gltf_file;
 mod gltf_references;
 mod height_map;
 mod mesh_properties;
+mod ply;
 mod shared;
 mod svg;
 mod threemf;
