@@ -159,6 +159,11 @@ mod compressed {
             let count = mesh(&cut).positions.len();
             assert!((100..900).contains(&count), "{count}");
             assert!(cut.warnings[0].to_string().contains("ends too early"));
+            // Without the table of chunks, or with the beginning of one, all points are still there.
+            let table = i64::from_le_bytes(take(&bytes, data).expect("there")) as usize;
+            for length in [table, table + 10] {
+                assert_eq!(mesh(&read_ok(&bytes[..length])).positions.len(), 1000);
+            }
             for at in (0..bytes.len() - 4).step_by(3) {
                 let mut bytes = bytes.clone();
                 bytes[at..at + 4].copy_from_slice(&[0xff; 4]);
