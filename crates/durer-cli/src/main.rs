@@ -8,6 +8,7 @@ mod color;
 mod compare;
 mod draw;
 mod drawing;
+mod environment;
 mod failure;
 mod fill;
 mod fit;

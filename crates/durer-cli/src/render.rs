@@ -4,6 +4,7 @@ use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::{self, Subject};
+use crate::environment;
 use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
@@ -55,6 +56,7 @@ fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
     drawing::check(args, kind(args))?;
+    environment::read(&args.look)?;
     let Size { width, height } = args.picture.size;
     let (pixels, limit) = (u64::from(width) * u64::from(height), args.picture.max_pixels);
     if pixels > limit {
@@ -385,6 +387,9 @@ fn render_options(
         height: shot.size.height,
         shading: args.look.shading.map(Into::into),
         lighting,
+        exposure: args.look.exposure,
+        surroundings: args.look.surroundings.get().cloned().unwrap_or_default(),
+        tone_map: args.look.tone_map.into(),
         background: args.picture.background,
         cull: args.look.cull.into(),
         samples: args.picture.aa.into(),

@@ -13,6 +13,7 @@ mod error;
 pub mod formula;
 pub mod geo;
 pub mod gltf;
+pub mod hdr;
 pub mod height_map;
 pub mod image;
 mod model;

@@ -11,6 +11,7 @@ mod faults;
 mod fill;
 mod harness;
 mod limits;
+mod looks;
 mod memory;
 mod options;
 mod outputs;
