@@ -3,6 +3,7 @@
 use crate::config::ConfigArgs;
 use crate::drawing::args::DrawingArgs;
 use crate::encoding::EncodingArgs;
+use crate::environment::{self, Environment};
 use crate::kind::Kind;
 use crate::section::SectionArgs;
 use crate::sides::{Sides, sides};
@@ -12,7 +13,7 @@ use crate::{color, lights};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use durer::math::{DVec2, DVec3, Rect};
-use durer::pipeline::{self, Background};
+use durer::pipeline::{self, Background, Exposure};
 use durer::scene::{self, Light};
 use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
@@ -330,6 +331,27 @@ pub struct LookArgs {
     /// How often rays are reflected by mirrors and refracted by what blends
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
     pub bounces: u32,
+    /// How strong light is shown: `auto`, or in EV
+    ///
+    /// `auto` makes all lights stronger or weaker by one factor, so that white matte surfaces where much of
+    /// their light falls are nearly white. EV shows light as the file or --light gives it (at 0 one of
+    /// strength 1, or of pi lux, makes white), times two to this power, with the light of what shines by
+    /// itself. Default: auto for the file's own lights and for --environment FILE, else 0.
+    #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = lights::exposure)]
+    pub exposure: Option<Exposure>,
+    /// What mirrors show: `studio`, `none`, or a panorama in a Radiance file (.hdr)
+    ///
+    /// In a studio stand bright screens, which metals and clear coats mirror; `none` leaves but a sky over
+    /// the ground. A panorama (equirectangular) lights the model too, in place of the default light and
+    /// beside the file's or --light.
+    #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment::environment)]
+    pub environment: Environment,
+    /// How bright light becomes colours of the picture
+    #[arg(long, value_name = "MAP", default_value = "none")]
+    pub tone_map: ToneMap,
+    /// What --environment names, once it is read.
+    #[arg(skip)]
+    pub surroundings: std::sync::OnceLock<pipeline::Surroundings>,
 }
 
 /// Pictures of other planes than colour.
@@ -450,6 +472,19 @@ pub enum Shading {
     Unlit,
 }
 
+/// `--tone-map`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum ToneMap {
+    /// Colours up to white as they are; brighter ones keep their hue and grow paler
+    None,
+    /// Nearly as they are up to 0.8, then compressed; for pictures of goods
+    KhronosNeutral,
+    /// The look of film
+    Aces,
+    /// Soft; bright colours grow pale
+    Agx,
+}
+
 /// `--cull`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Cull {
@@ -510,6 +545,17 @@ impl From<Shading> for pipeline::Shading {
             Shading::Phong => Self::Phong,
             Shading::MetallicRoughness => Self::MetallicRoughness,
             Shading::Unlit => Self::Unlit,
+        }
+    }
+}
+
+impl From<ToneMap> for pipeline::ToneMap {
+    fn from(map: ToneMap) -> Self {
+        match map {
+            ToneMap::None => Self::None,
+            ToneMap::KhronosNeutral => Self::KhronosNeutral,
+            ToneMap::Aces => Self::Aces,
+            ToneMap::Agx => Self::Agx,
         }
     }
 }

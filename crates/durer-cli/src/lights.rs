@@ -1,7 +1,8 @@
-//! Lights as `--light` takes them.
+//! Lights as `--light` takes them, and exposure as `--exposure` does.
 
 use crate::color::color;
 use crate::values::{direction, not_negative, number, vector};
+use durer::pipeline::Exposure;
 use durer::scene::{Light, LightKind};
 
 /// The help of `--light`.
@@ -43,6 +44,19 @@ pub fn light(text: &str) -> Result<Light, String> {
     }
 }
 
+/// Reads `auto`, or a number of EV.
+pub fn exposure(text: &str) -> Result<Exposure, String> {
+    if text == "auto" {
+        return Ok(Exposure::Auto);
+    }
+    let ev = number(text).map_err(|e| format!("{e}, or `auto`"))?;
+    if (-64.0..=64.0).contains(&ev) {
+        Ok(Exposure::Ev(ev as f32))
+    } else {
+        Err("an exposure lies between -64 and 64 EV".to_owned())
+    }
+}
+
 /// Half the angle of a cone, from degrees to radians.
 fn half_angle(text: &str) -> Result<f64, String> {
     let degrees = number(text)?;
@@ -70,6 +84,15 @@ mod tests {
         assert_eq!(lamp, Light { kind, color: Vec3::ZERO });
         let spot = light("spot:0,5,0:0,-1,0:90").unwrap();
         assert!(matches!(spot.kind, LightKind::Spot { outer, .. } if outer == 90f64.to_radians()));
+    }
+
+    #[test]
+    fn exposures_are_numbers_or_automatic() {
+        assert_eq!(exposure("auto"), Ok(Exposure::Auto));
+        assert_eq!(exposure("-1.5"), Ok(Exposure::Ev(-1.5)));
+        for wrong in ["bright", "65", "-1e9", "nan", ""] {
+            assert!(exposure(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

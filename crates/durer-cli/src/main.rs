@@ -10,6 +10,7 @@ mod config;
 mod draw;
 mod drawing;
 mod encoding;
+mod environment;
 mod failure;
 mod fill;
 mod film;

@@ -5,6 +5,7 @@ use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::{self, Subject};
 use crate::encoding;
+use crate::environment;
 use crate::failure::Failure;
 use crate::film::{self, Film, Sink};
 use crate::input;
@@ -70,6 +71,7 @@ fn check(args: &RenderArgs) -> Result<(), Failure> {
     drawing::check(args, wanted(args).kind)?;
     args.picture.encoding.check(wanted(args).kind)?;
     check_size(args)?;
+    environment::read(&args.look)?;
     check_algorithm(args)?;
     shots(args, None).map(|_| ())
 }
@@ -495,6 +497,9 @@ fn render_options(
         height: shot.size.height,
         shading: args.look.shading.map(Into::into),
         lighting,
+        exposure: args.look.exposure,
+        surroundings: args.look.surroundings.get().cloned().unwrap_or_default(),
+        tone_map: args.look.tone_map.into(),
         background: args.picture.background,
         cull: args.look.cull.into(),
         marks: Marks { line_width: args.look.line_width, point_size: args.look.point_size },

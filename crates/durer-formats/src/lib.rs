@@ -17,6 +17,7 @@ mod facets;
 pub mod formula;
 pub mod geo;
 pub mod gltf;
+pub mod hdr;
 pub mod height_map;
 pub mod image;
 pub mod las;

@@ -10,10 +10,12 @@ pub use edges::{EdgeStyle, draw_edges};
 pub use floor::{add_axes, add_grid, add_ground};
 pub use status::{Status, Unseen, drawing_status, status};
 
-use crate::math::Vec4;
+use crate::math::{Vec4, exp2};
 use crate::scene::{Camera, Light, Scene};
 use crate::shade::PreparedLights;
-pub use crate::shade::Shading;
+use crate::shade::environment::Mirrored;
+use crate::shade::studio::Studio;
+pub use crate::shade::{Exposure, Shading, Surroundings, ToneMap};
 use crate::simd::{Level, default_level};
 use crate::target::Framebuffer;
 use crate::trace::NoTrace;
@@ -65,6 +67,13 @@ pub struct RenderOptions {
     pub shading: Option<Shading>,
     /// Where light comes from.
     pub lighting: Lighting,
+    /// How strong light is shown; `None` = [`Exposure::Auto`] for the scene's own lights and for
+    /// panoramas, 0 EV for lights that are given.
+    pub exposure: Option<Exposure>,
+    /// What mirrors show, and what may light the scene from all around.
+    pub surroundings: Surroundings,
+    /// How the range of brightness is brought to a display's.
+    pub tone_map: ToneMap,
     /// What is behind everything.
     pub background: Background,
     /// Which faces are left out.
@@ -106,6 +115,9 @@ impl RenderOptions {
             camera,
             shading: None,
             lighting: Lighting::Auto,
+            exposure: None,
+            surroundings: Surroundings::Studio,
+            tone_map: ToneMap::None,
             background: Background::Color(Vec4::ONE),
             cull: Cull::None,
             marks: Marks::default(),
@@ -134,6 +146,11 @@ impl RenderOptions {
         let pixels = u64::from(self.width) * u64::from(self.height);
         if pixels > self.max_pixels {
             return Err(Error::Limit { what: "pixels", value: pixels, limit: self.max_pixels });
+        }
+        if let Some(Exposure::Ev(ev)) = self.exposure
+            && !ev.is_finite()
+        {
+            return Err(Error::parameter("exposure", ev, "a finite number of EV"));
         }
         if self.algorithm != SurfaceMethod::Ray {
             let instead = "the algorithm `ray` does that";
@@ -217,10 +234,9 @@ pub fn render_into(
     scene.check()?;
     let view = View::new(options.camera, options.width, options.height)?;
     make_ready(framebuffer, options);
-    let mut lights = match &options.lighting {
-        Lighting::Auto => PreparedLights::of(scene, &options.camera),
-        Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
-    };
+    let (lighting, surroundings) = (&options.lighting, &options.surroundings);
+    let mut lights = lights(scene, &options.camera, (lighting, surroundings), options.exposure);
+    lights.tone.map = options.tone_map;
     let smoothed = with_needed_normals(scene, options.shading);
     let scene = smoothed.as_ref().unwrap_or(scene);
     let start = std::time::Instant::now();
@@ -270,6 +286,40 @@ fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
     if !options.normal {
         *normal = None;
     }
+}
+
+/// The lights of a picture from a camera, exposed.
+fn lights(
+    scene: &Scene,
+    camera: &Camera,
+    (lighting, surroundings): (&Lighting, &Surroundings),
+    exposure: Option<Exposure>,
+) -> PreparedLights {
+    let (own, default) = match lighting {
+        Lighting::Auto => (&scene.lights, Exposure::Auto),
+        Lighting::Given(lights) => (lights, Exposure::Ev(0.0)),
+    };
+    let panorama = match surroundings {
+        Surroundings::Panorama(panorama) => Some((panorama, scene.up_axis)),
+        Surroundings::Studio | Surroundings::None => None,
+    };
+    let with_camera = *lighting == Lighting::Auto && own.is_empty() && panorama.is_none();
+    let exposure = exposure.unwrap_or(default);
+    let mut lights = match exposure {
+        _ if with_camera => PreparedLights::auto(camera),
+        Exposure::Auto => PreparedLights::exposed(panorama, own, scene, camera),
+        Exposure::Ev(_) => PreparedLights::within(panorama, own, camera),
+    };
+    if let Exposure::Ev(ev) = exposure {
+        lights.tone.gain = exp2(ev.clamp(-64.0, 64.0));
+    }
+    if *surroundings == Surroundings::Studio {
+        lights.environment.mirrored = Mirrored::Studio(match with_camera {
+            true => Studio::of_camera(camera),
+            false => Studio::of_world(scene.up_axis),
+        });
+    }
+    lights
 }
 
 /// Gives a framebuffer the planes that are asked for. Its colours stay where their number is right, for every method

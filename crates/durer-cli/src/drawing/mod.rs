@@ -59,6 +59,8 @@ const OF_PIXELS: &[(&str, &str)] = &[
     ("shadows", "--style shadows draws them exactly"),
     ("shadow_map", "--style shadows draws shadows exactly, without a map"),
     ("bounces", "drawings show no reflections; leave it out"),
+    ("environment", "drawings show no reflections; leave it out"),
+    ("tone_map", "areas of drawings have one colour each; --exposure makes all lighter or darker"),
     ("viewports", "use --sheet third-angle, or a file for each --view"),
     ("item", "areas of a .geojson with --style regions have the property `item`"),
     ("depth", "write it beside a .png without --style"),
@@ -298,6 +300,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             ..default
         },
         lighting,
+        exposure: args.look.exposure,
         cull: args.look.cull.into(),
         merge: merge.into(),
         trapped: match drawing.fill {

@@ -12,6 +12,7 @@ mod faults;
 mod fill;
 mod harness;
 mod limits;
+mod looks;
 mod memory;
 mod options;
 mod other_formats;

@@ -8,10 +8,8 @@ use durer::scene::{Camera, Light, LightKind, NamedCamera, Projection, Scene};
 use std::cell::LazyCell;
 use std::f64::consts::PI;
 
-/// Above this intensity a file is taken to speak in photometric units.
-const PHOTOMETRIC: f64 = 100.0;
-/// Lumens per watt, by which exporters make photometric units of an artist's numbers.
-const LUMENS_PER_WATT: f64 = 683.0;
+/// Stronger lights count as this strong, so that all that is made of them stays finite.
+const STRONGEST: f64 = 1e30;
 
 /// The cameras of the scene's nodes, in drawing order, with unique names. A camera without a far
 /// plane gets one behind the scene. Cameras that cannot see are left out with a warning.
@@ -85,9 +83,9 @@ fn place_camera(
 /// The lights of KHR_lights_punctual.
 ///
 /// A file's intensities are lux (directional) and candela (point, spot). A white matte surface sends
-/// back 1/π of what falls on it, so π lux make it white: all intensities are divided by π. Exporters
-/// that count in watts and multiply by 683 lm/W write sunlight of thousands of lux, for a camera with
-/// an exposure of its own; where a file has any light above 100, all are divided by 683 as well.
+/// back 1/π of what falls on it, so π lux make it white: all intensities are divided by π. Sunlight has
+/// thousands of lux, in whatever units a program counted; how strong the picture shows it is a matter of
+/// its exposure, not of the file.
 pub fn lights(
     source: &Source<'_>,
     nodes: &[usize],
@@ -95,8 +93,6 @@ pub fn lights(
     warnings: &mut Vec<Warning>,
 ) -> Vec<Light> {
     let all = source.root.extensions.lights.as_ref().map_or([].as_slice(), |l| &l.lights);
-    let brightest = all.iter().map(|l| l.intensity.unwrap_or(1.0)).fold(0.0, f64::max);
-    let unit = if brightest > PHOTOMETRIC { PI * LUMENS_PER_WATT } else { PI };
     let mut lights = Vec::new();
     for &n in nodes {
         let node = &source.root.nodes[n];
@@ -104,7 +100,7 @@ pub fn lights(
         let Some(light) = index.and_then(|i| all.get(i.index())) else { continue };
         match light_kind(light, world[n]) {
             Some(kind) => {
-                let intensity = light.intensity.unwrap_or(1.0).max(0.0) / unit;
+                let intensity = light.intensity.unwrap_or(1.0).clamp(0.0, STRONGEST) / PI;
                 let color = DVec3::from(light.color.unwrap_or([1.0; 3])) * intensity;
                 lights.push(Light { kind, color: Vec3::max(color.as_vec3(), Vec3::ZERO) });
             }

@@ -1,4 +1,4 @@
-//! The bodies of the fuzz targets for map data, drawings, models, height maps and formulas, on their seeds, on seeds with changes, and on
+//! The bodies of the fuzz targets for map data, drawings, models, height maps, panoramas and formulas, on their seeds, on seeds with changes, and on
 //! random bytes.
 
 use proptest::prelude::*;
@@ -8,6 +8,8 @@ use std::path::Path;
 mod drawing;
 #[path = "../../../../fuzz/bodies/geo.rs"]
 mod geo;
+#[path = "../../../../fuzz/bodies/hdr.rs"]
+mod hdr;
 #[path = "../../../../fuzz/bodies/model.rs"]
 mod model;
 #[path = "../../../../fuzz/bodies/plot.rs"]
@@ -18,7 +20,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 21] = [
+const TARGETS: [(&str, Body); 22] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -38,6 +40,7 @@ const TARGETS: [(&str, Body); 21] = [
     ("las", model::las),
     ("e57", model::e57),
     ("xyz", model::xyz),
+    ("hdr", hdr::hdr),
     ("height_map", plot::height_map),
     ("formula", plot::formula),
 ];

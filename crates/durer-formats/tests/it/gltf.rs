@@ -414,7 +414,7 @@ fn cameras_and_lights_stand_in_the_world() {
         "extensions": {"KHR_lights_punctual": {"lights": [
             {"type": "spot", "intensity": 6, "color": [1, 0.5, 0], "range": 9,
                 "spot": {"outerConeAngle": 0.5}},
-            {"type": "directional"}, {"type": "area"}]}}"#,
+            {"type": "directional", "intensity": 100000}, {"type": "area"}]}}"#,
     ))
     .unwrap();
     let names: Vec<&str> = model.scene.cameras.iter().map(|c| c.name.as_str()).collect();
@@ -432,6 +432,8 @@ fn cameras_and_lights_stand_in_the_world() {
     assert_eq!((position, direction), (DVec3::new(1.0, 2.0, 3.0), -DVec3::Z));
     assert_eq!((range, inner, outer), (Some(9.0), 0.0, 0.5));
     assert_eq!(sun.kind, LightKind::Directional { direction: -DVec3::Z });
+    // The same unit for weak and strong lights, however strong others are.
+    assert_eq!(sun.color, (DVec3::ONE * 1e5 / pi).as_vec3());
     assert_eq!(model.warnings.len(), 3, "{:?}", model.warnings);
 }
 

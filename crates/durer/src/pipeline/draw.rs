@@ -1,6 +1,6 @@
 //! From a scene to a drawing: the order of the stages.
 
-use super::Lighting;
+use super::{Exposure, Lighting, Surroundings};
 use crate::math::DVec3;
 use crate::scene::{Camera, Projection, Scene};
 use crate::shade::PreparedLights;
@@ -79,6 +79,8 @@ pub struct DrawOptions {
     pub lines: hidden_line::Options,
     /// Where light comes from, for filled parts.
     pub lighting: Lighting,
+    /// How strong light is shown, as in [`super::RenderOptions::exposure`].
+    pub exposure: Option<Exposure>,
     /// Which faces are left out of filled parts.
     pub cull: Cull,
     /// Which neighbours become one region.
@@ -100,6 +102,7 @@ impl DrawOptions {
             aspect: 1.0,
             lines: hidden_line::Options::default(),
             lighting: Lighting::Auto,
+            exposure: None,
             cull: Cull::None,
             merge: Merge::Shade,
             trapped: false,
@@ -164,10 +167,9 @@ fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing>
 }
 
 fn lights(scene: &Scene, options: &DrawOptions) -> PreparedLights {
-    match &options.lighting {
-        Lighting::Auto => PreparedLights::of(scene, &options.camera),
-        Lighting::Given(lights) => PreparedLights::new(lights, &options.camera),
-    }
+    // One colour for each face: mirrors would show but a point of what surrounds them.
+    let light = (&options.lighting, &Surroundings::None);
+    super::lights(scene, &options.camera, light, options.exposure)
 }
 
 fn region_options(options: &DrawOptions) -> region::Options {

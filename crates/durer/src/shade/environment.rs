@@ -1,14 +1,32 @@
-//! What surrounds the scene: a hemisphere of sky over one of ground, in closed form.
+//! What surrounds the scene: light from all around, and what mirrors show.
 //!
-//! Mirrors show nothing where there is nothing around them. This surrounding is a function of the
-//! height over the horizon alone: a slope from nadir to zenith and a soft step at the horizon, both
-//! of which can be blurred for rough surfaces without any table.
+//! Mirrors show nothing where there is nothing around them. By itself the surrounding is a hemisphere of
+//! sky over one of ground, in closed form: a function of the height over the horizon alone, a slope from
+//! nadir to zenith and a soft step at the horizon, both of which can be blurred for rough surfaces without
+//! any table. In place of it metals and clear layers may mirror a [`Studio`], and everything a
+//! [`Panorama`], which then is the light from all around too.
 
 use super::lane::{Lane, Vec3Lane};
+use super::panorama::Panorama;
+use super::studio::Studio;
 use crate::math::Vec3;
+use crate::scene::UpAxis;
+use std::sync::Arc;
+
+/// What surrounds a scene, as a picture's options name it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Surroundings {
+    /// Metals and clear layers mirror a studio; it goes with the camera where the lights do.
+    #[default]
+    Studio,
+    /// Nothing but the sky over the ground that lights make.
+    None,
+    /// A panorama, which lights the scene instead of the lights that go with the camera, and beside others.
+    Panorama(Arc<Panorama>),
+}
 
 /// A surrounding that gets brighter upwards.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Environment {
     /// Unit vector to the zenith.
     pub up: Vec3,
@@ -16,12 +34,31 @@ pub struct Environment {
     pub ambient: Vec3,
     /// By which part of `ambient` a surface facing up gets more, one facing down less; 0…1.
     pub slope: f32,
-    /// Mean radiance that mirrors show.
+    /// Mean radiance that mirrors show; the factor of a panorama.
     pub radiance: Vec3,
     /// By which part of `radiance` zenith and nadir differ from the mean, without the step; 0…1.
     pub gradient: f32,
     /// By which part sky and ground differ from the mean besides; `gradient + step ≤ 1`.
     pub step: f32,
+    /// What mirrors show in place of sky and ground.
+    pub mirrored: Mirrored,
+}
+
+/// What mirrors show.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Mirrored {
+    /// Sky and ground.
+    #[default]
+    Sky,
+    /// Metals and clear layers a studio, other things sky and ground.
+    Studio(Studio),
+    /// A panorama, to which matte surfaces owe light too.
+    Panorama {
+        /// What it shows.
+        panorama: Arc<Panorama>,
+        /// Unit vectors to the right, up and to the front, in world space.
+        axes: [Vec3; 3],
+    },
 }
 
 /// Half the width of the horizon's step in a perfect mirror, as a sine.
@@ -30,26 +67,68 @@ const SHARPEST: f32 = 0.12;
 impl Environment {
     /// The same light from everywhere.
     pub fn uniform(ambient: Vec3) -> Self {
-        Self { up: Vec3::Y, ambient, slope: 0.0, radiance: ambient, gradient: 0.0, step: 0.0 }
+        Self {
+            up: Vec3::Y,
+            ambient,
+            slope: 0.0,
+            radiance: ambient,
+            gradient: 0.0,
+            step: 0.0,
+            mirrored: Mirrored::Sky,
+        }
     }
 
     /// What a matte white surface with unit normal `n` reflects.
     #[inline(always)]
     pub fn diffuse<L: Lane>(&self, n: Vec3Lane<L>) -> Vec3Lane<L> {
+        if let Mirrored::Panorama { panorama, axes } = &self.mirrored {
+            let light = panorama.diffuse(turned(n, axes)).times_all(self.radiance);
+            return light.plus(Vec3Lane::splat(n.x, self.ambient));
+        }
         let k = n.dot_all(self.up) * self.slope + 1.0;
         Vec3Lane::new(k * self.ambient.x, k * self.ambient.y, k * self.ambient.z)
     }
 
-    /// What a mirror shows in the unit direction `r`; `alpha` is its roughness, squared.
+    /// What a mirror shows in the unit direction `r`; `alpha` is its roughness, squared. `clear`: it is of
+    /// metal or a clear layer, and shows a studio where there is one.
     #[inline(always)]
-    pub fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> Vec3Lane<L> {
+    pub fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, clear: bool) -> Vec3Lane<L> {
+        let k = match &self.mirrored {
+            Mirrored::Studio(studio) if clear => studio.radiance(r, alpha),
+            Mirrored::Panorama { panorama, axes } => {
+                let seen = panorama.reflection(turned(r, axes), alpha).times_all(self.radiance);
+                return seen.plus(Vec3Lane::splat(alpha, self.ambient));
+            }
+            _ => self.sky(r, alpha),
+        };
+        Vec3Lane::new(k * self.radiance.x, k * self.radiance.y, k * self.radiance.z)
+    }
+
+    /// Whether there is more to mirror than sky and ground.
+    pub(crate) fn is_furnished(&self) -> bool {
+        self.mirrored != Mirrored::Sky
+    }
+
+    /// Sky and ground as a part of their mean.
+    #[inline(always)]
+    fn sky<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> L {
         let height = r.dot_all(self.up);
         // A cosine lobe keeps 2/3 of a slope: what is left at alpha = 1.
         let slope = height / (alpha * 0.5 + 1.0);
         // x/√(1 + x²): odd, so that the mean stays, and as soft as the mirror is rough.
         let x = height / (alpha + SHARPEST);
         let step = x / (x * x + 1.0).sqrt();
-        let k = (slope * self.gradient + step * self.step + 1.0).at_least(0.0);
-        Vec3Lane::new(k * self.radiance.x, k * self.radiance.y, k * self.radiance.z)
+        (slope * self.gradient + step * self.step + 1.0).at_least(0.0)
     }
+}
+
+/// The components of a vector along axes.
+#[inline(always)]
+pub(super) fn turned<L: Lane>(v: Vec3Lane<L>, [x, y, z]: &[Vec3; 3]) -> Vec3Lane<L> {
+    Vec3Lane::new(v.dot_all(*x), v.dot_all(*y), v.dot_all(*z))
+}
+
+/// To the right, up and to the front of a scene: what the named views show.
+pub fn world_axes(up: UpAxis) -> [Vec3; 3] {
+    [up.right(), up.up(), up.front()].map(|axis| axis.as_vec3())
 }

@@ -3,7 +3,8 @@
 use super::gouraud::Reflected;
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
-use super::metallic_roughness::{self, Substance};
+use super::lobes::Lobes;
+use super::metallic_roughness::{self, Dielectric, Substance};
 use super::normal::Frame;
 use super::phong::{self, Shininess};
 use super::{Shading, tone};
@@ -21,6 +22,8 @@ pub(super) struct Inputs<L> {
     pub shininess: Shininess,
     /// Light of its own.
     pub emission: Vec3Lane<L>,
+    /// What the metallic-roughness model has besides, the same in all lanes.
+    pub lobes: Option<Lobes>,
 }
 
 /// The displayed colour; `lit` is interpolated or per-face light where the caller has it.
@@ -34,18 +37,30 @@ pub(super) fn display<L: Lane>(
     shading: Shading,
 ) -> Vec3Lane<L> {
     let color = match shading {
-        Shading::Unlit => inputs.substance.base,
-        Shading::MetallicRoughness => {
-            metallic_roughness::reflect(frame, position, &inputs.substance, lights)
-                .plus(inputs.emission)
-        }
+        Shading::Unlit => return tone::display(inputs.substance.base),
+        Shading::MetallicRoughness => metallic_roughness_color(frame, position, inputs, lights),
         Shading::Flat | Shading::Gouraud | Shading::Phong => {
             let normal = if shading == Shading::Flat { frame.face } else { frame.normal };
             let lit = lit.filter(|_| shading != Shading::Phong);
             phong_color(&Frame { normal, ..*frame }, position, inputs, lit, lights)
         }
     };
-    tone::display(color)
+    tone::display(lights.tone.of(color))
+}
+
+#[inline(always)]
+fn metallic_roughness_color<L: Lane>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    inputs: &Inputs<L>,
+    lights: &PreparedLights,
+) -> Vec3Lane<L> {
+    let Inputs { substance, emission, lobes, .. } = inputs;
+    match lobes {
+        None => metallic_roughness::reflect(frame, position, substance, Dielectric::PLAIN, lights)
+            .plus(*emission),
+        Some(lobes) => lobes.reflect(frame, position, (substance, *emission), lights),
+    }
 }
 
 #[inline(always)]

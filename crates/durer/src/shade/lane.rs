@@ -34,8 +34,15 @@ pub trait Lane:
     fn exp2_whole(self) -> Self;
     /// The nearest whole number below or equal.
     fn floor(self) -> Self;
+    /// Calls `f` without making it part of the caller: for what is long and seldom asked for.
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R;
     /// A function of one number per value, lane by lane: for what has no formula, such as looking up.
     fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self;
+    /// The same of three numbers, by a function that is not made part of the caller.
+    fn looked_up<const N: usize>(
+        values: [Self; N],
+        look_up: &dyn Fn([f32; N]) -> [f32; 3],
+    ) -> [Self; 3];
 
     /// `self` where it is above `limit`, else `limit`; NaN becomes `limit`.
     #[inline(always)]
@@ -141,6 +148,17 @@ impl Lane for f32 {
         f32::floor(self)
     }
     #[inline(always)]
+    fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+        f()
+    }
+    #[inline(always)]
+    fn looked_up<const N: usize>(
+        values: [Self; N],
+        look_up: &dyn Fn([f32; N]) -> [f32; 3],
+    ) -> [Self; 3] {
+        look_up(values)
+    }
+    #[inline(always)]
     fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self {
         f(values)
     }
@@ -186,6 +204,23 @@ macro_rules! lanes {
             #[inline(always)]
             fn floor(self) -> Self {
                 self.simd.$floor(self)
+            }
+            #[inline(always)]
+            fn apart<R>(self, f: impl FnOnce() -> R) -> R {
+                self.simd.vectorize(f)
+            }
+            #[inline(never)]
+            fn looked_up<const N: usize>(
+                values: [Self; N],
+                look_up: &dyn Fn([f32; N]) -> [f32; 3],
+            ) -> [Self; 3] {
+                let lanes = values.map(<[f32; $count]>::from);
+                let mut results = [[0.0; $count]; 3];
+                for i in 0..$count {
+                    let result = look_up(std::array::from_fn(|k| lanes[k][i]));
+                    (0..3).for_each(|k| results[k][i] = result[k]);
+                }
+                results.map(|result| $floats::from_slice(values[0].simd, &result))
             }
             #[inline(always)]
             fn lanewise<const N: usize>(values: [Self; N], f: impl Fn([f32; N]) -> f32) -> Self {

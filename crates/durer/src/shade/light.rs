@@ -3,11 +3,15 @@
 //! Point and spot lights fall off as in glTF's KHR_lights_punctual (2018): with the square of the
 //! distance, to nothing at the range, and smoothly between the cone's inner and outer angle.
 
-use super::environment::Environment;
+use super::environment::{Environment, Mirrored, world_axes};
+use super::exposure::Metered;
 use super::lane::{Lane, Vec3Lane};
+use super::panorama::Panorama;
 use super::shadow::ShadowMaps;
+use super::tone::{self, Tone};
 use crate::math::{DVec3, Vec3};
-use crate::scene::{Camera, Light, LightKind, Scene};
+use crate::scene::{Camera, Light, LightKind, Scene, UpAxis};
+use std::sync::Arc;
 
 /// Ambient light added to lights among which there is none, as a part of white; without it, what no
 /// light reaches would be black. Give [`LightKind::Ambient`] with colour zero to have none.
@@ -51,7 +55,12 @@ pub struct PreparedLights {
     pub points: Vec<PointLight>,
     /// What the lights see; empty where none throws shadows.
     pub shadows: ShadowMaps,
+    /// What is done to light before it is shown.
+    pub tone: Tone,
 }
+
+/// A panorama around a scene, and the scene's axis to which its upper border lies.
+pub type Around<'a> = Option<(&'a Arc<Panorama>, UpAxis)>;
 
 /// Squared distance below which a point light gets no brighter; keeps its strength finite.
 const NEAREST2: f32 = 1e-8;
@@ -63,26 +72,68 @@ impl PreparedLights {
     /// Where there is no ambient light, [`DEFAULT_AMBIENT`] is added. Mirrors show the ambient light
     /// and a quarter of the directional light: what it would be, spread over the whole sphere.
     pub fn new(lights: &[Light], camera: &Camera) -> Self {
+        Self::within(None, lights, camera)
+    }
+
+    /// As [`Self::new`], where a panorama, if there is one, takes the place of ambient light that is not
+    /// among the lights, and of what mirrors show.
+    pub fn within(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
+        let mut prepared = Self::without_ambient(around, lights, camera);
+        prepared.surround(ambient(lights), 1.0, Vec3::ZERO);
+        prepared
+    }
+
+    /// As [`Self::within`], but makes all light stronger or weaker by one factor, so that a
+    /// white matte surface where much of it falls on the scene is nearly white: see
+    /// [`super::exposure`]. Where there is no ambient light, [`DEFAULT_AMBIENT`] is added as it is.
+    /// The scene must pass [`Scene::check`].
+    pub fn exposed(around: Around<'_>, lights: &[Light], scene: &Scene, camera: &Camera) -> Self {
+        let mut prepared = Self::without_ambient(around, lights, camera);
+        let ambient = ambient(lights);
+        let Metered { factor, from_points } =
+            Metered::new(scene, &prepared, ambient.unwrap_or_default());
+        let directional = prepared.directional.iter_mut().map(|l| &mut l.color);
+        for color in directional.chain(prepared.points.iter_mut().map(|l| &mut l.color)) {
+            *color *= factor;
+        }
+        prepared.surround(ambient.map(|ambient| ambient * factor), factor, from_points * factor);
+        prepared
+    }
+
+    fn without_ambient(around: Around<'_>, lights: &[Light], camera: &Camera) -> Self {
         let up = camera.up.normalize_or(DVec3::Y).as_vec3();
+        let mut environment = Environment { up, ..Environment::uniform(Vec3::ZERO) };
+        if let Some((panorama, up)) = around {
+            let (panorama, axes) = (Arc::clone(panorama), world_axes(up));
+            environment.mirrored = Mirrored::Panorama { panorama, axes };
+            environment.radiance = Vec3::ONE;
+        }
         let mut prepared = Self {
             origin: camera.eye,
-            environment: Environment { up, ..Environment::uniform(Vec3::ZERO) },
+            environment,
             directional: Vec::new(),
             points: Vec::new(),
             shadows: ShadowMaps::default(),
+            tone: Tone::default(),
         };
-        let ambient: Option<Vec3> = lights
-            .iter()
-            .filter(|l| l.kind == LightKind::Ambient)
-            .map(|l| l.color)
-            .reduce(|a, b| a + b);
         lights.iter().for_each(|light| prepared.add(light));
-        let directional: Vec3 = prepared.directional.iter().map(|l| l.color).sum();
-        let environment = &mut prepared.environment;
-        environment.ambient = ambient.unwrap_or(Vec3::splat(DEFAULT_AMBIENT));
-        environment.radiance = environment.ambient + directional * 0.25;
-        (environment.gradient, environment.step) = (0.4, 0.45);
         prepared
+    }
+
+    /// Sets ambient light and what mirrors show: a panorama times `factor`, or what lights make, of which
+    /// `from_points` is the part of point lights.
+    fn surround(&mut self, ambient: Option<Vec3>, factor: f32, from_points: Vec3) {
+        let directional: Vec3 = self.directional.iter().map(|l| l.color).sum();
+        let environment = &mut self.environment;
+        if let Mirrored::Panorama { .. } = environment.mirrored {
+            environment.ambient = ambient.unwrap_or_default();
+            environment.radiance = Vec3::splat(factor);
+            return;
+        }
+        let ambient = ambient.unwrap_or(Vec3::splat(DEFAULT_AMBIENT));
+        environment.ambient = ambient;
+        environment.radiance = ambient + directional * 0.25 + from_points;
+        (environment.gradient, environment.step) = (0.4, 0.45);
     }
 
     /// Key, fill and rim light that go with the camera, and more ambient light from above: see
@@ -95,9 +146,22 @@ impl PreparedLights {
         prepared
     }
 
-    /// The scene's own lights or, where it has none, [`PreparedLights::auto`].
+    /// The scene's own lights, [exposed](Self::exposed), or, where it has none, [`PreparedLights::auto`].
     pub fn of(scene: &Scene, camera: &Camera) -> Self {
-        if scene.lights.is_empty() { Self::auto(camera) } else { Self::new(&scene.lights, camera) }
+        match &scene.lights[..] {
+            [] => Self::auto(camera),
+            lights => Self::exposed(None, lights, scene, camera),
+        }
+    }
+
+    /// What a perfect mirror shows of the surroundings in a unit direction, as a display shows it; `None`
+    /// where they are but sky and ground.
+    pub(crate) fn mirrored(&self, direction: Vec3) -> Option<Vec3> {
+        let environment = &self.environment;
+        environment.is_furnished().then(|| {
+            let seen = environment.reflection(direction.into(), 0.0, true);
+            tone::display(self.tone.of(seen)).into()
+        })
     }
 
     fn add(&mut self, light: &Light) {
@@ -136,6 +200,12 @@ impl PreparedLights {
             self.points.push(PointLight { position, color, inverse_range4, axis, scale, offset });
         }
     }
+}
+
+/// The sum of all ambient lights; `None` where there is none.
+fn ambient(lights: &[Light]) -> Option<Vec3> {
+    let ambient = lights.iter().filter(|l| l.kind == LightKind::Ambient);
+    ambient.map(|l| l.color).reduce(|a, b| a + b)
 }
 
 impl PointLight {

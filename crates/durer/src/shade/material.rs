@@ -3,6 +3,7 @@
 use super::formula::{self, Inputs};
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
+use super::lobes::{self, Lobes};
 use super::lookup::TexCoords;
 use super::metallic_roughness::Substance;
 use super::normal::{Frame, face_seen, face_viewer, perturbed};
@@ -80,6 +81,10 @@ pub struct PreparedMaterial<'a> {
     specular: Vec3,
     /// Phong's parameters without textures.
     phong: Colors,
+    /// Whether it is a metal, if only in places, or has a clear layer or goes through.
+    mirrors: bool,
+    /// What the metallic-roughness model has besides.
+    lobes: Option<Lobes>,
     base_color_slot: Option<Slot<'a>>,
     metallic_roughness_slot: Option<Slot<'a>>,
     normal_slot: Option<Slot<'a>>,
@@ -108,6 +113,8 @@ impl<'a> PreparedMaterial<'a> {
             emissive: m.emissive,
             specular: m.specular,
             phong: phong_of(m),
+            mirrors: metallic > 0.0 || Lobes::of(m).is_some(),
+            lobes: Lobes::of(m),
             base_color_slot: slot(m.base_color_texture, base_usage),
             metallic_roughness_slot: slot(m.metallic_roughness_texture, Usage::Data),
             normal_slot: slot(m.normal_texture, Usage::Data),
@@ -138,7 +145,8 @@ impl<'a> PreparedMaterial<'a> {
     pub fn looked_up_together(&self, shading: Shading) -> Option<usize> {
         let set = self.slots().next()?.set;
         let suits = |slot: &Slot<'_>| slot.set == set && slot.texture.suits_lanes();
-        let together = self.has_one_exponent(shading) && self.normal_slot.is_none();
+        let plain = self.normal_slot.is_none() && self.lobes.is_none();
+        let together = self.has_one_exponent(shading) && plain;
         (together && self.slots().all(suits)).then_some(set)
     }
 
@@ -218,10 +226,11 @@ impl<'a> PreparedMaterial<'a> {
         self.model.into()
     }
 
-    /// Whether the material has one alpha and no textures, so that [`super::shade_points`] may be used
+    /// Whether the material has one alpha, no textures and no more lobes than most, so that [`super::shade_points`] may be used
     /// on meshes without vertex colours.
     pub fn is_plain(&self) -> bool {
-        !self.textured && matches!(self.alpha_mode, AlphaMode::Opaque | AlphaMode::Blend)
+        let clear = matches!(self.alpha_mode, AlphaMode::Opaque | AlphaMode::Blend);
+        !self.textured && clear && self.lobes.is_none()
     }
 
     /// The alpha of all points of a [plain](Self::is_plain) material.
@@ -257,6 +266,7 @@ impl<'a> PreparedMaterial<'a> {
             metallic: like.splat(self.metallic),
             roughness: like.splat(self.roughness),
             occlusion: like.splat(1.0),
+            mirrors: self.mirrors,
         };
         Inputs {
             substance,
@@ -264,6 +274,8 @@ impl<'a> PreparedMaterial<'a> {
             specular: Vec3Lane::splat(like, self.phong.specular),
             shininess: self.phong.shininess,
             emission: Vec3Lane::splat(like, self.emissive),
+            // Where materials have lobes, points are not lit by constants alone.
+            lobes: None,
         }
     }
 
@@ -381,6 +393,7 @@ impl<'a> PreparedMaterial<'a> {
             specular: texel(&self.specular_slot),
         };
         let mut inputs = self.inputs(1.0, base.into(), &texels, shading);
+        inputs.lobes = self.lobes;
         if by_phong(shading) && self.model == ShadingModel::MetallicRoughness {
             self.phong_inputs(surface, base, &mut inputs);
         }
@@ -460,6 +473,15 @@ fn shade_framed(
         return Vec4::ZERO;
     }
     let Sample { frame, position, inputs } = material.sample_with(surface, frame, base, shading);
+    if let Some(lobes) = inputs.lobes.filter(|l| l.is_glass())
+        && shading == Shading::MetallicRoughness
+    {
+        let substance = &inputs.substance;
+        let whole = lobes.reflect(&frame, position, (substance, inputs.emission), lights);
+        let shine = lobes.shine(&frame, position, substance, lights);
+        let (color, alpha) = lobes::glass(whole.into(), shine.into(), alpha);
+        return Vec3::from(tone::display(lights.tone.of(color.into()))).extend(alpha);
+    }
     let shown = formula::display(&frame, position, &inputs, surface.lit.as_ref(), lights, shading);
     Vec3::from(shown).extend(alpha)
 }

@@ -5,7 +5,7 @@
 //! Walter et al. 2007); Smith's height-correlated masking after Heitz, *Understanding the
 //! Masking-Shadowing Function*, JCGT 3(2), 2014; Fresnel reflection after Schlick, *An Inexpensive BRDF
 //! Model for Physically-based Rendering*, 1994. What mirrors show of the surroundings is
-//! weighted by the closed form of Karis, *Physically Based Shading on Mobile*, 2014. Light that is reflected more than once
+//! weighted by the closed form of Karis, *Physically Based Shading on Mobile*, 2014; what surrounds them is in [`super::environment`]. Light that is reflected more than once
 //! between microfacets is given back by scaling, as in Turquin, *Practical Multiple Scattering
 //! Compensation for Microfacet Models*, 2019. Cost: O(lights) per pixel. Limits: no shadows.
 
@@ -14,6 +14,7 @@ use super::light::PreparedLights;
 use super::normal::Frame;
 use super::shadow;
 use crate::info::{Class, Info};
+use crate::math::Vec3;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -29,8 +30,25 @@ pub const INFO: Info = Info {
 
 /// Smoother surfaces than this would lose the highlight's shape in single precision.
 const LEAST_ROUGHNESS: f32 = 0.06;
-/// Reflectance of dielectrics seen straight on, refractive index 1.5.
-const DIELECTRIC: f32 = 0.04;
+
+/// What the dielectric part of a surface does with light, the same at all points of a material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Dielectric {
+    /// Reflectance seen straight on, by colour.
+    pub straight: Vec3,
+    /// The largest of them.
+    pub most: f32,
+    /// Reflectance at grazing angles.
+    pub grazing: f32,
+    /// The part of light that is let in and comes back diffusely.
+    pub matte: f32,
+}
+
+impl Dielectric {
+    /// Of refractive index 1.5, which is that of most plastics and glasses.
+    pub const PLAIN: Self =
+        Self { straight: Vec3::splat(0.04), most: 0.04, grazing: 1.0, matte: 1.0 };
+}
 
 /// A surface point's parameters, in lanes.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +60,8 @@ pub(super) struct Substance<L> {
     pub roughness: L,
     /// Part of the ambient light that gets there.
     pub occlusion: L,
+    /// Whether the material shows what surrounds the scene clearly: metals and clear layers.
+    pub mirrors: bool,
 }
 
 /// What all lights have in common at one point.
@@ -51,6 +71,7 @@ struct Point<L> {
     alpha2: L,
     /// Diffuse colour of the dielectric part.
     diffuse: Vec3Lane<L>,
+    dielectric: Dielectric,
     direct: Layers<L>,
 }
 
@@ -66,15 +87,16 @@ struct Layers<L> {
 impl<L: Lane> Layers<L> {
     /// `lack`: what a white mirror as rough as this loses by single scattering, over what it reflects.
     #[inline(always)]
-    fn new(base: Vec3Lane<L>, metallic: L, lack: L) -> Self {
-        let dielectric_gain = lack * DIELECTRIC + 1.0;
+    fn new(base: Vec3Lane<L>, metallic: L, dielectric: &Dielectric, lack: L) -> Self {
+        let dielectric_gain = lack * dielectric.most + 1.0;
         let part = metallic.one_minus() * dielectric_gain;
         let gain = |f0: L| (f0 * lack + 1.0) * metallic;
         let metal = Vec3Lane::new(gain(base.x), gain(base.y), gain(base.z));
-        let straight = part * DIELECTRIC;
+        let (straight, grazing) = (dielectric.straight, part * dielectric.grazing);
+        let straight = Vec3Lane::new(part * straight.x, part * straight.y, part * straight.z);
         Self {
-            straight: base.times(metal).plus(Vec3Lane::new(straight, straight, straight)),
-            grazing: metal.plus(Vec3Lane::new(part, part, part)),
+            straight: base.times(metal).plus(straight),
+            grazing: metal.plus(Vec3Lane::new(grazing, grazing, grazing)),
             dielectric_gain,
         }
     }
@@ -86,28 +108,41 @@ pub(super) fn reflect<L: Lane>(
     frame: &Frame<L>,
     position: Vec3Lane<L>,
     substance: &Substance<L>,
+    dielectric: Dielectric,
     lights: &PreparedLights,
 ) -> Vec3Lane<L> {
-    let one = substance.metallic.splat(1.0);
     let roughness = substance.roughness.at_least(LEAST_ROUGHNESS).at_most(1.0);
     let metallic = substance.metallic.at_least(0.0).at_most(1.0);
     let nv = frame.normal.dot(frame.view).at_least(1e-3).at_most(1.0);
     let alpha = roughness * roughness;
-    let direct = Layers::new(substance.base, metallic, lack(alpha, nv));
-    let diffuse = substance.base.scale(metallic.one_minus());
-    let point = Point { nv, alpha, alpha2: alpha * alpha, diffuse, direct };
+    let direct = Layers::new(substance.base, metallic, &dielectric, lack(alpha, nv));
+    let diffuse = substance.base.scale(metallic.one_minus() * dielectric.matte);
+    let point = Point { nv, alpha, alpha2: alpha * alpha, diffuse, dielectric, direct };
 
-    let mut sum = surroundings(frame, &point, substance.base, (metallic, roughness), lights);
-    sum = sum.scale(substance.occlusion);
+    let around = surroundings(frame, &point, substance, (metallic, roughness), lights);
+    let around = around.scale(substance.occlusion);
+    under_lights(frame, position, lights, around, |l| lit(frame, &point, l))
+}
+
+/// Adds what each light sends towards the eye to `sum`; `lit` tells the part of a light's colour by the
+/// unit vector to the light.
+#[inline(always)]
+pub(super) fn under_lights<L: Lane>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    lights: &PreparedLights,
+    mut sum: Vec3Lane<L>,
+    lit: impl Fn(Vec3Lane<L>) -> Vec3Lane<L>,
+) -> Vec3Lane<L> {
     for (i, light) in lights.directional.iter().enumerate() {
-        let l = Vec3Lane::splat(one, light.to_light);
+        let l = Vec3Lane::splat(position.x, light.to_light);
         let reach = shadow::reach(lights.shadows.directional.get(i), position, frame.face, l);
-        sum = sum.plus(lit(frame, &point, l).scale(reach).times_all(light.color));
+        sum = sum.plus(lit(l).scale(reach).times_all(light.color));
     }
     for (i, light) in lights.points.iter().enumerate() {
         let (l, strength) = light.seen_from(position);
         let reach = shadow::reach(lights.shadows.points.get(i), position, frame.face, l);
-        sum = sum.plus(lit(frame, &point, l).scale(strength * reach).times_all(light.color));
+        sum = sum.plus(lit(l).scale(strength * reach).times_all(light.color));
     }
     sum
 }
@@ -117,7 +152,7 @@ pub(super) fn reflect<L: Lane>(
 fn surroundings<L: Lane>(
     frame: &Frame<L>,
     p: &Point<L>,
-    base: Vec3Lane<L>,
+    substance: &Substance<L>,
     (metallic, roughness): (L, L),
     lights: &PreparedLights,
 ) -> Vec3Lane<L> {
@@ -125,11 +160,13 @@ fn surroundings<L: Lane>(
     let mirrored = n.scale(n.dot(frame.view) * 2.0).minus(frame.view);
     let (slope, offset) = environment_brdf(roughness, p.nv);
     let lack = p.nv.splat(1.0) / (slope + offset).at_least(0.05) - 1.0;
-    let layers = Layers::new(base, metallic, lack);
+    let layers = Layers::new(substance.base, metallic, &p.dielectric, lack);
     let specular = layers.straight.scale(slope).plus(layers.grazing.scale(offset));
-    let through = ((slope * DIELECTRIC + offset) * layers.dielectric_gain).one_minus();
-    let around = lights.environment.diffuse(n).times(p.diffuse).scale(through);
-    around.plus(lights.environment.reflection(mirrored, p.alpha).times(specular))
+    let reflected = slope * p.dielectric.most + offset * p.dielectric.grazing;
+    let through = (reflected * layers.dielectric_gain).one_minus();
+    let environment = &lights.environment;
+    let around = environment.diffuse(n).times(p.diffuse).scale(through);
+    around.plus(environment.reflection(mirrored, p.alpha, substance.mirrors).times(specular))
 }
 
 /// The part of one light's colour that leaves towards the eye; π is contained in the light's unit.
@@ -156,7 +193,7 @@ fn lit<L: Lane>(frame: &Frame<L>, p: &Point<L>, l: Vec3Lane<L>) -> Vec3Lane<L> {
     let away = vh.one_minus().power(5);
     let keep = away.one_minus();
     let fresnel = p.direct.straight.scale(keep).plus(p.direct.grazing.scale(away));
-    let through = (keep * DIELECTRIC + away).one_minus();
+    let through = (keep * p.dielectric.most + away * p.dielectric.grazing).one_minus();
     let specular = fresnel.scale(distribution * visibility);
     p.diffuse.scale(through).plus(specular).scale(nl)
 }
@@ -187,7 +224,7 @@ fn environment_brdf<L: Lane>(roughness: L, nv: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{DVec3, Vec3};
+    use crate::math::DVec3;
     use crate::shade::environment::Environment;
     use crate::shade::light::DirectionalLight;
     use crate::shade::normal::face_viewer;
@@ -199,6 +236,7 @@ mod tests {
             directional,
             points: Vec::new(),
             shadows: Default::default(),
+            tone: Default::default(),
         }
     }
 
@@ -211,8 +249,9 @@ mod tests {
     ) -> f32 {
         let frame = face_viewer(view.into(), Vec3::Z.into(), Vec3::Z.into());
         let base = Vec3Lane::from(Vec3::splat(base));
-        let substance = Substance { base, metallic, roughness, occlusion: 1.0 };
-        reflect(&frame, Vec3::ZERO.into(), &substance, lights).x
+        let mirrors = metallic > 0.0;
+        let substance = Substance { base, metallic, roughness, occlusion: 1.0, mirrors };
+        reflect(&frame, Vec3::ZERO.into(), &substance, Dielectric::PLAIN, lights).x
     }
 
     fn direction(cosine: f32, turn: f32) -> Vec3 {

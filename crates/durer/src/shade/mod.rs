@@ -9,40 +9,49 @@
 
 pub mod color;
 pub mod environment;
+pub mod exposure;
 pub mod flat;
 mod formula;
 pub mod gouraud;
 pub mod lane;
 pub mod light;
+mod lobes;
 mod lookup;
 pub mod material;
 pub mod metallic_roughness;
 mod mip;
 mod normal;
+pub mod panorama;
 pub mod phong;
 mod plain;
 mod sample;
 pub mod shadow;
 mod slot;
 mod strip;
+pub mod studio;
 mod surface;
 mod texel_rows;
 pub mod texture;
-mod tone;
+pub mod tone;
+pub mod tone_map;
 pub mod unlit;
 
+pub use environment::Surroundings;
+pub use exposure::Exposure;
 pub use flat::shade_face;
 pub use gouraud::{Reflected, shade_vertex};
 pub use light::PreparedLights;
 pub use lookup::TexCoords;
 pub use material::{PreparedMaterial, PreparedMaterials, shade, shade_seen};
 pub(crate) use normal::Frame;
+pub use panorama::Panorama;
 pub(crate) use plain::shade_frame;
 pub use plain::{Faces, Points, shade_points};
 pub use sample::{Sample, Samples};
 pub(crate) use strip::{MOST_PATCHES, Strip};
 pub use surface::{Surface, TexCoord};
 pub use texture::PreparedTexture;
+pub use tone_map::ToneMap;
 
 crate::info::family! {
     /// How intensities are interpolated and which formula lights a surface.

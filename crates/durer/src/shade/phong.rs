@@ -185,6 +185,7 @@ mod tests {
             directional: vec![DirectionalLight { to_light, color: Vec3::ONE }],
             points: Vec::new(),
             shadows: Default::default(),
+            tone: Default::default(),
         }
     }
 

@@ -4,6 +4,7 @@ use super::Shading;
 use super::formula::{self, Inputs};
 use super::lane::Vec3Lane;
 use super::light::PreparedLights;
+use super::lobes::Lobes;
 use super::metallic_roughness::Substance;
 use super::normal::Frame;
 use super::phong::Shininess;
@@ -25,8 +26,10 @@ const NUMBERS: usize = 27;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Samples {
     numbers: [[f32; 8]; NUMBERS],
-    /// The same for all of them.
+    /// The same for all of them, as is all that follows.
     shininess: Shininess,
+    mirrors: bool,
+    lobes: Option<Lobes>,
 }
 
 impl Samples {
@@ -70,7 +73,7 @@ impl Samples {
         for (to, number) in self.numbers.iter_mut().zip(numbers) {
             to[lane % 8] = number;
         }
-        self.shininess = inputs.shininess;
+        (self.shininess, self.mirrors, self.lobes) = (inputs.shininess, s.mirrors, inputs.lobes);
     }
 
     /// Linear red, green and blue, each bit for bit what [`super::shade`] gives. Cost: O(lights).
@@ -92,6 +95,7 @@ impl Samples {
             metallic: f32x8::from_slice(simd, &this.numbers[15]),
             roughness: f32x8::from_slice(simd, &this.numbers[16]),
             occlusion: f32x8::from_slice(simd, &this.numbers[17]),
+            mirrors: this.mirrors,
         };
         let inputs = Inputs {
             substance,
@@ -99,6 +103,7 @@ impl Samples {
             specular: this.vector(simd, 21),
             shininess: this.shininess,
             emission: this.vector(simd, 24),
+            lobes: this.lobes,
         };
         let color = formula::display(&frame, position, &inputs, None, lights, shading);
         [color.x.into(), color.y.into(), color.z.into()]
@@ -110,5 +115,101 @@ impl Samples {
         let x = f32x8::from_slice(simd, &self.numbers[first]);
         let y = f32x8::from_slice(simd, &self.numbers[first + 1]);
         Vec3Lane::new(x, y, f32x8::from_slice(simd, &self.numbers[first + 2]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{DVec3, Vec3, Vec4};
+    use crate::scene::{AlphaMode, Camera, Light, LightKind, Material, Projection, ShadingModel};
+    use crate::shade::environment::Mirrored;
+    use crate::shade::studio::Studio;
+    use crate::shade::tone::Tone;
+    use crate::shade::{Panorama, PreparedMaterials, Surface, ToneMap, shade_seen};
+    use crate::simd::levels;
+    use fearless_simd::dispatch;
+    use std::sync::Arc;
+
+    fn camera() -> Camera {
+        Camera {
+            eye: DVec3::new(0.0, 0.0, 5.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y: 0.7 },
+            near: 0.1,
+            far: 100.0,
+        }
+    }
+
+    /// One of each kind of lobe, and all together.
+    fn materials() -> Vec<Material> {
+        let plain = Material {
+            model: ShadingModel::MetallicRoughness,
+            base_color: Vec4::new(0.9, 0.5, 0.2, 1.0),
+            metallic: 0.2,
+            roughness: 0.4,
+            alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
+            ..Material::default()
+        };
+        let coat = Material { clearcoat: 0.8, clearcoat_roughness: 0.1, ..plain.clone() };
+        let sheen_color = Vec3::new(0.9, 0.2, 0.5);
+        let fibres = |sheen_roughness| Material { sheen_color, sheen_roughness, ..plain.clone() };
+        let specular_tint = Vec3::new(1.0, 0.5, 0.1);
+        let tinted = Material { ior: 1.9, specular_strength: 0.7, specular_tint, ..plain.clone() };
+        let clear = Material { transmission: 0.6, ..plain.clone() };
+        let all = Material { sheen_color, transmission: 0.4, ior: 1.2, ..coat.clone() };
+        vec![coat, fibres(0.1), fibres(0.7), tinted, clear, all, plain]
+    }
+
+    fn lights() -> Vec<PreparedLights> {
+        let kind = LightKind::Point { position: DVec3::new(1.0, 2.0, 3.0), range: None };
+        let lamp = Light { kind, color: Vec3::new(9.0, 7.0, 5.0) };
+        let mut studio = PreparedLights::auto(&camera());
+        studio.environment.mirrored = Mirrored::Studio(Studio::of_camera(&camera()));
+        let sky: Vec<_> = (0..32).map(|i| [0.1 * i as f32, 1.0, 0.3]).collect();
+        let sky = Arc::new(Panorama::new(8, 4, &sky).expect("panorama"));
+        let around = Some((&sky, crate::scene::UpAxis::Z));
+        let mut lit = vec![studio, PreparedLights::within(around, &[lamp], &camera())];
+        for &map in ToneMap::ALL {
+            let tone = Tone { gain: 0.7, map };
+            lit.push(PreparedLights { tone, ..lit[0].clone() });
+        }
+        lit
+    }
+
+    fn surface(i: u32) -> Surface<'static> {
+        let number = |k: u32| (i * 7 + k * 3) as f32 * 0.618_034 % 1.0 - 0.5;
+        Surface {
+            position: Vec3::new(number(1), number(2), number(3)),
+            view: Vec3::new(number(4), number(5), 1.0),
+            normal: Vec3::new(number(6), number(7), 0.9),
+            ..Surface::default()
+        }
+    }
+
+    #[test]
+    fn eight_at_a_time_are_bit_for_bit_one_at_a_time() {
+        let scene = crate::scene::Scene { materials: materials(), ..Default::default() };
+        let prepared = PreparedMaterials::new(&scene);
+        let shading = Shading::MetallicRoughness;
+        for (lights, m) in lights().iter().flat_map(|l| (0..7).map(move |m| (l, m))) {
+            let material = prepared.get(Some(m));
+            assert!(!material.is_plain() && material.is_lit_together(shading));
+            let mut samples = Samples::default();
+            for i in 0..8 {
+                samples.set(i as usize, &material.sample(&surface(i), shading));
+            }
+            for level in levels() {
+                let [r, g, b] =
+                    dispatch!(level, simd => Samples::shade(simd, &samples, lights, shading));
+                for i in 0..8 {
+                    let one = shade_seen(&surface(i as u32), material, lights, shading);
+                    let eight = [r[i], g[i], b[i]];
+                    let bits = |c: [f32; 3]| c.map(f32::to_bits);
+                    assert_eq!(bits(one.truncate().to_array()), bits(eight), "{m} {level:?}");
+                }
+            }
+        }
     }
 }

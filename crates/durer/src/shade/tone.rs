@@ -1,6 +1,53 @@
-//! The last step of every formula: what a display cannot show is brought into 0…1.
+//! The last steps of every formula: exposure, a tone map if one is asked for, and what a display still
+//! cannot show is brought into 0…1.
 
 use super::lane::{Lane, Vec3Lane};
+use super::tone_map::{self, ToneMap};
+
+/// What is done to light before it is shown. Surfaces without light, which are shown as they are, know
+/// nothing of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tone {
+    /// Factor of all light, 1 = as it is.
+    pub gain: f32,
+    /// How the range of brightness is brought to a display's.
+    pub map: ToneMap,
+}
+
+impl Default for Tone {
+    /// Light as it is.
+    fn default() -> Self {
+        Self { gain: 1.0, map: ToneMap::None }
+    }
+}
+
+impl Tone {
+    /// What becomes of light; by default exactly the light itself.
+    #[inline(always)]
+    pub(super) fn of<L: Lane>(self, light: Vec3Lane<L>) -> Vec3Lane<L> {
+        if self == Self::default() {
+            light
+        } else {
+            light.x.apart(
+                #[inline(always)]
+                || self.changed(light),
+            )
+        }
+    }
+
+    #[inline(always)]
+    fn changed<L: Lane>(self, light: Vec3Lane<L>) -> Vec3Lane<L> {
+        let gain = light.x.splat(self.gain);
+        let light = light.scale(gain);
+        let held = Vec3Lane::new(held(light.x), held(light.y), held(light.z));
+        match self.map {
+            ToneMap::None => light,
+            ToneMap::KhronosNeutral => tone_map::khronos_neutral(held),
+            ToneMap::Aces => tone_map::aces(held),
+            ToneMap::Agx => tone_map::agx(held),
+        }
+    }
+}
 
 /// Share of white that an infinitely bright colour gets.
 const BLEACH: f32 = 0.5;

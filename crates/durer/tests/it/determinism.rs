@@ -2,10 +2,12 @@
 
 use crate::scenes;
 use durer::pipeline::{
-    RenderOptions, Report, Samples, Shading, SurfaceMethod, ambient_occlusion, render, render_into,
+    Exposure, RenderOptions, Report, Samples, Shading, SurfaceMethod, Surroundings, ToneMap,
+    ambient_occlusion, render, render_into,
 };
 use durer::scene::Scene;
 use durer::target::Framebuffer;
+use std::sync::Arc;
 
 fn picture(scene: &Scene, options: &RenderOptions, threads: usize) -> (Framebuffer, Report) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -36,6 +38,31 @@ fn what_a_framebuffer_held_before_is_of_no_matter() {
 fn fine() -> Scene {
     let meshes = vec![scenes::sphere(200, None)];
     Scene { meshes, instances: vec![scenes::instance(0)], ..Scene::default() }
+}
+
+#[test]
+fn looks_have_the_same_bytes_at_every_level_and_number_of_threads() {
+    let scene = scenes::lobes();
+    let panorama = Surroundings::Panorama(Arc::new(scenes::panorama()));
+    for (algorithm, surroundings, tone_map) in [
+        (SurfaceMethod::ZBuffer, Surroundings::Studio, ToneMap::Agx),
+        (SurfaceMethod::ZBuffer, panorama.clone(), ToneMap::Aces),
+        (SurfaceMethod::ABuffer, panorama, ToneMap::KhronosNeutral),
+        (SurfaceMethod::Ray, Surroundings::Studio, ToneMap::None),
+    ] {
+        let mut options = scenes::options(&scene, 90, 70);
+        (options.algorithm, options.surroundings) = (algorithm, surroundings);
+        (options.tone_map, options.exposure) = (tone_map, Some(Exposure::Ev(0.5)));
+        options.bounces = if algorithm == SurfaceMethod::Ray { 2 } else { 0 };
+        let (expected, _) = picture(&scene, &options, 1);
+        for level in durer::simd::levels() {
+            for threads in [1, 2, 4] {
+                options.level = level;
+                let (found, _) = picture(&scene, &options, threads);
+                assert!(found == expected, "{algorithm} {tone_map:?} {level:?} {threads} threads");
+            }
+        }
+    }
 }
 
 #[test]

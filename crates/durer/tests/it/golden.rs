@@ -5,13 +5,15 @@
 //! is written beside its golden one into `target/golden/`, with the difference as third panel.
 
 use crate::{data, scenes};
-use durer::pipeline::{Cull, RenderOptions, Samples, Shading, render};
-use durer::scene::{Aabb, Camera, Scene, UpAxis};
+use durer::math::{DVec3, Vec3};
+use durer::pipeline::{Cull, RenderOptions, Samples, Shading, Surroundings, ToneMap, render};
+use durer::scene::{Aabb, Camera, Light, LightKind, Scene, UpAxis};
 use durer::target::Pixels;
 use durer::view::projection::{FitOptions, Lens, NamedView};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 fn golden_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
@@ -76,6 +78,30 @@ fn scenes_made_by_code() {
             let picture = render(&scene, &options).expect("picture").0.color;
             check(&format!("{name}_{shading}"), &picture);
         }
+    }
+}
+
+#[test]
+fn looks_made_by_code() {
+    let scene = scenes::lobes();
+    let panorama = Surroundings::Panorama(Arc::new(scenes::panorama()));
+    let lamp = LightKind::Point { position: DVec3::new(2.0, 3.0, 4.0), range: None };
+    let mut lit = scene.clone();
+    lit.lights.push(Light { kind: lamp, color: Vec3::new(5e4, 4e4, 3e4) });
+    let maps = [ToneMap::KhronosNeutral, ToneMap::Aces, ToneMap::Agx];
+    let (studio, none) = (Surroundings::Studio, Surroundings::None);
+    let looks = [
+        ("studio", &scene, studio.clone(), ToneMap::None),
+        ("no_studio", &scene, none, ToneMap::None),
+        ("panorama", &scene, panorama, ToneMap::None),
+        ("lamp", &lit, studio.clone(), ToneMap::None),
+    ];
+    let mapped = maps.map(|map| (map.name(), &scene, studio.clone(), map));
+    for (name, scene, surroundings, tone_map) in looks.into_iter().chain(mapped) {
+        let mut options = scenes::options(scene, 120, 90);
+        (options.surroundings, options.tone_map) = (surroundings, tone_map);
+        let picture = render(scene, &options).expect("picture").0.color;
+        check(&format!("look_{name}"), &picture);
     }
 }
 

@@ -23,6 +23,7 @@ mod fuzz;
 mod golden;
 mod height_field;
 mod hidden_line;
+mod light;
 mod line_classes;
 mod line_counts;
 mod line_oracle;

@@ -6,6 +6,7 @@ use durer::scene::{
     AlphaMode, Camera, Image, Instance, Material, Mesh, Projection, Scene, ShadingModel, Texture,
     TextureRef, Topology,
 };
+use durer::shade::Panorama;
 
 /// Pseudo-random numbers in 0…1, the same everywhere.
 pub struct Numbers(pub u64);
@@ -123,6 +124,59 @@ pub fn materials() -> Scene {
         .collect();
     let textures = vec![Texture { image: 0, sampler: Default::default() }];
     Scene { meshes, instances, materials, textures, images: vec![checkers()], ..Scene::default() }
+}
+
+/// A chrome, a gold, a coated, a woven, a tinted and a glass sphere.
+pub fn lobes() -> Scene {
+    let plain = Material {
+        model: ShadingModel::MetallicRoughness,
+        base_color: Vec4::new(0.6, 0.1, 0.1, 1.0),
+        roughness: 0.5,
+        ..Material::default()
+    };
+    let metal = |r: f32, g: f32, b: f32, roughness| Material {
+        base_color: Vec4::new(r, g, b, 1.0),
+        metallic: 1.0,
+        roughness,
+        ..plain.clone()
+    };
+    let materials = vec![
+        metal(0.9, 0.9, 0.9, 0.0),
+        metal(1.0, 0.77, 0.34, 0.4),
+        Material { clearcoat: 1.0, clearcoat_roughness: 0.05, ..plain.clone() },
+        Material { sheen_color: Vec3::new(0.9, 0.7, 0.8), sheen_roughness: 0.4, ..plain.clone() },
+        Material { ior: 2.2, specular_tint: Vec3::new(0.3, 0.6, 1.0), ..plain.clone() },
+        Material {
+            base_color: Vec4::new(0.8, 0.9, 1.0, 0.2),
+            transmission: 0.9,
+            roughness: 0.1,
+            alpha_mode: AlphaMode::Blend,
+            ..plain.clone()
+        },
+    ];
+    let meshes = (0..materials.len()).map(|m| sphere(10, Some(m))).collect();
+    let place = |mesh: usize| {
+        let at = DVec3::new((mesh % 3) as f64 * 1.1 - 1.1, (mesh / 3) as f64 * 1.1 - 0.6, 0.0);
+        let world_from_mesh = DMat4::from_translation(at) * DMat4::from_scale(DVec3::splat(0.5));
+        Instance { mesh, world_from_mesh, name: String::new() }
+    };
+    Scene {
+        meshes,
+        instances: (0..materials.len()).map(place).collect(),
+        materials,
+        ..Scene::default()
+    }
+}
+
+/// A panorama: blue above, brown below, and a bright window on the left.
+pub fn panorama() -> Panorama {
+    let color = |x: u32, y: u32| match (x, y) {
+        (6..10, 5..9) => [9.0, 8.0, 7.0],
+        (_, 0..8) => [0.4, 0.6, 1.0],
+        _ => [0.3, 0.2, 0.1],
+    };
+    let pixels: Vec<_> = (0..16).flat_map(|y| (0..32).map(move |x| color(x, y))).collect();
+    Panorama::new(32, 16, &pixels).expect("panorama")
 }
 
 /// All scenes, by name.

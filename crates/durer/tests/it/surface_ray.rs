@@ -6,6 +6,8 @@ use durer::math::{DVec3, Vec3, Vec4};
 use durer::pipeline::Samples;
 use durer::scene::{AlphaMode, Light, LightKind, Material, Mesh, Part, Scene, ShadingModel};
 use durer::shade::PreparedLights;
+use durer::shade::environment::Mirrored;
+use durer::shade::studio::Studio;
 use durer::target::{Framebuffer, NO_ITEM};
 use durer::trace::{NoTrace, Recorder};
 use durer::visibility::surface::ray::{Options, RayKind, Step, render};
@@ -169,6 +171,53 @@ fn glass_bends_rays_and_clear_film_does_not() {
     // Behind glass the angle of a ray to the axis is 2/3 of what it was: 3 + 1 becomes 3 + 2/3.
     let wider = width * 4.0 / (3.0 + 2.0 / 3.0);
     assert!((f64::from(glass) - wider).abs() <= 1.0, "{glass} {wider}");
+}
+
+#[test]
+fn what_lies_behind_more_glass_than_rays_bounce_is_seen() {
+    let mut scene = Scene::default();
+    for i in 0..6 {
+        let mut glass = unlit(1.0, 1.0, 1.0);
+        (glass.base_color.w, glass.alpha_mode) = (0.1, AlphaMode::Blend);
+        square(&mut scene, 2.0 - 0.2 * i as f32, 2.0, glass);
+    }
+    square(&mut scene, 0.0, 2.0, unlit(0.0, 0.0, 1.0));
+    let p = in_front(&scene, &[]);
+    // Straight through, so that the order of bounces has no say.
+    let seen = |depth| {
+        let options = Options { reflections: true, depth, ..Options::default() };
+        color_at(&picture(&p, &options), 32, 32)
+    };
+    let expected = seen(20);
+    assert!(expected[0] > 100 && expected[2] == 255, "{expected:?}");
+    for depth in [0, 1, 2, 5, 7] {
+        let found = seen(depth);
+        assert!((0..4).all(|i| found[i].abs_diff(expected[i]) <= 1), "{depth}: {found:?}");
+    }
+}
+
+#[test]
+fn mirrors_show_the_studio_where_they_show_nothing_else() {
+    let mut scene = Scene::default();
+    let (model, base_color) = (ShadingModel::MetallicRoughness, Vec4::ONE);
+    let (metallic, roughness) = (1.0, 0.0);
+    square(
+        &mut scene,
+        0.0,
+        1.0,
+        Material { model, base_color, metallic, roughness, ..Material::default() },
+    );
+    let mut p = in_front(&scene, &[]);
+    let look = durer::visibility::surface::picture::Options {
+        background: durer::pipeline::Background::Color(Vec4::ZERO),
+        ..Default::default()
+    };
+    let options = Options { look, reflections: true, ..Options::default() };
+    assert_eq!(color_at(&picture(&p, &options), 32, 32)[..3], [0, 0, 0]);
+    p.lights.environment.radiance = Vec3::ONE;
+    p.lights.environment.mirrored = Mirrored::Studio(Studio::of_world(durer::scene::UpAxis::Y));
+    let [r, _, b, a] = color_at(&picture(&p, &options), 32, 32);
+    assert!(r > 100 && r == b && a == 255, "{r} {b} {a}");
 }
 
 /// The rays of a kind that a picture takes.

@@ -120,6 +120,8 @@ impl<'a> Prepared<'a> {
         let mut options = options(scene, width, height);
         (options.item, options.depth, options.normal) = (true, true, true);
         options.samples = durer::pipeline::Samples::One;
+        // The lights here know of no studio.
+        options.surroundings = durer::pipeline::Surroundings::None;
         let view = View::new(options.camera, width, height).expect("view");
         let lights = PreparedLights::of(scene, &options.camera);
         Self { scene, options, view, lights }

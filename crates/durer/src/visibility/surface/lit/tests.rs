@@ -3,7 +3,11 @@
 use super::*;
 use crate::math::{DMat4, DVec3};
 use crate::scene::{Camera, Instance, Light, LightKind, Material, Part, Projection};
+use crate::shade::ToneMap;
 use crate::shade::color::encode_srgb8;
+use crate::shade::environment::Mirrored;
+use crate::shade::studio::Studio;
+use crate::shade::tone::Tone;
 use crate::simd::levels;
 use crate::target::NO_ITEM;
 use crate::visibility::surface::patch::Patch;
@@ -258,7 +262,11 @@ fn pixels_are_lit_alike_alone_and_together() {
         let (target, up) = (DVec3::ZERO, DVec3::Y);
         let camera = Camera { eye: EYE, target, up, projection, near: 0.1, far: 10.0 };
         let view = View::new(camera, 96, 64).expect("view");
-        for lights in [PreparedLights::auto(&camera), PreparedLights::new(&[lamp], &camera)] {
+        let mut studio = PreparedLights::auto(&camera);
+        studio.environment.mirrored = Mirrored::Studio(Studio::of_camera(&camera));
+        studio.tone = Tone { gain: 1.5, map: ToneMap::Agx };
+        let lamp = PreparedLights::new(&[lamp], &camera);
+        for lights in [PreparedLights::auto(&camera), studio, lamp] {
             for (level, reach) in levels().into_iter().flat_map(|l| [(l, 0), (l, 128)]) {
                 let drawn = (&scene, &view, runs.as_slice());
                 let lighting = Lighting::by_material(drawn, (&materials, &lights), reach, level);

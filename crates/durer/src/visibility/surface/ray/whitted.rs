@@ -21,6 +21,9 @@ const LEAST: f32 = 1.0 / 512.0;
 /// Rays are not followed further than this, whatever the options say.
 const DEEPEST: u32 = 32;
 
+/// Blended surfaces that are looked through behind the last bounce; more are not told from a wall.
+const MOST_LAYERS: usize = 1024;
+
 /// A ray must be this far away, times the largest coordinate, before it hits anything: more than the
 /// rounding of its origin.
 const CLEARANCE: f32 = 1.0 / (1 << 18) as f32;
@@ -140,7 +143,7 @@ impl<'a> Whitted<'a> {
             let share = self.mirrored_share(p);
             let weight = path.weight * share.max_element();
             let direction = reflected(p.view, p.normal);
-            let behind = self.sky(direction);
+            let behind = self.surroundings(direction);
             let mirrored = Path { generation: path.generation + 1, weight, behind };
             if weight >= LEAST && direction.dot(p.face_normal) > 0.0 {
                 let seen = self.follow(world, p, direction, RayKind::Mirror, mirrored, hear);
@@ -162,8 +165,14 @@ impl<'a> Whitted<'a> {
         path: Path,
         hear: Hear<'_>,
     ) -> Vec4 {
-        if path.generation > self.options.depth.min(DEEPEST) || path.weight < LEAST {
+        if path.weight < LEAST {
             return path.behind;
+        }
+        if path.generation > self.options.depth.min(DEEPEST) {
+            return match kind {
+                RayKind::Refraction => self.straight_on(world, *from, direction, path, hear),
+                _ => path.behind,
+            };
         }
         let ray = leaving(from, direction, f32::MAX);
         let hit = self.cast(world, &ray, false);
@@ -172,6 +181,36 @@ impl<'a> Whitted<'a> {
         let seen = Seen::Point { weights, view: -direction };
         let point = self.point(item, seen, weights, -direction);
         self.light(world, &point, path, hear)
+    }
+
+    /// What a ray sees behind the last bounce: all that it goes through, straight on, up to the first
+    /// opaque surface.
+    fn straight_on(
+        &mut self,
+        world: &WorldTriangles,
+        mut from: Point,
+        direction: Vec3,
+        path: Path,
+        hear: Hear<'_>,
+    ) -> Vec4 {
+        let (mut color, mut left) = (Vec4::ZERO, 1.0);
+        for _ in 0..MOST_LAYERS {
+            let hit = self.cast(world, &leaving(&from, direction, f32::MAX), false);
+            hear(RayKind::Refraction, path.generation, hit.map(|h| h.item));
+            let Some(WorldHit { item, weights, .. }) = hit else { break };
+            let seen = Seen::Point { weights, view: -direction };
+            from = self.point(item, seen, weights, -direction);
+            if self.options.shadows {
+                self.find_reaching(world, &from, path.generation, hear);
+            }
+            let layer = premultiply(self.lit.color_under(item, seen, &self.reaching));
+            color += layer * left;
+            left *= 1.0 - layer.w;
+            if left * path.weight < LEAST {
+                return color;
+            }
+        }
+        color + path.behind * left
     }
 
     /// The nearest thing that a ray hits; for shadows, of what is not blended.
@@ -270,6 +309,13 @@ impl<'a> Whitted<'a> {
             return reflected(p.view, p.normal);
         }
         (p.normal * (eta * cos - k.sqrt()) - p.view * eta).normalize_or(-p.view)
+    }
+
+    /// What mirrors show where they show nothing of the scene: its surroundings, or the background where
+    /// these are but sky and ground; linear, premultiplied.
+    fn surroundings(&self, direction: Vec3) -> Vec4 {
+        let mirrored = self.shared.lights.mirrored(direction);
+        mirrored.map_or_else(|| self.sky(direction), |color| color.extend(1.0))
     }
 
     /// The background in a direction; linear, premultiplied.

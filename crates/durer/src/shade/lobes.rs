@@ -1,0 +1,395 @@
+//! What glTF's extensions add to the metallic-roughness formula: another refractive index, a tinted or weak
+//! reflection, a clear coat, sheen, and glass.
+//!
+//! Khronos, *KHR_materials_ior*, *_specular*, *_clearcoat*, *_sheen*, *_transmission*, 2020–2021. Sheen: A.
+//! Estevez and C. Kulla, *Production Friendly Microfacet Sheen BRDF*, SIGGRAPH 2017 (the "Charlie"
+//! distribution) with the visibility of D. Neubelt and M. Pettineo, *Crafting a Next-Gen Material Pipeline
+//! for The Order: 1886*, 2013; its albedo, by which what is under it gets darker, by the fit of three.js
+//! (2021). Deviations: a coat has the normal of what is under it.
+
+use super::lane::{Lane, Vec3Lane};
+use super::light::PreparedLights;
+use super::metallic_roughness::{self, Dielectric, Substance, under_lights};
+use super::normal::Frame;
+use crate::math::Vec3;
+use crate::scene::{AlphaMode, Material, ShadingModel};
+
+/// What a material has beyond base colour, metalness and roughness; the same at all of its points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lobes {
+    dielectric: Dielectric,
+    coat: Option<Coat>,
+    sheen: Option<Sheen>,
+    /// The part of light that goes through what is not blended.
+    through: f32,
+    /// Whether what is blended shows its reflections in full, as glass does.
+    glass: bool,
+}
+
+/// A clear layer over the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Coat {
+    strength: f32,
+    roughness: f32,
+}
+
+/// Fibres over the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sheen {
+    color: Vec3,
+    /// One over the distribution's α.
+    sharpness: f32,
+    /// The fit of the albedo: e^(slope · n·v + offset) + more, over π.
+    slope: f32,
+    offset: f32,
+    more: f32,
+}
+
+/// A number of a file, held; `default` for what is none.
+fn held(value: f32, most: f32, default: f32) -> f32 {
+    if value.is_nan() { default } else { value.clamp(0.0, most) }
+}
+
+fn held_color(color: Vec3, default: f32) -> Vec3 {
+    Vec3::from_array(color.to_array().map(|channel| held(channel, 1e6, default)))
+}
+
+impl Lobes {
+    /// `None` for a material that the plain formula says all about.
+    pub fn of(m: &Material) -> Option<Self> {
+        let sheen_color = held_color(m.sheen_color, 0.0);
+        let coat = held(m.clearcoat, 1.0, 0.0);
+        let transmission = held(m.transmission, 1.0, 0.0);
+        let blends = m.alpha_mode == AlphaMode::Blend;
+        let through = if blends { 0.0 } else { transmission };
+        let lobes = Self {
+            dielectric: Dielectric { matte: 1.0 - through, ..dielectric(m) },
+            coat: (coat > 0.0).then(|| {
+                let roughness = held(m.clearcoat_roughness, 1.0, 0.0);
+                Coat { strength: coat, roughness }
+            }),
+            sheen: (sheen_color != Vec3::ZERO).then(|| Sheen::new(sheen_color, m.sheen_roughness)),
+            through,
+            glass: blends && transmission > 0.0,
+        };
+        let Self { coat, sheen, .. } = lobes;
+        let plain = lobes.dielectric == Dielectric::PLAIN && !lobes.glass;
+        let plain = plain && coat.is_none() && sheen.is_none();
+        (m.model == ShadingModel::MetallicRoughness && !plain).then_some(lobes)
+    }
+
+    /// Whether reflections are seen on what is blended, however clear it is.
+    pub fn is_glass(&self) -> bool {
+        self.glass
+    }
+
+    /// The light that leaves a point towards the eye, with that of its own.
+    #[inline(always)]
+    pub fn reflect<L: Lane>(
+        &self,
+        frame: &Frame<L>,
+        position: Vec3Lane<L>,
+        light: (&Substance<L>, Vec3Lane<L>),
+        lights: &PreparedLights,
+    ) -> Vec3Lane<L> {
+        position.x.apart(
+            #[inline(always)]
+            || self.all(frame, position, light, lights),
+        )
+    }
+
+    #[inline(always)]
+    fn all<L: Lane>(
+        &self,
+        frame: &Frame<L>,
+        position: Vec3Lane<L>,
+        (substance, emission): (&Substance<L>, Vec3Lane<L>),
+        lights: &PreparedLights,
+    ) -> Vec3Lane<L> {
+        let mut sum = reflect_apart(frame, position, substance, self.dielectric, lights);
+        if self.through > 0.0 {
+            sum = sum.plus(self.seen_through(frame, substance, lights));
+        }
+        if let Some(sheen) = &self.sheen {
+            sum = sheen.over(sum, frame, position, substance.occlusion, lights);
+        }
+        sum = sum.plus(emission);
+        match self.coat {
+            Some(coat) => coat.over(sum, frame, position, substance.occlusion, lights),
+            None => sum,
+        }
+    }
+
+    /// Reflections alone, without what the surface scatters or sends out itself.
+    #[inline(always)]
+    pub fn shine<L: Lane>(
+        &self,
+        frame: &Frame<L>,
+        position: Vec3Lane<L>,
+        substance: &Substance<L>,
+        lights: &PreparedLights,
+    ) -> Vec3Lane<L> {
+        let dark = Vec3Lane::splat(position.x, Vec3::ZERO);
+        let dielectric = Dielectric { matte: 0.0, ..self.dielectric };
+        Self { dielectric, sheen: None, ..*self }.reflect(
+            frame,
+            position,
+            (substance, dark),
+            lights,
+        )
+    }
+
+    /// The surroundings straight behind the surface, tinted, where nothing behind it is drawn.
+    #[inline(always)]
+    fn seen_through<L: Lane>(
+        &self,
+        frame: &Frame<L>,
+        substance: &Substance<L>,
+        lights: &PreparedLights,
+    ) -> Vec3Lane<L> {
+        let alpha = substance.roughness * substance.roughness;
+        let behind = lights.environment.reflection(frame.view.reversed(), alpha, true);
+        let metallic = substance.metallic.at_least(0.0).at_most(1.0);
+        behind.times(substance.base).scale(metallic.one_minus() * self.through)
+    }
+}
+
+/// The plain formula, once for all that call it.
+#[inline(always)]
+fn reflect_apart<L: Lane>(
+    frame: &Frame<L>,
+    position: Vec3Lane<L>,
+    substance: &Substance<L>,
+    dielectric: Dielectric,
+    lights: &PreparedLights,
+) -> Vec3Lane<L> {
+    position.x.apart(
+        #[inline(always)]
+        || metallic_roughness::reflect(frame, position, substance, dielectric, lights),
+    )
+}
+
+/// Reflectance by KHR_materials_ior and KHR_materials_specular. An index of 0 reflects all, as for
+/// materials that were converted from specular-glossiness.
+fn dielectric(m: &Material) -> Dielectric {
+    let index = held(m.ior, 1e6, 1.5);
+    let root = (index.max(1.0) - 1.0) / (index.max(1.0) + 1.0);
+    // The quotient of 1.5 is not 0.2 to the last bit.
+    let plain = index == 1.5;
+    let straight = if plain { Dielectric::PLAIN.most } else { root * root };
+    let straight = if index == 0.0 { 1.0 } else { straight };
+    let grazing = held(m.specular_strength, 1.0, 1.0);
+    let straight = (held_color(m.specular_tint, 1.0) * straight).min(Vec3::ONE) * grazing;
+    Dielectric { straight, most: straight.max_element(), grazing, matte: 1.0 }
+}
+
+impl Coat {
+    /// A coat over what leaves the surface.
+    #[inline(always)]
+    fn over<L: Lane>(
+        self,
+        under: Vec3Lane<L>,
+        frame: &Frame<L>,
+        position: Vec3Lane<L>,
+        occlusion: L,
+        lights: &PreparedLights,
+    ) -> Vec3Lane<L> {
+        let like = position.x;
+        let substance = Substance {
+            base: Vec3Lane::splat(like, Vec3::ZERO),
+            metallic: like.splat(0.0),
+            roughness: like.splat(self.roughness),
+            occlusion,
+            mirrors: true,
+        };
+        let clear = Dielectric { matte: 0.0, ..Dielectric::PLAIN };
+        let shine = reflect_apart(frame, position, &substance, clear, lights);
+        let nv = frame.normal.dot(frame.view).at_least(0.0).at_most(1.0);
+        let reflected = nv.one_minus().power(5) * (1.0 - clear.most) + clear.most;
+        let let_in = (reflected * self.strength).one_minus();
+        under.scale(let_in).plus(shine.scale(like.splat(self.strength)))
+    }
+}
+
+impl Sheen {
+    fn new(color: Vec3, roughness: f32) -> Self {
+        let roughness = held(roughness, 1.0, 0.0);
+        let square = roughness * roughness;
+        let (slope, offset, more) = if roughness < 0.25 {
+            let slope = -339.2 * square + 161.4 * roughness - 25.9;
+            (slope, 44.0 * square - 23.7 * roughness + 3.26, 0.0)
+        } else {
+            let slope = -8.48 * square + 14.3 * roughness - 9.95;
+            (slope, 1.97 * square - 3.27 * roughness + 0.72, 0.1 * (roughness - 0.25))
+        };
+        // Smoother than this is thinner than any highlight.
+        let sharpness = 1.0 / square.max(0.005);
+        Self { color: color.min(Vec3::ONE), sharpness, slope, offset, more }
+    }
+
+    /// The part of light from all around that the fibres send towards the eye.
+    #[inline(always)]
+    fn albedo<L: Lane>(&self, nv: L) -> L {
+        let exponent = (nv * self.slope + self.offset) * std::f32::consts::LOG2_E;
+        ((exponent.exp2() + self.more) * std::f32::consts::FRAC_1_PI).at_most(1.0)
+    }
+
+    /// Fibres over what leaves the surface.
+    #[inline(always)]
+    fn over<L: Lane>(
+        &self,
+        under: Vec3Lane<L>,
+        frame: &Frame<L>,
+        position: Vec3Lane<L>,
+        occlusion: L,
+        lights: &PreparedLights,
+    ) -> Vec3Lane<L> {
+        let nv = frame.normal.dot(frame.view).at_least(1e-3).at_most(1.0);
+        let albedo = self.albedo(nv);
+        let left = (albedo * self.color.max_element()).one_minus();
+        let around = lights.environment.diffuse(frame.normal).scale(occlusion * albedo);
+        let sheen = under_lights(frame, position, lights, around, |l| {
+            let strength = self.towards_eye(frame, nv, l);
+            Vec3Lane::new(strength, strength, strength)
+        });
+        under.scale(left).plus(sheen.times_all(self.color))
+    }
+
+    /// The part of one light that the fibres send towards the eye; π is contained in the light's unit.
+    #[inline(always)]
+    fn towards_eye<L: Lane>(&self, frame: &Frame<L>, nv: L, l: Vec3Lane<L>) -> L {
+        let nl = frame.normal.dot(l).at_least(0.0).at_most(1.0);
+        let h = l.plus(frame.view).unit_or(frame.normal);
+        let across = frame.normal.cross(h);
+        let sine2 = across.dot(across).at_least(1.0 / 128.0).at_most(1.0);
+        let half = self.sharpness * 0.5;
+        let distribution = sine2.power_real(half) * (half + 1.0);
+        let visibility = nl.splat(0.25) / (nl + nv - nl * nv).at_least(1e-6);
+        distribution * visibility * nl
+    }
+}
+
+/// What glass over a background is: the colour, and the alpha by which its scattered light covers with
+/// `alpha` and its reflections, `shine`, in full.
+pub(super) fn glass(whole: Vec3, shine: Vec3, alpha: f32) -> (Vec3, f32) {
+    let shine = shine.max(Vec3::ZERO);
+    let premultiplied = whole * alpha + shine * (1.0 - alpha);
+    let covered = alpha + (1.0 - alpha) * shine.max_element().min(1.0);
+    (premultiplied / covered.max(1e-6), covered)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DVec3;
+    use crate::shade::environment::Environment;
+    use crate::shade::normal::face_viewer;
+
+    fn plain() -> Material {
+        Material { model: ShadingModel::MetallicRoughness, ..Material::default() }
+    }
+
+    /// What leaves a surface of base colour 0.5 in a white room, seen at an angle of this cosine.
+    fn in_white_room(m: &Material, cosine: f32) -> Vec3 {
+        let lights = PreparedLights {
+            origin: DVec3::ZERO,
+            environment: Environment::uniform(Vec3::ONE),
+            directional: Vec::new(),
+            points: Vec::new(),
+            shadows: Default::default(),
+            tone: Default::default(),
+        };
+        let view = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+        let frame = face_viewer(view.into(), Vec3::Z.into(), Vec3::Z.into());
+        let substance = Substance {
+            base: Vec3Lane::from(Vec3::splat(0.5)),
+            metallic: 0.0,
+            roughness: 0.2,
+            occlusion: 1.0,
+            mirrors: true,
+        };
+        let dark = Vec3::ZERO.into();
+        let lobes = Lobes::of(m).expect("more than plain");
+        lobes.reflect(&frame, dark, (&substance, dark), &lights).into()
+    }
+
+    #[test]
+    fn plain_materials_have_no_lobes() {
+        assert_eq!(Lobes::of(&plain()), None);
+        assert_eq!(Lobes::of(&Material { clearcoat: 1.0, ..Material::default() }), None);
+        let nan = f32::NAN;
+        let odd = Material { ior: nan, clearcoat: nan, transmission: nan, ..plain() };
+        assert_eq!(Lobes::of(&Material { specular_strength: nan, ..odd }), None);
+    }
+
+    #[test]
+    fn reflectance_follows_index_strength_and_tint() {
+        let straight = |m: Material| dielectric(&m).straight;
+        assert_eq!(straight(plain()), Vec3::splat(0.04));
+        assert!((straight(Material { ior: 2.0, ..plain() }).x - 1.0 / 9.0).abs() < 1e-6);
+        assert_eq!(straight(Material { ior: 0.0, ..plain() }), Vec3::ONE);
+        assert_eq!(straight(Material { ior: 1.0, ..plain() }), Vec3::ZERO);
+        let weak = Material { specular_strength: 0.5, ..plain() };
+        assert_eq!(straight(weak.clone()), Vec3::splat(0.02));
+        assert_eq!(dielectric(&weak).grazing, 0.5);
+        let specular_tint = Vec3::new(1.0, 0.5, 99.0);
+        let tinted = Material { specular_tint, ..plain() };
+        assert_eq!(straight(tinted), Vec3::new(0.04, 0.02, 1.0));
+    }
+
+    #[test]
+    fn no_lobe_makes_more_light_than_there_is() {
+        let all = [
+            Material { clearcoat: 1.0, ..plain() },
+            Material { clearcoat: 0.5, clearcoat_roughness: 0.7, ..plain() },
+            Material { sheen_color: Vec3::ONE, sheen_roughness: 0.1, ..plain() },
+            Material { sheen_color: Vec3::ONE, sheen_roughness: 0.8, ..plain() },
+            Material { ior: 2.4, ..plain() },
+            Material { transmission: 1.0, ..plain() },
+        ];
+        for (m, cosine) in all.iter().flat_map(|m| [0.05, 0.2, 0.5, 1.0].map(|c| (m, c))) {
+            let light = in_white_room(m, cosine);
+            // The closed form of what mirrors reflect is above Fresnel's law at grazing angles.
+            assert!(light.min_element() > 0.3 && light.max_element() < 1.06, "{cosine}: {light}");
+        }
+    }
+
+    #[test]
+    fn coats_reflect_most_at_grazing_angles() {
+        let coat = Material { clearcoat: 1.0, ..plain() };
+        let bare = Material { clearcoat: 1e-6, ..plain() };
+        let more = |cosine| in_white_room(&coat, cosine).x - in_white_room(&bare, cosine).x;
+        assert!(more(1.0) > 0.01 && more(1.0) < 0.03, "{}", more(1.0));
+        assert!(more(0.1) > 0.05, "{}", more(0.1));
+    }
+
+    #[test]
+    fn sheen_is_seen_at_the_border_of_cloth() {
+        let black = |sheen_color| Material { sheen_color, sheen_roughness: 0.3, ..plain() };
+        let red = black(Vec3::X);
+        let (straight, grazing) = (in_white_room(&red, 1.0), in_white_room(&red, 0.05));
+        assert!(grazing.x - grazing.y > 4.0 * (straight.x - straight.y), "{straight} {grazing}");
+    }
+
+    #[test]
+    fn what_goes_through_does_not_come_back() {
+        let clear = Material { transmission: 1.0, ..plain() };
+        let lobes = Lobes::of(&clear).expect("lobes");
+        assert_eq!((lobes.dielectric.matte, lobes.through, lobes.glass), (0.0, 1.0, false));
+        let blended = Material { alpha_mode: AlphaMode::Blend, ..clear };
+        let lobes = Lobes::of(&blended).expect("lobes");
+        assert_eq!((lobes.dielectric.matte, lobes.through, lobes.glass), (1.0, 0.0, true));
+    }
+
+    #[test]
+    fn reflections_stay_on_clear_glass() {
+        // Nothing but a highlight: as bright over black as if it were opaque.
+        let (color, alpha) = glass(Vec3::splat(0.9), Vec3::splat(0.8), 0.0);
+        assert!((color * alpha - Vec3::splat(0.8)).length() < 1e-6);
+        // No highlight: plain blending.
+        let (color, alpha) = glass(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO, 0.25);
+        assert_eq!((color, alpha), (Vec3::new(0.1, 0.2, 0.3), 0.25));
+        let (color, alpha) = glass(Vec3::ZERO, Vec3::ZERO, 0.0);
+        assert_eq!((color, alpha), (Vec3::ZERO, 0.0));
+    }
+}
