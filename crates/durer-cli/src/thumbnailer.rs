@@ -43,6 +43,12 @@ const TYPES: &[(&str, &[&str])] = &[
             "application/vnd.ms-package.3dmanufacturing-3dmodel+xml",
         ],
     ),
+    ("COLLADA", &["model/vnd.collada+xml"]),
+    ("OFF", &["model/off", "application/x-off"]),
+    ("LAS", &["application/vnd.las", "application/vnd.laszip"]),
+    ("E57", &["model/e57"]),
+    // Other lists of numbers have these endings too, so only those of points alone.
+    ("points as text", &["model/x-pts"]),
 ];
 
 /// Formats that desktops do not know, by what they are called above.
@@ -56,6 +62,30 @@ const UNKNOWN: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
       <match type="string" offset="0" value="ply\r"/>
     </magic>
     <glob pattern="*.ply"/>
+  </mime-type>
+  <mime-type type="model/off">
+    <comment>OFF 3D model</comment>
+    <alias type="application/x-off"/>
+    <glob pattern="*.off"/>
+  </mime-type>
+  <mime-type type="application/vnd.las">
+    <comment>LAS points</comment>
+    <magic priority="50"><match type="string" offset="0" value="LASF"/></magic>
+    <glob pattern="*.las"/>
+  </mime-type>
+  <mime-type type="application/vnd.laszip">
+    <comment>LAZ points</comment>
+    <glob pattern="*.laz"/>
+  </mime-type>
+  <mime-type type="model/e57">
+    <comment>E57 points</comment>
+    <magic priority="50"><match type="string" offset="0" value="ASTM-E57"/></magic>
+    <glob pattern="*.e57"/>
+  </mime-type>
+  <mime-type type="model/x-pts">
+    <comment>Points as text</comment>
+    <glob pattern="*.pts"/>
+    <glob pattern="*.xyzrgb"/>
   </mime-type>
 </mime-info>
 "#;

@@ -84,7 +84,7 @@ fn contest(name: &str, scene: &Scene, rounds: usize) -> Result<()> {
             result?;
             costs.push(cost);
         }
-        let filter = Filter { cull: Cull::None, sample_reach: 0 };
+        let filter = Filter::new(Cull::None, 0);
         let input = SurfaceInput::new(scene, &view, filter)?;
         let (built, cost) = measure(|| PrimaryRays::new(&input));
         rays[0].push(cost);
@@ -122,7 +122,7 @@ fn picture(
     view: &View,
     lights: &PreparedLights,
 ) -> Result<Framebuffer> {
-    let filter = Filter { cull: Cull::None, sample_reach: method.sample_reach() };
+    let filter = Filter::new(Cull::None, method.sample_reach());
     // The production path makes no list of triangles.
     let nothing = Scene::default();
     let listed = if method == SurfaceMethod::ZBuffer { &nothing } else { scene };

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
     let (scene, camera) = (scene::scene(), scene::camera());
     let view = View::new(camera, SIZE[0], SIZE[1])?;
-    let input = SurfaceInput::new(&scene, &view, Filter { cull: Cull::None, sample_reach: 128 })?;
+    let input = SurfaceInput::new(&scene, &view, Filter::new(Cull::None, 128))?;
     let write = |name: &str, picture: &Framebuffer| {
         let file = std::fs::File::create(format!("{folder}/{name}.png"))?;
         write_color(file, &picture.color, Compression::Small)

@@ -248,10 +248,17 @@ impl Sheen {
         let albedo = self.albedo(nv);
         let left = (albedo * self.color.max_element()).one_minus();
         let around = lights.environment.diffuse(frame.normal).scale(occlusion * albedo);
-        let sheen = under_lights(frame, position, lights, around, |l| {
-            let strength = self.towards_eye(frame, nv, l);
-            Vec3Lane::new(strength, strength, strength)
-        });
+        let sheen = under_lights(
+            frame,
+            position,
+            lights,
+            around,
+            #[inline(always)]
+            |l| {
+                let strength = self.towards_eye(frame, nv, l);
+                Vec3Lane::new(strength, strength, strength)
+            },
+        );
         under.scale(left).plus(sheen.times_all(self.color))
     }
 

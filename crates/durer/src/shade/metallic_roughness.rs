@@ -121,7 +121,15 @@ pub(super) fn reflect<L: Lane>(
 
     let around = surroundings(frame, &point, substance, (metallic, roughness), lights);
     let around = around.scale(substance.occlusion);
-    under_lights(frame, position, lights, around, |l| lit(frame, &point, l))
+    // What is not made part of its caller would lose the SIMD level.
+    under_lights(
+        frame,
+        position,
+        lights,
+        around,
+        #[inline(always)]
+        |l| lit(frame, &point, l),
+    )
 }
 
 /// Adds what each light sends towards the eye to `sum`; `lit` tells the part of a light's colour by the

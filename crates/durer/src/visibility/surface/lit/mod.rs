@@ -74,7 +74,7 @@ impl<'a> Lighting<'a> {
         let run = &self.runs[index];
         let mesh = &self.scene.meshes[run.mesh];
         let is_marks = mesh.topology != Topology::Triangles;
-        let material = if is_marks {
+        let material = if is_marks && mesh.colors.is_empty() {
             self.materials.of_marks(run.material)
         } else {
             self.materials.get(run.material)
