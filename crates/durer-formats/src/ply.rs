@@ -64,6 +64,11 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
         }
     };
     let mut model = finish::finish(builder, &header, resources, options)?;
+    if header.unknown.count > 0 {
+        let message =
+            format!("{} lines are not of a PLY header and were skipped", header.unknown.count);
+        model.warn(header.unknown.first.clone(), message);
+    }
     if let Some((place, message)) = warning {
         model.warn(place, message);
     }

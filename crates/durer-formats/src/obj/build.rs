@@ -5,7 +5,7 @@ use super::parse::{Parsed, Run};
 use super::smooth;
 use crate::{Model, Place, ReadOptions, Resources, Result, color, mtl, place, polygon};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
-use durer::scene::{Instance, Mesh, Part, Topology};
+use durer::scene::{Instance, Material, Mesh, Part, Topology};
 
 /// Builds the meshes: triangles first, then lines, then points.
 ///
@@ -37,12 +37,25 @@ pub(super) fn build(
         polygon::recut(&mut model, &mut mesh, &options.limits)?;
         add(&mut model, mesh, origin);
     }
-    for mesh in [lines, points].into_iter().flatten() {
+    for mut mesh in [lines, points].into_iter().flatten() {
+        forget_undefined(&model, &mut mesh);
         add(&mut model, mesh, origin);
     }
     whiten(&mut model);
     model.scene.check()?;
     Ok(model)
+}
+
+/// Takes materials that no library defines from lines and points, which would hardly be seen in their grey:
+/// without a material they get a colour that goes with the background.
+fn forget_undefined(model: &Model, mesh: &mut Mesh) {
+    let is_default = |m: &Material| *m == Material { name: m.name.clone(), ..Material::default() };
+    for part in &mut mesh.parts {
+        let material = part.material.and_then(|m| model.scene.materials.get(m));
+        if material.is_some_and(is_default) {
+            part.material = None;
+        }
+    }
 }
 
 fn add(model: &mut Model, mesh: Mesh, origin: DVec3) {

@@ -160,3 +160,11 @@ fn faces_wind_as_their_outline_does() {
         assert!((b - a).cross(c - a).dot(DVec3::Z) < 0.0);
     }
 }
+
+#[test]
+fn lines_of_a_material_that_is_not_defined_have_none() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nl 1 2\np 3\nf 1 2 3\n";
+    let model = read(text).unwrap();
+    let materials: Vec<_> = model.scene.meshes.iter().map(|m| m.parts[0].material).collect();
+    assert_eq!(materials, [Some(0), None, None]);
+}

@@ -1,7 +1,7 @@
 //! The header of a PLY file.
 
-use crate::text::{Cursor, quote};
-use crate::{Error, Result};
+use crate::text::{Cursor, Tally, quote};
+use crate::{Error, Place, Result};
 
 /// How values are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub(super) struct Element {
 }
 
 /// What a file declares.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
@@ -54,6 +54,8 @@ pub(super) struct Header {
     pub length: usize,
     /// Lines up to the data.
     pub lines: u64,
+    /// Lines that begin with no word of PLY: some writers forget `comment`.
+    pub unknown: Tally,
 }
 
 impl Type {
@@ -113,7 +115,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
         return Err(Error::line(1, 0, "a PLY file begins with `ply`"));
     }
     let (mut encoding, mut elements) = (None, Vec::<Element>::new());
-    let mut textures = Vec::new();
+    let (mut textures, mut unknown) = (Vec::new(), Tally::default());
     loop {
         cursor.next_line();
         if cursor.at_end() {
@@ -135,10 +137,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
             Some(b"comment") => textures.extend(texture(&mut cursor)),
             Some(b"obj_info") | None => {}
             Some(b"end_header") => break,
-            Some(other) => {
-                let message = format!("`{}` is not a word of a PLY header", quote(other));
-                return Err(wrong(&cursor, message));
-            }
+            Some(_) => unknown.add(|| Place::Line(cursor.line(), 0)),
         }
     }
     cursor.rest();
@@ -158,7 +157,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header> {
             "`format ascii|binary_little_endian|binary_big_endian 1.0` is missing",
         ));
     };
-    Ok(Header { encoding, elements, textures, length, lines: cursor.line() + 1 })
+    Ok(Header { encoding, elements, textures, length, lines: cursor.line() + 1, unknown })
 }
 
 /// The picture that a comment names, as VCG's library and those that follow it write it.

@@ -343,3 +343,15 @@ fn nonsense_after_some_faces_costs_the_rest() {
         "{text}"
     );
 }
+
+#[test]
+fn lines_of_a_header_that_are_no_words_of_it_are_skipped() {
+    let text = cube("Created by a program that forgot the word\n", "");
+    let model = read(&text);
+    assert_eq!(model.scene.meshes[0].positions.len(), 8);
+    assert!(
+        warnings(&model).contains("line 7: 1 lines are not of a PLY header"),
+        "{}",
+        warnings(&model)
+    );
+}
