@@ -267,7 +267,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         model.scene.give_material(colored(color));
     }
     messages.warnings(&name, &model.warnings);
-    staging::give_materials(&args.stage, &mut model.scene);
+    staging::give_materials(&args.stage, args.look.color, &mut model.scene);
     let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
     messages.detail(|| {
         format!(

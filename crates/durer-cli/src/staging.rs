@@ -9,7 +9,7 @@ use durer::math::Vec4;
 use durer::pipeline::{
     self, EdgeStyle, RenderOptions, add_axes, add_grid, add_ground, ambient_occlusion,
 };
-use durer::scene::{Camera, Material, Scene, ShadingModel};
+use durer::scene::{AlphaMode, Camera, Material, Scene, ShadingModel};
 use durer::target::Framebuffer;
 use durer::view::projection::drawn_bounds;
 
@@ -77,18 +77,21 @@ impl StageArgs {
     }
 }
 
-/// Gives all surfaces the material of the look, if it has one.
-pub fn give_materials(args: &StageArgs, scene: &mut Scene) {
+/// Gives all surfaces the material of the look, if it has one, in its own colour or the one asked for.
+pub fn give_materials(args: &StageArgs, asked: Option<Vec4>, scene: &mut Scene) {
     let (color, roughness) = match args.look {
         Look::Plain | Look::Studio => return,
         Look::Clay => (Vec4::new(0.62, 0.52, 0.44, 1.0), 0.9),
         Look::Technical => (Vec4::new(0.9, 0.9, 0.9, 1.0), 1.0),
     };
+    let color = asked.unwrap_or(color);
+    let alpha_mode = if color.w < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque };
     for material in &mut scene.materials {
         *material = Material {
             name: std::mem::take(&mut material.name),
             model: ShadingModel::MetallicRoughness,
             base_color: color,
+            alpha_mode,
             roughness,
             double_sided: material.double_sided,
             ..Material::default()
@@ -100,6 +103,7 @@ pub fn give_materials(args: &StageArgs, scene: &mut Scene) {
     scene.give_material(Material {
         model: ShadingModel::MetallicRoughness,
         base_color: color,
+        alpha_mode,
         roughness,
         ..Material::default()
     });

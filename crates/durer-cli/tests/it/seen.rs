@@ -100,6 +100,10 @@ fn looks_change_pictures_and_are_refused_for_drawings() {
         assert_ne!(folder.read("a.png"), plain, "{look}");
         assert_eq!(folder.run(&format!("render cube.obj -o a.svg {look}")).code, 2, "{look}");
     }
+    folder.must("render cube.obj -o a.png --size 60 --look clay");
+    let clay = folder.read("a.png");
+    folder.must("render cube.obj -o a.png --size 60 --look clay --color red");
+    assert_ne!(folder.read("a.png"), clay);
     folder.must("render cube.obj -o a.png --size 60 --look plain");
     assert_eq!(folder.read("a.png"), plain);
     for wrong in ["--ambient-occlusion=2", "--edges=0", "--look fancy"] {
