@@ -121,7 +121,10 @@ fn a_warped_picture_is_nearly_the_rendered_one() {
     assert!(holes <= differing && differing < holes + 100, "{holes} {differing}");
     // Warped from the very camera, the second picture leaves no hole.
     let report = warp("--fill b.png b_d.png --fill-eye 0.3,3.1,7 --fill-target 0.3,0.1,0");
-    assert_eq!((&report["holes"], &report["filled"]), (&0.into(), &holes.into()));
+    assert_eq!(report["holes"], 0);
+    // Its surfaces also come before what the first picture has nothing of: along outlines.
+    let filled = report["filled"].as_u64().unwrap();
+    assert!(filled >= holes && filled < holes + 20, "{filled} {holes}");
 }
 
 #[test]
