@@ -145,7 +145,7 @@ pub struct RenderArgs {
     /// How surfaces look.
     #[command(flatten)]
     pub look: LookArgs,
-    /// What is around the model.
+    /// The floor, grid and axes around the model, and edges over it.
     #[command(flatten)]
     pub stage: StageArgs,
     /// Planes that cut the model.
@@ -249,7 +249,7 @@ pub struct PictureArgs {
     /// Seconds of a whole turn, where it goes into one file [default: by --fps]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable", conflicts_with = "fps")]
     pub duration: Option<f64>,
-    /// How the picture is put into bytes.
+    /// Compression and quality of the file.
     #[command(flatten)]
     pub encoding: EncodingArgs,
     /// Refuse pictures of more pixels; the default is 16384x16384
@@ -331,7 +331,7 @@ pub struct LookArgs {
     /// How often rays are reflected by mirrors and refracted by what blends
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
     pub bounces: u32,
-    /// How strong light is shown: `auto`, or in EV
+    /// Exposure of the light: `auto`, or a number of EV
     ///
     /// `auto` makes all lights stronger or weaker by one factor, so that white matte surfaces where much of
     /// their light falls are nearly white. EV shows light as the file or --light gives it (at 0 one of
@@ -339,17 +339,17 @@ pub struct LookArgs {
     /// itself. Default: auto for the file's own lights and for --environment FILE, else 0.
     #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = lights::exposure)]
     pub exposure: Option<Exposure>,
-    /// What mirrors show: `studio`, `none`, or a panorama in a Radiance file (.hdr)
+    /// Surroundings that mirrors show: `studio`, `none`, or a panorama in a Radiance file (.hdr)
     ///
     /// In a studio stand bright screens, which metals and clear coats mirror; `none` leaves but a sky over
     /// the ground. A panorama (equirectangular) lights the model too, in place of the default light and
     /// beside the file's or --light.
     #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment::environment)]
     pub environment: Environment,
-    /// How bright light becomes colours of the picture
+    /// Tone map that brings bright light into the range of the picture
     #[arg(long, value_name = "MAP", default_value = "none")]
     pub tone_map: ToneMap,
-    /// What --environment names, once it is read.
+    /// The surroundings that were read for --environment.
     #[arg(skip)]
     pub surroundings: std::sync::OnceLock<pipeline::Surroundings>,
 }

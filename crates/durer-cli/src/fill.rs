@@ -66,7 +66,7 @@ pub struct FillArgs {
     /// The algorithm; all fill the same pixels
     #[arg(long, value_name = "NAME", default_value = "spans", value_parser = method)]
     pub algorithm: SeedFill,
-    /// How the picture is put into bytes.
+    /// Compression and quality of the file.
     #[command(flatten)]
     pub file: PictureFileArgs,
     /// Refuse images that are, or unpack to, more bytes; k, M, G are understood

@@ -125,6 +125,12 @@ fn check_algorithm(args: &RenderArgs) -> Result<(), Failure> {
         Some(Algorithm::All) if args.picture.viewports.is_some() => {
             usage("--algorithm all: one sheet at a time, so not with --viewports".to_owned())
         }
+        Some(Algorithm::All) if args.stage.has_edges() => {
+            usage("--edges: they go with one algorithm, not with --algorithm all".to_owned())
+        }
+        Some(Algorithm::Wireframe) if args.stage.has_occlusion() => usage(
+            "--ambient-occlusion: a wireframe shows no surfaces that could be darkened".to_owned(),
+        ),
         Some(Algorithm::All | Algorithm::Wireframe) if has_planes(args) => usage(
             "--item, --depth, --normal: they go with one algorithm that finds surfaces".to_owned(),
         ),
@@ -439,17 +445,18 @@ fn render_picture(
                 framebuffer
             }
             Algorithm::Wireframe => compare::wireframe(scene, &options).map_err(usage)?,
-            Algorithm::All => {
-                // A sheet has labels; what the z-buffer shows of the model, all methods do.
-                let (alone, _) = pipeline::render(scene, &options).map_err(usage)?;
-                statuses.push(pipeline::status(scene, &options, &alone).map_err(usage)?);
-                compare::sheet(scene, &options, &mut report)?
-            }
+            Algorithm::All => compare::sheet(scene, &options, &mut report)?,
         };
-        if algorithm != Algorithm::All {
-            statuses.push(pipeline::status(scene, &options, &framebuffer).map_err(usage)?);
-            staging::draw_edges(&args.stage, model, &options, &mut framebuffer)?;
-        }
+        // A sheet has labels, and a floor is seen where the model is not.
+        let shows_more = algorithm == Algorithm::All || staged.is_some();
+        let status = if shows_more {
+            pipeline::render(model, &options)
+                .and_then(|(alone, _)| pipeline::status(model, &options, &alone))
+        } else {
+            pipeline::status(model, &options, &framebuffer)
+        };
+        statuses.push(status.map_err(usage)?);
+        staging::draw_edges(&args.stage, model, &options, &mut framebuffer)?;
         cells.push((cell, framebuffer));
     }
     let unseen = report.set_status(&statuses);

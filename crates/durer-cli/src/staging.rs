@@ -72,6 +72,16 @@ impl StageArgs {
         self.edges.or((self.look == Look::Technical).then_some(1.5))
     }
 
+    /// Whether edges are drawn over the picture.
+    pub fn has_edges(&self) -> bool {
+        self.edges().is_some()
+    }
+
+    /// Whether the picture is darkened by occlusion.
+    pub fn has_occlusion(&self) -> bool {
+        self.occlusion().is_some()
+    }
+
     fn has_ground(&self) -> bool {
         self.ground || self.has_studio()
     }

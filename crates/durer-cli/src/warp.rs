@@ -88,7 +88,7 @@ pub struct WarpArgs {
     /// What it looked at [default: the same]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::vector, requires = "fill")]
     pub fill_target: Option<DVec3>,
-    /// How the picture is put into bytes.
+    /// Compression and quality of the file.
     #[command(flatten)]
     pub file: PictureFileArgs,
     /// Write a report on standard output, in JSON

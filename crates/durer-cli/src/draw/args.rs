@@ -82,7 +82,7 @@ pub struct PictureArgs {
     /// Where it is shown, in pixels from the upper left corner [default: the whole picture]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = viewport)]
     pub viewport: Option<PixelRect>,
-    /// How the picture is put into bytes.
+    /// Compression and quality of the file.
     #[command(flatten)]
     pub file: PictureFileArgs,
     /// Refuse pictures of more pixels; the default is 16384x16384

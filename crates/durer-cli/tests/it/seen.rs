@@ -35,6 +35,8 @@ fn what_is_not_seen_is_told_with_its_reason() {
         ("front.gltf -o a.png --size 40 --view back", "invisible", "--cull none shows"),
         ("front.gltf -o a.png --size 40 --view back --cull none", "ok", ""),
         ("clear.obj -o a.png --size 40", "invisible", "transparent"),
+        ("clear.obj -o a.png --size 40 --ground --grid --axes", "invisible", "transparent"),
+        ("cube.obj -o a.png --size 40 --look studio --grid", "ok", ""),
         ("cube.obj -o a.png --size 40 --eye 9,0,0 --target 10,0,0", "invisible", "behind the eye"),
         ("cube.obj -o a.svg --eye 9,0,0 --target 10,0,0", "invisible", "behind the eye"),
         ("cube.obj -o a.png --size 40 --near 1000 --far 2000", "invisible", "near plane"),
@@ -106,7 +108,14 @@ fn looks_change_pictures_and_are_refused_for_drawings() {
     assert_ne!(folder.read("a.png"), clay);
     folder.must("render cube.obj -o a.png --size 60 --look plain");
     assert_eq!(folder.read("a.png"), plain);
-    for wrong in ["--ambient-occlusion=2", "--edges=0", "--look fancy"] {
+    for wrong in [
+        "--ambient-occlusion=2",
+        "--edges=0",
+        "--look fancy",
+        "--algorithm all --edges",
+        "--algorithm all --look technical",
+        "--algorithm wireframe --ambient-occlusion",
+    ] {
         assert_eq!(folder.run(&format!("render cube.obj -o a.png {wrong}")).code, 2, "{wrong}");
     }
 }
