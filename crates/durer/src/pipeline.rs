@@ -91,7 +91,7 @@ pub struct RenderOptions {
     /// How often rays may be reflected by mirrors and refracted by what blends; above 0 for
     /// [`SurfaceMethod::Ray`] only.
     pub bounces: u32,
-    /// How far what is seen keeps light from all around from each other; `None` = not at all.
+    /// Ambient occlusion of the surfaces that are seen; `None` = without.
     pub ambient_occlusion: Option<ambient_occlusion::Options>,
     /// Whether the framebuffer gets a depth plane.
     pub depth: bool,

@@ -134,7 +134,7 @@ fn other_color(background: Background) -> Vec4 {
     Vec4::new(ink.x, 0.5, 1.0 - ink.z, 1.0)
 }
 
-/// What is known from where the vertices are; `None` where some may be seen.
+/// Returns what the places of the vertices tell; `None` where some may be seen.
 fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
     let mut any = false;
     let mut beyond_all: Option<Outcode> = None;

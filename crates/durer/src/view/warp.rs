@@ -8,8 +8,8 @@
 //! all pictures + pixels lit); memory O(pixels of the new picture).
 //!
 //! Limits: what no picture shows is a hole; colours are those seen from the old eye; pixels that become
-//! larger than [`LARGEST`] are left out. At depth 1 nothing is: such pixels are taken to be endlessly far,
-//! and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the
+//! larger than [`LARGEST`] are left out. Depth 1 means that there is no surface: such
+//! pixels are treated as infinitely far away, and show only where no picture shows a surface. Pixels of smoothed outlines get the colour of the
 //! surface whose depth they have.
 
 mod unmixed;
@@ -153,7 +153,7 @@ struct Layer {
 }
 
 impl Layer {
-    /// What the picture of an index shows.
+    /// Moves all pixels of one source into the new view.
     fn of(index: u32, source: &Source<'_>, view: &View, t: &mut impl Tracer<Step>) -> Result<Self> {
         let (width, height) = (view.width(), view.height());
         let none = vec![None; width as usize * height as usize];
@@ -234,8 +234,8 @@ impl Layer {
     }
 }
 
-/// Takes pixels of the old screen to the new one as if they were endlessly far: by the turn of the
-/// camera alone. Where projection lines are parallel, they stay where they are in the picture.
+/// Returns the matrix that takes pixels of the old screen to the new one as if they were infinitely far
+/// away: only the turn of the camera moves them. Where projection lines are parallel, they stay where they are in the picture.
 fn endless(old: &View, new: &View) -> DMat4 {
     let size = |view: &View| DVec2::new(f64::from(view.width()), f64::from(view.height()));
     let parallel = |view: &View| {

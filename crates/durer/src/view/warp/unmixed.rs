@@ -26,7 +26,7 @@ pub(super) fn unmixed(source: &Source<'_>) -> Pixels<[u8; 4]> {
     colors
 }
 
-/// The colour that a pixel would have without the other side's, where it is mixed.
+/// Returns the colour of a mixed pixel without that of the other side; `None` for a pixel that is not mixed.
 fn own_color(source: &Source<'_>, at: [u32; 2]) -> Option<[u8; 4]> {
     let pixel = |steps: i32, [dx, dy]: [i32; 2]| {
         let x = at[0].checked_add_signed(dx * steps)?;
@@ -46,8 +46,8 @@ fn own_color(source: &Source<'_>, at: [u32; 2]) -> Option<[u8; 4]> {
     })
 }
 
-/// Whether depth jumps from a pixel to the next one, by the step to the one on its other side: on one
-/// plane both are equal, for window depth is linear on the screen.
+/// Returns whether depth jumps from a pixel to the next one, compared with the step on its other side: on
+/// one plane both are equal, for window depth is linear on the screen.
 fn jumps(here: f32, next: f32, opposite: f32) -> bool {
     let nothing = |depth: f32| depth >= 1.0;
     nothing(here) != nothing(next) || (next - here).abs() > 3.0 * (here - opposite).abs() + ROUNDING

@@ -108,7 +108,7 @@ const fn sixteenths<const N: usize>(mut offsets: [[i32; 2]; N]) -> [[i32; 2]; N]
     offsets
 }
 
-/// How large the lines and points of models are on the screen.
+/// The size of the lines and points of models on the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Marks {
     /// Width of lines in pixels, above 0.
