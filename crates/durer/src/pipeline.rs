@@ -278,7 +278,7 @@ fn darken(view: &View, options: &RenderOptions, framebuffer: &mut Framebuffer) {
     let Some(occlusion) = &options.ambient_occlusion else { return };
     let Framebuffer { color, depth, normal, .. } = framebuffer;
     if let (Some(depth), Some(normal)) = (&depth, &normal) {
-        ambient_occlusion::apply(view, depth, normal, occlusion, color);
+        ambient_occlusion::apply(view, (depth, normal), occlusion, options.level, color);
     }
     if !options.depth {
         *depth = None;

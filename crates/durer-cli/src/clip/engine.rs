@@ -2,10 +2,10 @@
 
 use super::mask::Mask;
 use super::shapes::{Area, oriented, pieces};
-use super::validity::{Touching, edges_are_apart, is_valid};
 use durer::clip::line::polyline::{self, Part};
 use durer::clip::line::{LineClipper, Segment};
 use durer::clip::polygon::rectangle::{self, ClippedLines};
+use durer::clip::polygon::validity::{Touching, edges_are_apart, is_valid};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, overlay, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;

@@ -8,7 +8,6 @@ mod shapes;
 mod sink;
 mod srids;
 mod tiles;
-mod validity;
 mod values;
 
 pub use args::{ClipArgs, EXAMPLES, format, window};

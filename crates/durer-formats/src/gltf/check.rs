@@ -117,7 +117,6 @@ fn meshes(root: &Root) -> Result<()> {
 
 fn nodes(root: &Root) -> Result<()> {
     let count = root.nodes.len();
-    exists(root.scene, root.scenes.len(), "scene", "scene")?;
     for (s, scene) in root.scenes.iter().enumerate() {
         for &node in &scene.nodes {
             exists(Some(node), count, "node", format_args!("scenes[{s}].nodes"))?;

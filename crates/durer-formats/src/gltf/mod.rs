@@ -137,9 +137,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
             "stands in the scene but has a parent; drawn once, below its parent".to_owned();
         warnings.push(crate::Warning { place: Place::Path(format!("nodes[{n}]")), message });
     });
-    if root.scenes.is_empty() && !nodes.is_empty() {
-        model.warn(Place::Path("scenes".into()), "there is none; all root nodes are shown");
-    }
+    tell_missing_scene(&root, &nodes, &mut model);
     let visible = tree.visible(&root);
     let mut builder = Builder {
         source: &source,
@@ -162,6 +160,18 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     model.scene.lights = eye::lights(&source, &shining, &world, &mut model.warnings);
     model.scene.check()?;
     Ok(model)
+}
+
+/// Warns where the default scene, or any, is missing.
+fn tell_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
+    let scenes = root.scenes.len();
+    if scenes == 0 && !nodes.is_empty() {
+        model.warn(Place::Path("scenes".into()), "there is none; all root nodes are shown");
+    } else if let Some(scene) = root.scene.map(Whole::index).filter(|&s| s >= scenes && scenes > 0)
+    {
+        let message = format!("there is no scene {scene}, only {scenes}; the first one is shown");
+        model.warn(Place::Path("scene".into()), message);
+    }
 }
 
 /// Only version 2 is read, and of it 2.0.

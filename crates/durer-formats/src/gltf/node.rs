@@ -47,11 +47,11 @@ impl Tree {
         world
     }
 
-    /// The nodes of the default scene (else of the first one; of a file without scenes, all), in
+    /// The nodes of the default scene (of the first one where that is not there; of a file without scenes, all), in
     /// drawing order: depth first, as in the file. A node that stands under another one of the scene
     /// comes once; the nodes of the scene that are no roots are told to `odd`.
     pub fn scene_nodes(&self, root: &Root, mut odd: impl FnMut(usize)) -> Vec<usize> {
-        let scene = root.scenes.get(root.scene.map_or(0, Whole::index));
+        let scene = root.scenes.get(root.scene.map_or(0, Whole::index)).or(root.scenes.first());
         let roots: Vec<usize> = match scene {
             Some(scene) => scene.nodes.iter().map(|n| n.index()).collect(),
             None => (0..self.parents.len()).filter(|&n| self.parents[n].is_none()).collect(),

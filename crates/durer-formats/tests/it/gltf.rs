@@ -123,6 +123,20 @@ fn a_file_without_scenes_draws_its_roots() {
 }
 
 #[test]
+fn a_default_scene_that_is_missing_gives_way_to_what_there_is() {
+    let shown = |scenes: &str| {
+        let members = r#""nodes": [{"name": "a", "mesh": 0}, {"name": "b", "mesh": 0}]"#;
+        let model = read(&triangle(&format!("{scenes} {members}"))).unwrap();
+        let names = model.scene.instances.iter().map(|i| i.name.clone()).collect::<String>();
+        (names, model.warnings.iter().map(ToString::to_string).collect::<String>())
+    };
+    let none = "scenes: there is none; all root nodes are shown";
+    assert_eq!(shown(r#""scene": 0,"#), ("ab".into(), none.into()));
+    let first = "scene: there is no scene 7, only 1; the first one is shown";
+    assert_eq!(shown(r#""scene": 7, "scenes": [{"nodes": [1]}],"#), ("b".into(), first.into()));
+}
+
+#[test]
 fn trees_must_be_trees() {
     let nodes = |nodes: &str| error(&triangle(&format!(r#""nodes": [{nodes}]"#)));
     assert!(nodes(r#"{"children": [1]}, {"children": [0]}"#).starts_with("nodes[0]: "));

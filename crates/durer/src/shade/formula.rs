@@ -11,7 +11,7 @@ use super::{Shading, tone};
 
 /// Everything that textures and factors say about a point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Inputs<L> {
+pub(super) struct Inputs<'a, L> {
     /// For the metallic-roughness and the unlit model.
     pub substance: Substance<L>,
     /// Phong's diffuse colour.
@@ -23,7 +23,7 @@ pub(super) struct Inputs<L> {
     /// Light of its own.
     pub emission: Vec3Lane<L>,
     /// What the metallic-roughness model has besides, the same in all lanes.
-    pub lobes: Option<Lobes>,
+    pub lobes: Option<&'a Lobes>,
 }
 
 /// The displayed colour; `lit` is interpolated or per-face light where the caller has it.
@@ -31,7 +31,7 @@ pub(super) struct Inputs<L> {
 pub(super) fn display<L: Lane>(
     frame: &Frame<L>,
     position: Vec3Lane<L>,
-    inputs: &Inputs<L>,
+    inputs: &Inputs<'_, L>,
     lit: Option<&Reflected>,
     lights: &PreparedLights,
     shading: Shading,
@@ -52,7 +52,7 @@ pub(super) fn display<L: Lane>(
 fn metallic_roughness_color<L: Lane>(
     frame: &Frame<L>,
     position: Vec3Lane<L>,
-    inputs: &Inputs<L>,
+    inputs: &Inputs<'_, L>,
     lights: &PreparedLights,
 ) -> Vec3Lane<L> {
     let Inputs { substance, emission, lobes, .. } = inputs;
@@ -67,7 +67,7 @@ fn metallic_roughness_color<L: Lane>(
 fn phong_color<L: Lane>(
     frame: &Frame<L>,
     position: Vec3Lane<L>,
-    inputs: &Inputs<L>,
+    inputs: &Inputs<'_, L>,
     lit: Option<&Reflected>,
     lights: &PreparedLights,
 ) -> Vec3Lane<L> {

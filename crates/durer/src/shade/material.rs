@@ -260,7 +260,7 @@ impl<'a> PreparedMaterial<'a> {
 
     /// The inputs of all formulas where no texture has a say.
     #[inline(always)]
-    pub(super) fn constant_inputs<L: Lane>(&self, like: L) -> Inputs<L> {
+    pub(super) fn constant_inputs<L: Lane>(&self, like: L) -> Inputs<'_, L> {
         let substance = Substance {
             base: Vec3Lane::splat(like, self.base_color.truncate()),
             metallic: like.splat(self.metallic),
@@ -310,7 +310,7 @@ impl<'a> PreparedMaterial<'a> {
         base: Vec3Lane<L>,
         texels: &Texels<L>,
         shading: Shading,
-    ) -> Inputs<L> {
+    ) -> Inputs<'_, L> {
         let mut inputs = self.constant_inputs(like);
         inputs.substance.base = base;
         if let Some(texel) = &texels.emissive {
@@ -334,7 +334,7 @@ impl<'a> PreparedMaterial<'a> {
 
     /// Phong's inputs from metallic-roughness ones, unless the factors alone decide them.
     #[inline]
-    fn phong_inputs(&self, surface: &Surface<'_>, base: Vec3, inputs: &mut Inputs<f32>) {
+    fn phong_inputs(&self, surface: &Surface<'_>, base: Vec3, inputs: &mut Inputs<'_, f32>) {
         if self.textured || surface.color != Vec4::ONE {
             let s = &inputs.substance;
             let colors = from_metallic_roughness(base, s.metallic, s.roughness);
@@ -361,7 +361,7 @@ impl<'a> PreparedMaterial<'a> {
 
     /// A point with what the textures say of it, to be lit with others; its geometric normal must be on the
     /// viewer's side, as for [`shade_seen`].
-    pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample {
+    pub fn sample(&self, surface: &Surface<'_>, shading: Shading) -> Sample<'_> {
         self.sample_with(surface, face_seen, self.base(surface), shading)
     }
 
@@ -372,7 +372,7 @@ impl<'a> PreparedMaterial<'a> {
         frame: Framing,
         base: Vec4,
         shading: Shading,
-    ) -> Sample {
+    ) -> Sample<'_> {
         let (view, face) = (surface.view.into(), surface.geometric_normal.into());
         let mut frame = frame(view, face, surface.normal.into());
         if self.has_normal_map() {
@@ -393,7 +393,7 @@ impl<'a> PreparedMaterial<'a> {
             specular: texel(&self.specular_slot),
         };
         let mut inputs = self.inputs(1.0, base.into(), &texels, shading);
-        inputs.lobes = self.lobes;
+        inputs.lobes = self.lobes.as_ref();
         if by_phong(shading) && self.model == ShadingModel::MetallicRoughness {
             self.phong_inputs(surface, base, &mut inputs);
         }

@@ -13,10 +13,10 @@ use fearless_simd_macros::simd;
 
 /// A point of a surface with everything that its material's textures say of it, ready to be lit.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
+pub struct Sample<'a> {
     pub(super) frame: Frame<f32>,
     pub(super) position: Vec3Lane<f32>,
-    pub(super) inputs: Inputs<f32>,
+    pub(super) inputs: Inputs<'a, f32>,
 }
 
 /// Numbers of a sample.
@@ -24,19 +24,19 @@ const NUMBERS: usize = 27;
 
 /// Up to eight samples of one material; those not set hold what was there before.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Samples {
+pub struct Samples<'a> {
     numbers: [[f32; 8]; NUMBERS],
     /// The same for all of them, as is all that follows.
     shininess: Shininess,
     mirrors: bool,
-    lobes: Option<Lobes>,
+    lobes: Option<&'a Lobes>,
 }
 
-impl Samples {
+impl<'a> Samples<'a> {
     /// Sets the sample `lane`, 0 … 7, whose material must
     /// [be lit together](super::PreparedMaterial::is_lit_together).
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, sample: &Sample) {
+    pub fn set(&mut self, lane: usize, sample: &Sample<'a>) {
         let Sample { frame, position: p, inputs } = sample;
         let (v, f, n) = (&frame.view, &frame.face, &frame.normal);
         let s = &inputs.substance;

@@ -40,7 +40,7 @@ fn light(camera: Camera, radius: f64, at: DVec3) -> f32 {
     let (picture, _) = render(&corner(), &options).expect("picture");
     let view = View::new(camera, 240, 240).expect("view");
     let (depth, normal) = (picture.depth.expect("depth"), picture.normal.expect("normals"));
-    let light = ambient_occlusion::occlusion(&view, &depth, &normal, radius);
+    let light = ambient_occlusion::occlusion(&view, &depth, &normal, radius, options.level);
     let p = view.screen_from_world() * at.extend(1.0);
     light.get((p.x / p.w) as u32, (p.y / p.w) as u32).expect("pixel")
 }

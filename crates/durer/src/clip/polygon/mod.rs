@@ -6,6 +6,7 @@
 mod cyclic;
 pub mod greiner_hormann;
 mod locate;
+pub mod mismatch;
 pub mod naive;
 mod near;
 mod nesting;
@@ -16,6 +17,7 @@ pub mod rectangle;
 mod shapes;
 mod status;
 pub mod sutherland_hodgman;
+pub mod validity;
 pub mod vatti;
 mod vertex;
 mod walk;

@@ -11,6 +11,7 @@
 //! both pieces are long enough the offset lines meet in one point instead. How many points an arc gets and when two
 //! offset lines meet is durer's own; lengths of curves, which dashes need, are measured by kurbo.
 
+pub mod buffer;
 mod contour;
 mod dashes;
 mod sides;

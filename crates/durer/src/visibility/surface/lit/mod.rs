@@ -317,7 +317,7 @@ impl<'a> Lit<'a> {
         item: u32,
         x: i32,
         y: i32,
-        use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
+        use_it: impl FnOnce(&Surface<'_>, &'a PreparedMaterial<'a>, &PreparedLights, Shading) -> R,
     ) -> R {
         self.with_surface_seen(item, Seen::Pixel(x, y), use_it)
     }
@@ -326,7 +326,7 @@ impl<'a> Lit<'a> {
         &mut self,
         item: u32,
         seen: Seen,
-        use_it: impl FnOnce(&Surface<'_>, &PreparedMaterial<'_>, &PreparedLights, Shading) -> R,
+        use_it: impl FnOnce(&Surface<'_>, &'a PreparedMaterial<'a>, &PreparedLights, Shading) -> R,
     ) -> R {
         let RunInfo { run, mesh, material, shading, .. } = self.run_info(item);
         let lit = self.reflected(item, run, material, shading);

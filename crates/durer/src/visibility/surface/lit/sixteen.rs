@@ -176,7 +176,7 @@ impl<'a> Lit<'a> {
     }
 
     /// What the textures say of an item at a pixel's centre.
-    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample {
+    fn sample(&mut self, item: u32, x: i32, y: i32) -> Sample<'a> {
         self.with_surface(item, x, y, |surface, material, _, shading| {
             material.sample(surface, shading)
         })

@@ -1,0 +1,217 @@
+//! Buffers: all places within a distance of points, lines and polygons, or of polygons all those farther than
+//! it from their border.
+//!
+//! The Minkowski sum with a disc (R. Wein, *Exact and efficient construction of planar Minkowski sums using the
+//! convolution method*, ESA 2006), by the outline of a wide line: the border of a polygon as a stroke of twice the
+//! distance is joined to it or taken from it by [`overlay`]. Class: object space. Cost: that of an overlay
+//! of the outline, O((n + k) log n) for n points of it and k crossings. Limits: arcs are polygons within a tolerance.
+
+use super::{Cap, Join, Stroke, outline};
+use crate::clip::polygon::{
+    BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions,
+};
+use crate::curve::{Contours, Path};
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::trace::NoTrace;
+use crate::{Error, Result};
+
+/// The facts of buffers.
+pub const INFO: Info = Info {
+    name: "buffer",
+    title: "Buffers by strokes and an overlay",
+    authors: "R. Wein",
+    year: 2006,
+    source: "Exact and efficient construction of planar Minkowski sums using the convolution method, ESA",
+    class: Class::ObjectSpace,
+    cost: "O((n + k) log n) for n points of the outline and k crossings",
+    limits: "arcs are polygons within a tolerance",
+};
+
+/// How far a buffer reaches, and how its corners and ends look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// The distance, in units of the coordinates. Below 0 polygons shrink, and lines and points vanish.
+    pub distance: f64,
+    /// Corners.
+    pub join: Join,
+    /// The ends of lines, and points: a disc by [`Cap::Round`], a square by [`Cap::Square`], nothing by [`Cap::Butt`].
+    pub cap: Cap,
+    /// The longest miter over twice the distance, at least 1.
+    pub miter_limit: f64,
+    /// How far the polygons that stand for arcs may lie from them, above 0; `None`: a thousandth of the distance.
+    pub tolerance: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (join, cap) = (Join::Round, Cap::Round);
+        Self { distance: 1.0, join, cap, miter_limit: 5.0, tolerance: None }
+    }
+}
+
+impl Options {
+    /// # Errors
+    /// [`Error::Parameter`] for a distance or tolerance that is not finite, and for a tolerance that is not above 0.
+    fn stroke(&self) -> Result<(Stroke, f64)> {
+        if !self.distance.is_finite() {
+            return Err(Error::parameter("distance", self.distance, "a finite number"));
+        }
+        let width = 2.0 * self.distance.abs();
+        let tolerance = self.tolerance.unwrap_or(width * 0.0005);
+        if !tolerance.is_finite() || tolerance < 0.0 || tolerance == 0.0 && width > 0.0 {
+            return Err(Error::parameter("tolerance", tolerance, "a finite number above 0"));
+        }
+        let Self { join, cap, miter_limit, .. } = *self;
+        Ok((Stroke { width, join, cap, miter_limit, ..Stroke::default() }, tolerance))
+    }
+}
+
+/// Returns the polygons that reach a distance farther than `shapes` do, or less far where it is below 0; the rings of
+/// `shapes` may cross, and enclose what `rule` says.
+///
+/// ```
+/// use durer::clip::polygon::{FillRule, Shapes};
+/// use durer::math::DVec2;
+/// use durer::raster::line::wide::{Join, buffer::{Options, of_polygons}};
+///
+/// let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(DVec2::from);
+/// let square = Shapes::from_rings([square]);
+/// let by = |distance| Options { distance, join: Join::Miter, ..Options::default() };
+/// assert_eq!(of_polygons(&square, FillRule::EvenOdd, &by(1.0))?.area(), 36.0);
+/// assert_eq!(of_polygons(&square, FillRule::EvenOdd, &by(-1.0))?.area(), 4.0);
+/// assert!(of_polygons(&square, FillRule::EvenOdd, &by(-2.0))?.is_empty());
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Parameter`] for options out of range; otherwise as [`overlay`].
+pub fn of_polygons(shapes: &Shapes, rule: FillRule, options: &Options) -> Result<Shapes> {
+    let mut border = Path::new();
+    for ring in shapes.rings() {
+        border.extend(&Path::polygon(ring.iter().copied()));
+    }
+    let op = if options.distance < 0.0 { BooleanOp::Difference } else { BooleanOp::Union };
+    joined(shapes, rule, op, &border, options)
+}
+
+/// Returns the polygons within a distance of lines; a line of one point is a point.
+///
+/// # Errors
+/// As [`of_polygons`].
+pub fn of_lines<'a>(
+    lines: impl IntoIterator<Item = &'a [DVec2]>,
+    options: &Options,
+) -> Result<Shapes> {
+    if options.distance <= 0.0 {
+        return options.stroke().map(|_| Shapes::new());
+    }
+    let mut path = Path::new();
+    for line in lines {
+        // A contour without length has the caps of a point.
+        let twice = line.iter().chain(line.first().filter(|_| line.len() == 1));
+        path.extend(&Path::polyline(twice.copied()));
+    }
+    joined(&Shapes::new(), FillRule::EvenOdd, BooleanOp::Union, &path, options)
+}
+
+/// What is left of `shapes` with or without a stroke along a path.
+fn joined(
+    shapes: &Shapes,
+    rule: FillRule,
+    op: BooleanOp,
+    path: &Path,
+    options: &Options,
+) -> Result<Shapes> {
+    let (stroke, tolerance) = options.stroke()?;
+    let outline = rings(&outline(path, &stroke, tolerance, &mut NoTrace)?);
+    let rules = OverlayOptions {
+        subject_rule: rule,
+        clip_rule: FillRule::NonZero,
+        ..OverlayOptions::default()
+    };
+    Ok(overlay(shapes, &outline, op, &rules, &mut NoTrace)?.shapes)
+}
+
+/// The contours as polygons of one ring each.
+fn rings(contours: &Contours) -> Shapes {
+    Shapes::from_rings(contours.iter().map(|(ring, _)| ring))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    const RULE: FillRule = FillRule::EvenOdd;
+
+    fn square(low: f64, side: f64) -> Vec<DVec2> {
+        let high = low + side;
+        [(low, low), (high, low), (high, high), (low, high)].map(DVec2::from).to_vec()
+    }
+
+    fn round(distance: f64) -> Options {
+        Options { distance, tolerance: Some(1e-6), ..Options::default() }
+    }
+
+    fn area(shapes: &Shapes, options: &Options) -> f64 {
+        of_polygons(shapes, RULE, options).expect("buffer").area()
+    }
+
+    #[test]
+    fn areas_are_those_of_minkowski_sums() {
+        let block = Shapes::from_rings([square(0.0, 10.0)]);
+        let about =
+            |found: f64, right: f64| assert!((found - right).abs() < 1e-3, "{found} {right}");
+        about(area(&block, &round(2.0)), 100.0 + 80.0 + 4.0 * PI);
+        about(area(&block, &round(-2.0)), 36.0);
+        about(area(&block, &Options { join: Join::Bevel, ..round(2.0) }), 100.0 + 80.0 + 8.0);
+        about(area(&block, &Options { join: Join::Miter, ..round(2.0) }), 196.0);
+        // A hole gets smaller as its polygon grows, and is gone in the end.
+        let frame = Shapes::from_rings([square(0.0, 10.0), square(3.0, 4.0)]);
+        about(area(&frame, &round(1.0)), 100.0 + 40.0 + PI - 4.0);
+        about(area(&frame, &round(2.5)), 100.0 + 100.0 + 6.25 * PI);
+        about(area(&frame, &round(-1.0)), 64.0 - (16.0 + 16.0 + PI));
+        about(area(&frame, &round(-1.5)), 0.0);
+    }
+
+    #[test]
+    fn lines_and_points_get_caps() {
+        let line = [(0.0, 0.0), (10.0, 0.0)].map(DVec2::from);
+        let of =
+            |line: &[DVec2], options: &Options| of_lines([line], options).expect("buffer").area();
+        let about =
+            |found: f64, right: f64| assert!((found - right).abs() < 1e-3, "{found} {right}");
+        about(of(&line, &round(2.0)), 40.0 + 4.0 * PI);
+        about(of(&line, &Options { cap: Cap::Butt, ..round(2.0) }), 40.0);
+        about(of(&line, &Options { cap: Cap::Square, ..round(2.0) }), 56.0);
+        about(of(&line[..1], &round(2.0)), 4.0 * PI);
+        about(of(&line[..1], &Options { cap: Cap::Square, ..round(2.0) }), 16.0);
+        about(of(&line[..1], &Options { cap: Cap::Butt, ..round(2.0) }), 0.0);
+        about(of(&line, &round(-2.0)), 0.0);
+        let crossing =
+            [[(0.0, 0.0), (10.0, 0.0)], [(5.0, -5.0), (5.0, 5.0)]].map(|l| l.map(DVec2::from));
+        let cap = Options { cap: Cap::Butt, ..round(1.0) };
+        let both = of_lines(crossing.iter().map(|l| &l[..]), &cap).expect("buffer");
+        about(both.area(), 36.0);
+        assert_eq!(both.polygon_count(), 1);
+    }
+
+    #[test]
+    fn a_distance_of_zero_makes_valid() {
+        let bow = [(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)].map(DVec2::from);
+        let whole = of_polygons(&Shapes::from_rings([bow]), RULE, &round(0.0)).expect("buffer");
+        assert_eq!((whole.area(), whole.polygon_count()), (8.0, 2));
+    }
+
+    #[test]
+    fn options_out_of_range_are_errors() {
+        let block = Shapes::from_rings([square(0.0, 10.0)]);
+        let fails = |options: Options| of_polygons(&block, RULE, &options).is_err();
+        assert!(fails(round(f64::NAN)) && fails(round(f64::INFINITY)));
+        assert!(fails(Options { tolerance: Some(0.0), ..round(1.0) }));
+        assert!(fails(Options { tolerance: Some(-1.0), ..round(1.0) }));
+        assert!(fails(Options { miter_limit: 0.5, ..round(1.0) }));
+        assert!(of_lines([], &round(f64::NAN)).is_err());
+    }
+}
