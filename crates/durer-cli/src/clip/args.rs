@@ -1,6 +1,7 @@
 //! The options of `durer clip`.
 
 use super::engine::Algorithm;
+use super::mask::Mask;
 use crate::args::RunningArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
@@ -64,8 +65,11 @@ pub struct ClipArgs {
 pub struct RegionArgs {
     /// A rectangle: its left, lower, right and upper border, in the coordinates of the file; those of an SVG count
     /// upwards, so that what it shows is below 0
-    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = window, conflicts_with_all = ["by", "tiles"])]
-    pub window: Option<Rect>,
+    ///
+    /// In degrees, a left border that is larger than the right one, such as 170,-10,-170,10, makes a window across
+    /// the 180th meridian, as in RFC 7946; it also holds what goes on beyond 180 degrees.
+    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = region, conflicts_with_all = ["by", "tiles"])]
+    pub window: Option<Window>,
     /// The polygons of a file, all together
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "tiles")]
     pub by: Option<PathBuf>,
@@ -115,11 +119,43 @@ pub enum TileCoordinates {
     Mercator,
 }
 
-pub fn window(text: &str) -> Result<Rect, String> {
-    let numbers: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
-    let [xl, yb, xr, yt] = numbers[..] else {
-        return Err("four numbers joined by commas are needed, e.g. -10,35,30,60".to_owned());
+/// `--window`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Window {
+    Plain(Rect),
+    /// Across the 180th meridian: as it lies on the right of it and on the left.
+    Across([Rect; 2]),
+}
+
+impl Window {
+    pub fn mask(&self) -> durer::Result<Mask> {
+        match self {
+            Self::Plain(window) => Mask::window(*window),
+            Self::Across(windows) => Mask::windows(windows),
+        }
+    }
+}
+
+fn region(text: &str) -> Result<Window, String> {
+    let [xl, yb, xr, yt] = corners(text)?;
+    let across = (-180.0..=180.0).contains(&xr) && xr < xl && xl <= 180.0;
+    if !across || yb >= yt {
+        return window(text).map(Window::Plain);
+    }
+    let rect = |xl: f64, xr: f64| {
+        Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
     };
+    Ok(Window::Across([rect(xl - 360.0, xr)?, rect(xl, xr + 360.0)?]))
+}
+
+fn corners(text: &str) -> Result<[f64; 4], String> {
+    let numbers: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
+    let four = "four numbers joined by commas are needed, e.g. -10,35,30,60";
+    numbers.try_into().map_err(|_| four.to_owned())
+}
+
+pub fn window(text: &str) -> Result<Rect, String> {
+    let [xl, yb, xr, yt] = corners(text)?;
     if xl >= xr || yb >= yt {
         return Err("the window is empty; give left, lower, right, upper".to_owned());
     }

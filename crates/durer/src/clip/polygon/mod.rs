@@ -3,6 +3,7 @@
 //! [`overlay()`] is the robust door: any rings in, valid polygons out. [`rectangle`] is the fast path
 //! for windows and map tiles. The others are the published algorithms, each with its preconditions.
 
+pub mod coverage;
 mod cyclic;
 pub mod greiner_hormann;
 mod locate;
@@ -16,6 +17,7 @@ pub mod rectangle;
 mod shapes;
 mod status;
 pub mod sutherland_hodgman;
+pub mod validity;
 pub mod vatti;
 mod vertex;
 mod walk;

@@ -1,8 +1,8 @@
 //! Whether polygons are valid, exactly.
 
-use durer::clip::polygon::Shapes;
-use durer::clip::polygon::rectangle::Prepared;
-use durer::math::{DVec2, Orientation, Rect, in_sector, orient2d};
+use super::Shapes;
+use super::rectangle::Prepared;
+use crate::math::{DVec2, Orientation, Rect, in_sector, orient2d};
 use std::cell::OnceCell;
 
 /// So many pairs of edges are looked at per edge, at most; beyond that polygons count as not valid,
@@ -21,7 +21,17 @@ pub enum Touching {
 }
 
 /// Whether all rings are simple and, but for what is allowed, apart from one another, holes lie in
-/// their outer rings and polygons outside one another.
+/// their outer rings and polygons outside one another. Exact; polygons of which very many edges lie side by
+/// side count as not valid.
+///
+/// ```
+/// use durer::clip::polygon::Shapes;
+/// use durer::clip::polygon::validity::{Touching, is_valid};
+/// use durer::math::DVec2;
+///
+/// let bow = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)].map(DVec2::from);
+/// assert!(!is_valid(&Shapes::from_rings([bow]), Touching::AtPoints));
+/// ```
 pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
     edges_are_apart(shapes, touching) && nests(shapes)
 }
@@ -32,60 +42,99 @@ struct Edge {
     ring: usize,
     /// Its place in the ring.
     index: usize,
+    /// The indices of its ends among all points.
+    ends: [usize; 2],
     low: f64,
     high: f64,
 }
 
 /// Whether no two edges cross, overlap or, but for what is allowed, touch.
 pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
+    each_fault(shapes, touching, |_| false)
+}
+
+/// The points, by their indices, at the ends of edges that are not apart, each once; `None` where there
+/// are too many to tell.
+pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> {
+    let mut points = Vec::new();
+    let all = each_fault(shapes, touching, |ends| {
+        points.extend_from_slice(ends);
+        !ends.is_empty()
+    });
+    points.sort_unstable();
+    points.dedup();
+    all.then_some(points)
+}
+
+/// Calls with the points of each fault, with none where there are too many edges side by side, as long as
+/// the answer is yes; tells whether that was all.
+fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
     let mut edges = Vec::with_capacity(shapes.points().len());
     for (ring, points) in shapes.rings().enumerate() {
-        if points.len() < 3 {
+        let start = shapes.ring_range(ring).start;
+        if points.len() < 3 && !tell(&[start]) {
             return false;
         }
         for (index, &a) in points.iter().enumerate() {
-            let b = points[(index + 1) % points.len()];
-            if a == b {
+            let next = (index + 1) % points.len();
+            let (b, ends) = (points[next], [start + index, start + next]);
+            if a == b && !tell(&ends) {
                 return false;
             }
             let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-            edges.push(Edge { a, b, ring, index, low, high });
+            edges.push(Edge { a, b, ring, index, ends, low, high });
         }
     }
     edges.sort_by(|p, q| p.low.total_cmp(&q.low));
     let mut budget = edges.len().saturating_mul(PAIRS_PER_EDGE);
     let size = |ring: usize| shapes.ring_range(ring).len();
-    let apart = slabs(&edges).iter().all(|slab| {
+    let all = slabs(&edges).iter().all(|slab| {
         let mut active: Vec<&Edge> = Vec::new();
         slab.iter().all(|edge| {
             active.retain(|other| other.high >= edge.low);
-            let Some(left) = budget.checked_sub(active.len() + 1) else { return false };
+            let Some(left) = budget.checked_sub(active.len() + 1) else { return tell(&[]) };
             budget = left;
-            let apart = !active.iter().any(|other| meet(edge, other, size(edge.ring), touching));
+            let go_on = active.iter().all(|other| {
+                !meet(edge, other, size(edge.ring), touching)
+                    || tell(&[edge.ends[0], edge.ends[1], other.ends[0], other.ends[1]])
+            });
             active.push(edge);
-            apart
+            go_on
         })
     });
-    apart && (touching == Touching::No || ways_are_apart(shapes))
+    all && (touching == Touching::No || each_passing(shapes, tell))
 }
 
-/// Whether rings that meet in a vertex only touch there, and do not pass through each other.
-fn ways_are_apart(shapes: &Shapes) -> bool {
-    let way = |ring: &[DVec2], i: usize| {
+/// A ring's way through a point.
+struct Way {
+    /// The point, the one before and the one after.
+    places: [DVec2; 3],
+    index: usize,
+}
+
+/// Calls with the points in which rings do not only touch but pass through each other, as long as the
+/// answer is yes; tells whether that was all.
+fn each_passing(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+    let way = |ring: &[DVec2], i: usize, start: usize| {
         let (before, after) = ((i + ring.len() - 1) % ring.len(), (i + 1) % ring.len());
-        [ring[i], ring[before], ring[after]]
+        Way { places: [ring[i], ring[before], ring[after]], index: start + i }
     };
-    let of_ring = |ring| (0..shapes.ring(ring).len()).map(move |i| way(shapes.ring(ring), i));
-    let mut ways: Vec<[DVec2; 3]> = (0..shapes.ring_count()).flat_map(of_ring).collect();
+    let of_ring = |ring| {
+        let range = shapes.ring_range(ring);
+        (0..range.len()).map(move |i| way(shapes.ring(ring), i, range.start))
+    };
+    let mut ways: Vec<Way> = (0..shapes.ring_count()).flat_map(of_ring).collect();
     // Zeros of either sign are one place.
     let order = |p: &DVec2, q: &DVec2| {
         (p.x + 0.0).total_cmp(&(q.x + 0.0)).then((p.y + 0.0).total_cmp(&(q.y + 0.0)))
     };
-    ways.sort_by(|[p, ..], [q, ..]| order(p, q));
-    ways.chunk_by(|[p, ..], [q, ..]| p == q).all(|through| {
-        through.iter().enumerate().all(|(i, &[at, from, to])| {
+    ways.sort_by(|v, w| order(&v.places[0], &w.places[0]));
+    ways.chunk_by(|v, w| v.places[0] == w.places[0]).all(|through| {
+        through.iter().enumerate().all(|(i, way)| {
+            let [at, from, to] = way.places;
             let left = |x: DVec2| in_sector(at, to, x, from);
-            through[..i].iter().all(|&[_, a, b]| left(a) == left(b))
+            let passes = |other: &Way| left(other.places[1]) != left(other.places[2]);
+            through[..i].iter().all(|other| !passes(other) || tell(&[way.index, other.index]))
         })
     })
 }
