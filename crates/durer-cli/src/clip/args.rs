@@ -1,12 +1,11 @@
 //! The options of `durer clip`.
 
 use super::engine::Algorithm;
-use super::mask::Mask;
+use super::window::{Window, region};
 use crate::args::RunningArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::polygon::{BooleanOp, FillRule};
-use durer::math::{DVec2, Rect};
 use durer_formats::geo::GeoFormat;
 use std::path::PathBuf;
 
@@ -117,49 +116,6 @@ pub enum TileCoordinates {
     Lonlat,
     /// Web Mercator (EPSG:3857), in metres
     Mercator,
-}
-
-/// `--window`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Window {
-    Plain(Rect),
-    /// Across the 180th meridian: as it lies on the right of it and on the left.
-    Across([Rect; 2]),
-}
-
-impl Window {
-    pub fn mask(&self) -> durer::Result<Mask> {
-        match self {
-            Self::Plain(window) => Mask::window(*window),
-            Self::Across(windows) => Mask::windows(windows),
-        }
-    }
-}
-
-fn region(text: &str) -> Result<Window, String> {
-    let [xl, yb, xr, yt] = corners(text)?;
-    let across = (-180.0..=180.0).contains(&xr) && xr < xl && xl <= 180.0;
-    if !across || yb >= yt {
-        return window(text).map(Window::Plain);
-    }
-    let rect = |xl: f64, xr: f64| {
-        Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
-    };
-    Ok(Window::Across([rect(xl - 360.0, xr)?, rect(xl, xr + 360.0)?]))
-}
-
-fn corners(text: &str) -> Result<[f64; 4], String> {
-    let numbers: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
-    let four = "four numbers joined by commas are needed, e.g. -10,35,30,60";
-    numbers.try_into().map_err(|_| four.to_owned())
-}
-
-pub fn window(text: &str) -> Result<Rect, String> {
-    let [xl, yb, xr, yt] = corners(text)?;
-    if xl >= xr || yb >= yt {
-        return Err("the window is empty; give left, lower, right, upper".to_owned());
-    }
-    Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
 }
 
 pub fn format(text: &str) -> Result<GeoFormat, String> {

@@ -10,9 +10,10 @@ mod sink;
 mod srids;
 mod tiles;
 mod values;
+mod window;
 
-use args::Window;
-pub use args::{ClipArgs, EXAMPLES, format, window};
+pub use args::{ClipArgs, EXAMPLES, format};
+pub use window::window;
 
 use crate::failure::{Failure, in_words};
 use crate::input::{display_name, is_stream};
@@ -33,6 +34,7 @@ use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::Path;
 use std::time::Instant;
 use tiles::Tile;
+use window::Window;
 
 /// Features that are cut at a time, on all threads.
 const BATCH: usize = 256;
@@ -222,6 +224,13 @@ fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, re
             report.lost
         ));
     }
+    if report.long_ways > 0 {
+        found.push(format!(
+            "edges of {} features go over more than 180 degrees of longitude, and are taken so; RFC 7946 wants \
+             what goes across the 180th meridian cut there",
+            report.long_ways
+        ));
+    }
     if report.flat > 0 {
         found.push(format!("left out: {} lines without length", report.flat));
     }
@@ -342,6 +351,11 @@ impl Job<'_> {
                 return self.end(writer);
             }
             let first = self.report.given.features - features.len() as u64;
+            if let Some(window) = &self.args.region.window {
+                let long =
+                    |f: &&Feature| f.geometry.as_ref().is_some_and(|g| window.is_long_way(g));
+                self.report.long_ways += features.iter().filter(long).count() as u64;
+            }
             let cuts: Vec<_> = features.par_iter().map(cut).collect();
             for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
                 let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;

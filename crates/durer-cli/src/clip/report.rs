@@ -27,6 +27,9 @@ pub struct Report {
     pub repaired: u64,
     /// Points of polygons that are not exactly where edges cross, because rings would cross there.
     pub snapped: u64,
+    /// Features with edges that may be meant to go across the 180th meridian.
+    #[serde(skip)]
+    pub long_ways: u64,
     /// Lines that have no length.
     #[serde(skip)]
     pub flat: u64,

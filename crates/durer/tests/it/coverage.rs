@@ -267,7 +267,7 @@ proptest! {
             }
             for (_, piece) in lines.pieces() {
                 let again = part(polyline::Part::Inside, piece);
-                prop_assert_eq!(&again.points[..], piece);
+                prop_assert_eq!(&again.points[..], piece, "{:?} {:?}", line, case.mask);
                 // What is left of it on the other side lies on the border.
                 for point in part(polyline::Part::Outside, piece).points {
                     prop_assert!(borders.iter().any(|&border| lies_on(point, border, case.ulp)));

@@ -4,9 +4,9 @@ use super::Cut;
 use super::conform::{Mask, Subject};
 use crate::clip::attribute::Source;
 use crate::clip::exact;
-use crate::clip::polygon::Shapes;
 use crate::clip::polygon::overlay::{EdgeId, Operand, Origin, Output};
 use crate::clip::polygon::validity::{Touching, faults};
+use crate::clip::polygon::{Shapes, Vertex};
 use crate::math::DVec2;
 
 /// A point of the result.
@@ -157,21 +157,22 @@ fn built(output: &Shapes, points: &[Point], kept: &[bool]) -> Shapes {
     shapes
 }
 
-/// Whether the result has the subject's points and no others, each ring in its order or against it.
+/// Whether the result has the subject's points, edges and rings and no others.
 fn is_whole(input: &Shapes, shapes: &Shapes, sources: &[Source]) -> bool {
     let counts =
         |shapes: &Shapes| (shapes.points().len(), shapes.ring_count(), shapes.polygon_count());
-    if counts(input) != counts(shapes) {
-        return false;
-    }
-    let follows = |a: Source, b: Source| match (a, b) {
-        (Source::Vertex(a), Source::Vertex(b)) => {
-            input.next_point(a) == b || input.next_point(b) == a
-        }
-        _ => false,
+    let all_vertices = sources.iter().all(|source| matches!(source, Source::Vertex(_)));
+    all_vertices && counts(input) == counts(shapes) && edges(input) == edges(shapes)
+}
+
+/// All edges in an order of their own, without direction.
+fn edges(shapes: &Shapes) -> Vec<[DVec2; 2]> {
+    let order = |p: &DVec2, q: &DVec2| p.order(*q);
+    let of_ring = |ring: &[DVec2]| -> Vec<[DVec2; 2]> {
+        let ends = ring.iter().zip(ring.iter().cycle().skip(1));
+        ends.map(|(&a, &b)| if a.order(b).is_le() { [a, b] } else { [b, a] }).collect()
     };
-    (0..shapes.ring_count()).all(|ring| {
-        let of_ring = sources.get(shapes.ring_range(ring)).unwrap_or_default();
-        of_ring.iter().zip(of_ring.iter().cycle().skip(1)).all(|(&a, &b)| follows(a, b))
-    })
+    let mut edges: Vec<[DVec2; 2]> = shapes.rings().flat_map(of_ring).collect();
+    edges.sort_by(|e, f| order(&e[0], &f[0]).then(order(&e[1], &f[1])));
+    edges
 }

@@ -26,8 +26,9 @@ impl Near {
 
     /// The part around a box, and a little more on every side, so that nothing else reaches far.
     pub fn around(whole: &Prepared, bounds: &Rect) -> Self {
-        let farthest = bounds.max().abs().max(bounds.min().abs());
-        let margin = bounds.size() * (1.0 / 64.0) + farthest * 1e-9;
+        let farthest = bounds.max().abs().max(bounds.min().abs()).max_element();
+        // A window needs a size, also around a line along an axis.
+        let margin = bounds.size() * (1.0 / 64.0) + (farthest * 1e-9).max(f64::MIN_POSITIVE);
         let holds =
             |window: &Rect, own: Rect| window.contains(own.min()) && window.contains(own.max());
         match (Rect::new(bounds.min() - margin, bounds.max() + margin), whole.bounds()) {
