@@ -1,11 +1,11 @@
 //! The options of `durer clip`.
 
 use super::engine::Algorithm;
+use super::window::{Window, region};
 use crate::args::RunningArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::polygon::{BooleanOp, FillRule};
-use durer::math::{DVec2, Rect};
 use durer_formats::geo::GeoFormat;
 use std::path::PathBuf;
 
@@ -64,8 +64,11 @@ pub struct ClipArgs {
 pub struct RegionArgs {
     /// A rectangle: its left, lower, right and upper border, in the coordinates of the file; those of an SVG count
     /// upwards, so that what it shows is below 0
-    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = window, conflicts_with_all = ["by", "tiles"])]
-    pub window: Option<Rect>,
+    ///
+    /// In degrees, a left border that is larger than the right one, such as 170,-10,-170,10, makes a window across
+    /// the 180th meridian, as in RFC 7946; it also holds what goes on beyond 180 degrees.
+    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = region, conflicts_with_all = ["by", "tiles"])]
+    pub window: Option<Window>,
     /// The polygons of a file, all together
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "tiles")]
     pub by: Option<PathBuf>,
@@ -113,17 +116,6 @@ pub enum TileCoordinates {
     Lonlat,
     /// Web Mercator (EPSG:3857), in metres
     Mercator,
-}
-
-pub fn window(text: &str) -> Result<Rect, String> {
-    let numbers: Vec<f64> = text.split(',').map(values::number).collect::<Result<_, _>>()?;
-    let [xl, yb, xr, yt] = numbers[..] else {
-        return Err("four numbers joined by commas are needed, e.g. -10,35,30,60".to_owned());
-    };
-    if xl >= xr || yb >= yt {
-        return Err("the window is empty; give left, lower, right, upper".to_owned());
-    }
-    Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
 }
 
 pub fn format(text: &str) -> Result<GeoFormat, String> {

@@ -4,9 +4,10 @@ use super::mask::Mask;
 use super::shapes::{Area, oriented, pieces};
 use durer::clip::line::polyline::{self, Part};
 use durer::clip::line::{LineClipper, Segment};
+use durer::clip::polygon::overlay::{self, overlay};
 use durer::clip::polygon::rectangle::{self, ClippedLines};
-use durer::clip::polygon::validity::{Touching, edges_are_apart, is_valid};
-use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, overlay, vatti};
+use durer::clip::polygon::validity::{Touching, is_valid};
+use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, coverage, vatti};
 use durer::math::{DVec2, Rect};
 use durer::trace::NoTrace;
 use durer_formats::geo::{Geometry, Points};
@@ -89,6 +90,20 @@ pub struct Cut {
     pub repaired: bool,
     /// Whether a polygon of the mask was smaller than a cell of the grid there.
     pub lost: bool,
+    /// How many points of polygons are not where edges cross or vertices were, but on the grid.
+    pub snapped: usize,
+    /// How many lines have no length, so that nothing is left of them.
+    pub flat: usize,
+}
+
+/// Polygons made of others.
+#[derive(Debug, Default)]
+pub struct Made {
+    pub area: Area,
+    /// Whether those were not valid.
+    pub repaired: bool,
+    /// As of [`Cut`].
+    pub snapped: usize,
 }
 
 impl Cutter<'_> {
@@ -108,10 +123,9 @@ impl Cutter<'_> {
                 let kept = self.points(points);
                 Cut::of((!kept.is_empty()).then_some(Geometry::MultiPoint(kept)))
             }
-            Geometry::LineString(line) => Cut::of(one_or_many(self.lines(&[line], &bounds)?)),
+            Geometry::LineString(line) => self.cut_lines(&[line])?,
             Geometry::MultiLineString(lines) => {
-                let lines: Vec<&Points> = lines.iter().collect();
-                Cut::of(one_or_many(self.lines(&lines, &bounds)?))
+                self.cut_lines(&lines.iter().collect::<Vec<_>>())?
             }
             Geometry::Polygon(_) | Geometry::MultiPolygon(_) => self.polygons(geometry, &bounds)?,
             Geometry::Collection(parts) => self.collection(parts)?,
@@ -122,9 +136,11 @@ impl Cutter<'_> {
         let cuts: Vec<Cut> = parts.iter().map(|part| self.cut(part)).collect::<Result<_>>()?;
         let repaired = cuts.iter().any(|cut| cut.repaired);
         let lost = cuts.iter().any(|cut| cut.lost);
+        let snapped = cuts.iter().map(|cut| cut.snapped).sum();
+        let flat = cuts.iter().map(|cut| cut.flat).sum();
         let left: Vec<Geometry> = cuts.into_iter().filter_map(|cut| cut.geometry).collect();
         let geometry = (!left.is_empty()).then_some(Geometry::Collection(left));
-        Ok(Cut { geometry, repaired, lost })
+        Ok(Cut { geometry, repaired, lost, snapped, flat })
     }
 
     fn points(&self, points: &Points) -> Points {
@@ -137,7 +153,17 @@ impl Cutter<'_> {
         kept
     }
 
-    fn lines(&self, lines: &[&Points], bounds: &Rect) -> Result<Vec<Points>> {
+    fn cut_lines(&self, lines: &[&Points]) -> Result<Cut> {
+        let wanted = |p: DVec2| self.mask.contains(p) == (self.op == BooleanOp::Intersection);
+        let is_flat = |line: &&&Points| {
+            let first = line.xy.first().copied();
+            first.is_some_and(|first| line.xy.iter().all(|&p| p == first) && wanted(first))
+        };
+        let flat = lines.iter().filter(is_flat).count();
+        Ok(Cut { geometry: one_or_many(self.lines(lines)?), flat, ..Cut::default() })
+    }
+
+    fn lines(&self, lines: &[&Points]) -> Result<Vec<Points>> {
         let points: Vec<DVec2> = lines.iter().flat_map(|line| line.xy.iter().copied()).collect();
         let ends: Vec<usize> = lines
             .iter()
@@ -155,8 +181,8 @@ impl Cutter<'_> {
             _ => {
                 let part = if inside { Part::Inside } else { Part::Outside };
                 let options = polyline::Options { part };
-                let near = self.mask.near(bounds);
-                polyline::clip(&near, &points, &ends, &options, &mut NoTrace)?
+                let mask = self.mask.prepared();
+                polyline::clip_prepared(mask, &points, &ends, &options, &mut NoTrace)?
             }
         };
         Ok(pieces(lines, &cut))
@@ -170,37 +196,46 @@ impl Cutter<'_> {
                 // What an SVG says of its paths, for algorithms that take polygons as they are.
                 let as_they_are = !Algorithm::Polygon(clipper).takes_rules();
                 let ruled = as_they_are && self.rules.fill != FillRule::EvenOdd;
-                let area = if ruled { self.rules.clean(geometry)? } else { area };
+                let area = if ruled { self.rules.clean(geometry)?.area } else { area };
                 Ok(Cut::of(self.by_name(clipper, &area)?.into_geometry().map(oriented)))
             }
         }
     }
 
-    /// Valid polygons by the rectangle clip, all others by the overlay.
+    /// What the mask does not come near is kept or dropped whole; valid polygons go by the rectangle clip,
+    /// all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
-        let valid = self.rules.keep_valid(&area.shapes) && is_valid(&area.shapes, Touching::No);
+        let keeps = self.rules.keep_valid(&area.shapes);
+        let apart = keeps && is_valid(&area.shapes, Touching::No);
+        // Rings that touch in points are valid, but nothing for the rectangle clip.
+        let valid = || apart || keeps && is_valid(&area.shapes, Touching::AtPoints);
         let inside = self.op == BooleanOp::Intersection;
-        let covers = |window: &Rect| window.contains(bounds.min()) && window.contains(bounds.max());
-        match self.mask.window {
-            Some(window) if inside && valid && covers(&window) => {
-                return Ok(Cut::of(Some(oriented(geometry.clone()))));
-            }
-            Some(window) if inside && valid => {
-                let cut = clip_area(&window, area)?.into_geometry();
-                return Ok(Cut::of(cut.map(oriented)));
-            }
-            _ if !inside && valid && !self.mask.meets(bounds) => {
-                return Ok(Cut::of(Some(oriented(geometry.clone()))));
-            }
+        match self.mask.side(bounds) {
+            Some(side) if side != inside => return Ok(Cut::default()),
+            Some(_) if valid() => return Ok(Cut::of(Some(oriented(geometry.clone())))),
             _ => {}
         }
-        let near = self.mask.near(bounds);
-        let cut = self.rules.overlay(area, &near, self.op, self.rules.fill)?;
-        // Rings that touch in points are valid, but nothing for the rectangle clip.
-        let even_odd = self.rules.fill == FillRule::EvenOdd;
-        let repaired = !valid && even_odd && !is_valid(&area.shapes, Touching::AtPoints);
-        let lost = self.rules.loses(area, &near);
-        Ok(Cut { geometry: cut.into_geometry(), repaired, lost })
+        if let Some(window) = self.mask.window.filter(|_| inside && apart) {
+            let cut = clip_area(&window, area)?.into_geometry();
+            return Ok(Cut::of(cut.map(oriented)));
+        }
+        let repaired = self.rules.fill == FillRule::EvenOdd
+            && !apart
+            && !is_valid(&area.shapes, Touching::AtPoints);
+        if self.rules.grid.is_some() {
+            let near = self.mask.near(bounds);
+            let cut = self.rules.snapped(area, &near, self.op, self.rules.fill)?;
+            let lost = self.rules.loses(area, &near);
+            return Ok(Cut { geometry: cut.into_geometry(), repaired, lost, ..Cut::default() });
+        }
+        let fill = self.rules.fill;
+        let cut = coverage::cut(&area.shapes, self.mask.prepared(), self.op, fill)?;
+        let (lost, snapped) = (cut.lost, cut.snapped);
+        if cut.whole {
+            return Ok(Cut::of(Some(oriented(geometry.clone()))));
+        }
+        let geometry = area.cut(cut.shapes, &cut.sources).into_geometry();
+        Ok(Cut { geometry, repaired, lost, snapped, flat: 0 })
     }
 
     fn by_name(&self, clipper: PolygonClipper, area: &Area) -> Result<Area> {
@@ -218,7 +253,7 @@ impl Cutter<'_> {
                 cut
             }
             (PolygonClipper::Overlay, _) => {
-                self.rules.overlay(area, mask, self.op, self.rules.fill)?
+                self.rules.overlay(area, mask, self.op, self.rules.fill)?.area
             }
             (PolygonClipper::Vatti, _) => self.rules.vatti(area, mask, self.op, self.rules.fill)?,
             (clipper, _) => {
@@ -348,20 +383,35 @@ impl Rules {
 
     /// The overlay's options: the finest grid that it takes, unless one is given.
     fn options(&self, area: &Area, clip: &Shapes, subject_rule: FillRule) -> overlay::Options {
-        let fit = || finest_grid([area.shapes.bounds(), clip.bounds()]);
+        let fit = || coverage::finest_grid([area.shapes.bounds(), clip.bounds()]);
         overlay::Options {
             subject_rule,
             clip_rule: FillRule::EvenOdd,
             grid: self.grid.or_else(fit),
             origins: true,
+            drop_collinear: false,
         }
     }
 
-    /// Any polygons with valid polygons.
-    ///
-    /// Where no grid is given, vertices of the input keep their coordinates bit for bit, if the
-    /// result is valid so; else all are on the grid.
+    /// Any polygons with valid polygons: on the grid where one is given, else exactly.
     pub fn overlay(
+        &self,
+        area: &Area,
+        clip: &Shapes,
+        op: BooleanOp,
+        subject_rule: FillRule,
+    ) -> Result<Made> {
+        if self.grid.is_some() {
+            let area = self.snapped(area, clip, op, subject_rule)?;
+            return Ok(Made { area, ..Made::default() });
+        }
+        let cut = coverage::join(&area.shapes, clip, op, subject_rule)?;
+        let snapped = cut.snapped;
+        Ok(Made { area: area.cut(cut.shapes, &cut.sources), repaired: false, snapped })
+    }
+
+    /// The same with all vertices on the grid.
+    fn snapped(
         &self,
         area: &Area,
         clip: &Shapes,
@@ -369,14 +419,7 @@ impl Rules {
         subject_rule: FillRule,
     ) -> Result<Area> {
         let options = self.options(area, clip, subject_rule);
-        let output = overlay(&area.shapes, clip, op, &options, &mut NoTrace)?;
-        if self.grid.is_none() {
-            let exact = area.overlaid(clip, &output, true);
-            if edges_are_apart(&exact.shapes, Touching::AtVertices) {
-                return Ok(exact);
-            }
-        }
-        Ok(area.overlaid(clip, &output, false))
+        Ok(area.overlaid(&overlay(&area.shapes, clip, op, &options, &mut NoTrace)?))
     }
 
     /// The same by Vatti's sweep; all vertices are on the grid.
@@ -389,33 +432,46 @@ impl Rules {
     ) -> Result<Area> {
         let options = self.options(area, clip, subject_rule);
         let output = vatti::vatti(&area.shapes, clip, op, &options, &mut NoTrace)?;
-        Ok(area.overlaid(clip, &output, false))
+        Ok(area.overlaid(&output))
     }
 
-    /// The same region by polygons that are valid, with outer rings counter-clockwise.
-    pub fn clean(&self, geometry: &Geometry) -> Result<Area> {
-        let area = Area::of_geometry(geometry);
-        if self.keep_valid(&area.shapes) && is_valid(&area.shapes, Touching::No) {
-            return Ok(Area::of_geometry(&oriented(geometry.clone())));
+    /// The same region by polygons that are valid, with outer rings counter-clockwise. The polygons of
+    /// a collection are sets of points, joined whatever rule each follows.
+    pub fn clean(&self, geometry: &Geometry) -> Result<Made> {
+        let Geometry::Collection(parts) = geometry else { return self.clean_polygons(geometry) };
+        let mut all = Made::default();
+        for part in parts {
+            let made = self.clean(part)?;
+            all.area.append(&made.area);
+            all.repaired |= made.repaired;
+            all.snapped += made.snapped;
         }
-        self.overlay(&area, &Shapes::new(), BooleanOp::Union, self.fill)
+        if all.area.shapes.polygon_count() > 1 {
+            let rule = FillRule::Positive;
+            let joined = self.overlay(&all.area, &Shapes::new(), BooleanOp::Union, rule)?;
+            (all.area, all.snapped) = (joined.area, all.snapped + joined.snapped);
+        }
+        Ok(all)
     }
-}
 
-/// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 51 bits for a coordinate.
-fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
-    let all = Rect::around(bounds.into_iter().flatten().flat_map(|b| [b.min(), b.max()]))?;
-    let farthest = all.min().abs().max(all.max().abs()).max_element();
-    let cell = (all.size().max_element() / 2f64.powi(40)).max(farthest / 2f64.powi(51));
-    // The power of two at or below, without logarithms: the exponent's bits alone.
-    let floor = f64::from_bits(cell.to_bits() & (0x7ff << 52));
-    let cell = if floor < cell { floor * 2.0 } else { floor };
-    (cell.is_normal() && cell.is_finite()).then_some(cell)
+    fn clean_polygons(&self, geometry: &Geometry) -> Result<Made> {
+        let area = Area::of_geometry(geometry);
+        let keeps = self.keep_valid(&area.shapes);
+        if keeps && is_valid(&area.shapes, Touching::No) {
+            let area = Area::of_geometry(&oriented(geometry.clone()));
+            return Ok(Made { area, ..Made::default() });
+        }
+        let repaired =
+            self.fill == FillRule::EvenOdd && !is_valid(&area.shapes, Touching::AtPoints);
+        let made = self.overlay(&area, &Shapes::new(), BooleanOp::Union, self.fill)?;
+        Ok(Made { repaired, ..made })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use durer::clip::polygon::validity::edges_are_apart;
 
     fn line(points: &[(f64, f64)]) -> Points {
         Points::flat(points.iter().map(|&p| DVec2::from(p)).collect())
@@ -487,17 +543,9 @@ mod tests {
             );
             for op in BooleanOp::ALL {
                 let cut = Rules::default().overlay(&area, &far, *op, FillRule::EvenOdd);
-                let cut = cut.expect("finite").shapes;
+                let cut = cut.expect("finite").area.shapes;
                 assert!(edges_are_apart(&cut, Touching::AtVertices), "{op}: {cut:?}");
             }
         }
-    }
-
-    #[test]
-    fn the_finest_grid_is_a_power_of_two() {
-        let bounds = Rect::new(DVec2::splat(-180.0), DVec2::splat(180.0)).ok();
-        let cell = finest_grid([bounds, None]).expect("a grid");
-        assert!(cell >= 360.0 / 2f64.powi(40) && cell <= 360.0 / 2f64.powi(39));
-        assert_eq!(cell.to_bits() << 12, 0);
     }
 }

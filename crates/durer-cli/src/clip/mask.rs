@@ -32,6 +32,13 @@ impl Mask {
         Ok(Self { polygons: Prepared::new(rectangle_shape(&window))?, window: Some(window) })
     }
 
+    /// Windows that have no point in common.
+    pub fn windows(windows: &[Rect]) -> Result<Self> {
+        let mut shapes = Shapes::new();
+        windows.iter().for_each(|window| shapes.append(&rectangle_shape(window)));
+        Self::polygons(shapes)
+    }
+
     /// Valid polygons, or none.
     pub fn polygons(shapes: Shapes) -> Result<Self> {
         Ok(Self { polygons: Prepared::new(shapes)?, window: None })
@@ -40,6 +47,23 @@ impl Mask {
     /// Whether it may have a point in common with what lies in a box.
     pub fn meets(&self, bounds: &Rect) -> bool {
         self.polygons.bounds().is_some_and(|own| own.overlaps(bounds))
+    }
+
+    /// Whether a box lies wholly inside (true) or outside (false); `None` where its border comes near.
+    pub fn side(&self, bounds: &Rect) -> Option<bool> {
+        if !self.meets(bounds) {
+            return Some(false);
+        }
+        if let Some(window) = self.window {
+            let covers = window.contains(bounds.min()) && window.contains(bounds.max());
+            return covers.then_some(true);
+        }
+        (!self.polygons.has_edges_near(bounds)).then(|| self.polygons.contains(bounds.min()))
+    }
+
+    /// Its polygons, made ready.
+    pub fn prepared(&self) -> &Prepared {
+        &self.polygons
     }
 
     /// Its polygons.
@@ -92,15 +116,15 @@ pub fn read(
             rings |= !area.shapes.is_empty();
             // An SVG, or an option, says what polygons that cross enclose.
             let asked = args.cutting.fill_rule.is_some() || from == GeoFormat::Svg;
-            repaired |= !asked && !is_valid(&area.shapes, Touching::AtPoints);
-            let clean = rules(args, &feature).clean(geometry);
-            all.append(&clean.map_err(|e| fail(e.to_string()))?);
+            let clean = rules(args, &feature).clean(geometry).map_err(|e| fail(e.to_string()))?;
+            repaired |= !asked && clean.repaired;
+            all.append(&clean.area);
         }
     }
     messages.warnings(&display_name(path), reader.warnings());
     let rules = Rules { fill: FillRule::Positive, grid: args.cutting.grid };
     let union = rules.overlay(&all, &Shapes::new(), BooleanOp::Union, rules.fill);
-    let union = union.map_err(|e| fail(e.to_string()))?;
+    let union = union.map_err(|e| fail(e.to_string()))?.area;
     if rules.loses(&all, &all.shapes) {
         let message = "polygons smaller than a cell of the grid, by default 2^-40 of the whole \
                        mask's extent, may be lost";

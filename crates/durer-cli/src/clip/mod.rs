@@ -3,14 +3,17 @@
 mod args;
 mod engine;
 mod mask;
+mod mean_value;
 mod report;
 mod shapes;
 mod sink;
 mod srids;
 mod tiles;
 mod values;
+mod window;
 
-pub use args::{ClipArgs, EXAMPLES, format, window};
+pub use args::{ClipArgs, EXAMPLES, format};
+pub use window::window;
 
 use crate::failure::{Failure, in_words};
 use crate::input::{display_name, is_stream};
@@ -18,7 +21,7 @@ use crate::messages::Messages;
 use crate::output::{self, Target};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
-use engine::{Algorithm, Cutter, Rules};
+use engine::{Algorithm, Cutter, Made, Rules};
 use mask::Mask;
 use rayon::prelude::*;
 use report::{Counts, Report};
@@ -31,6 +34,7 @@ use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::Path;
 use std::time::Instant;
 use tiles::Tile;
+use window::Window;
 
 /// Features that are cut at a time, on all threads.
 const BATCH: usize = 256;
@@ -51,7 +55,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let mut mask_srids = Srids::default();
     let mask = match (&args.region.window, &args.region.by) {
         (Some(window), _) => {
-            Some(Mask::window(*window).map_err(|e| Failure::Usage(format!("--window: {e}")))?)
+            Some(window.mask().map_err(|e| Failure::Usage(format!("--window: {e}")))?)
         }
         (_, Some(path)) => Some(mask::read(path, args, &mut mask_srids, &messages)?),
         _ => None,
@@ -113,6 +117,10 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
     }
     if algorithm.needs_window() && region.window.is_none() {
         return Err(Failure::Usage(format!("--algorithm {name} needs --window")));
+    }
+    if algorithm.needs_window() && matches!(region.window, Some(Window::Across(_))) {
+        let message = "takes one rectangle, not a window across 180 degrees";
+        return Err(Failure::Usage(format!("--algorithm {name} {message}")));
     }
     let difference = region.outside || args.cutting.op == BooleanOp::Difference;
     if algorithm.needs_intersection() && difference {
@@ -215,6 +223,16 @@ fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, re
              extent, may be lost at {} features",
             report.lost
         ));
+    }
+    if report.long_ways > 0 {
+        found.push(format!(
+            "edges of {} features go over more than 180 degrees of longitude, and are taken so; RFC 7946 wants \
+             what goes across the 180th meridian cut there",
+            report.long_ways
+        ));
+    }
+    if report.flat > 0 {
+        found.push(format!("left out: {} lines without length", report.flat));
     }
     if report.given.features == 0 {
         found.push("there is no feature in it".to_owned());
@@ -333,12 +351,19 @@ impl Job<'_> {
                 return self.end(writer);
             }
             let first = self.report.given.features - features.len() as u64;
+            if let Some(window) = &self.args.region.window {
+                let long =
+                    |f: &&Feature| f.geometry.as_ref().is_some_and(|g| window.is_long_way(g));
+                self.report.long_ways += features.iter().filter(long).count() as u64;
+            }
             let cuts: Vec<_> = features.par_iter().map(cut).collect();
             for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
                 let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 let cut = cut.unwrap_or_default();
                 self.report.repaired += u64::from(cut.repaired);
                 self.report.lost += u64::from(cut.lost);
+                self.report.snapped += cut.snapped as u64;
+                self.report.flat += cut.flat as u64;
                 if cut.geometry.is_some() {
                     feature.geometry = cut.geometry;
                     feature.fill_rule = FillRule::EvenOdd;
@@ -366,7 +391,10 @@ impl Job<'_> {
                 .filter_map(|f| f.geometry.as_ref().map(|g| rules(args, f).clean(g)))
                 .collect();
             for (i, area) in areas.into_iter().enumerate() {
-                all.append(&area.map_err(|e| self.of_feature(first + i as u64, &e))?);
+                let made = area.map_err(|e| self.of_feature(first + i as u64, &e))?;
+                self.report.repaired += u64::from(made.repaired);
+                self.report.snapped += made.snapped as u64;
+                all.append(&made.area);
             }
         }
         let op = self.args.cutting.op;
@@ -375,12 +403,16 @@ impl Job<'_> {
         let mask = mask.map_or(&none, Mask::shapes);
         let rules = Rules { fill: rule, grid: self.args.cutting.grid };
         let joined = match self.args.cutting.algorithm {
-            Some(Algorithm::Polygon(PolygonClipper::Vatti)) => rules.vatti(&all, mask, op, rule),
+            Some(Algorithm::Polygon(PolygonClipper::Vatti)) => {
+                let area = rules.vatti(&all, mask, op, rule);
+                area.map(|area| Made { area, ..Made::default() })
+            }
             _ => rules.overlay(&all, mask, op, rule),
         };
         let joined = joined.map_err(|e| self.fail(e))?;
+        self.report.snapped += joined.snapped as u64;
         let mut writer = None;
-        if let Some(geometry) = joined.into_geometry() {
+        if let Some(geometry) = joined.area.into_geometry() {
             let srid = self.report.srids.common();
             self.put(&mut writer, &Feature { srid, ..Feature::of_geometry(geometry) })?;
         }

@@ -25,6 +25,14 @@ pub struct Report {
     pub out: Counts,
     /// Features whose polygons crossed themselves or one another and were made valid.
     pub repaired: u64,
+    /// Points of polygons that are not exactly where edges cross, because rings would cross there.
+    pub snapped: u64,
+    /// Features with edges that may be meant to go across the 180th meridian.
+    #[serde(skip)]
+    pub long_ways: u64,
+    /// Lines that have no length.
+    #[serde(skip)]
+    pub flat: u64,
     /// Features at which polygons of the mask may have been lost, smaller than a cell of the grid.
     #[serde(skip)]
     pub lost: u64,

@@ -1,8 +1,9 @@
 //! Between the geometry of files and the library's polygons.
 
-use super::values::{Values, Zm, mix};
+use super::mean_value::MeanValues;
+use super::values::{Values, Zm, between, mix};
 use durer::clip::attribute::Source;
-use durer::clip::polygon::overlay::{Operand, Origin, Output};
+use durer::clip::polygon::overlay::{Operand, Output};
 use durer::clip::polygon::{Shapes, signed_area};
 use durer::math::DVec2;
 use durer_formats::geo::{Dimensions, Geometry, Points};
@@ -88,27 +89,19 @@ impl Area {
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
         }
-        let value = |i: usize| self.zm.get(i).copied();
-        let values = sources.iter().map(|source| match *source {
-            Source::Vertex(i) => value(i),
-            Source::Cut { from, to, t } => Some(mix(value(from)?, value(to)?, t)),
+        let own = Values { shapes: &self.shapes, zm: &self.zm };
+        let values = shapes.points().iter().zip(sources).map(|(&p, source)| match *source {
+            Source::Vertex(i) => self.zm.get(i).copied(),
+            Source::Cut { from, to, .. } => own.along([from, to], p),
             Source::Corner => None,
         });
-        self.with_values(shapes, values.collect())
+        let values = values.collect();
+        self.with_values(shapes, values)
     }
 
-    /// What became of this area, the subject of an overlay. Vertices of the input that are kept get
-    /// their own coordinates back where `exact` is set.
-    pub fn overlaid(&self, clip: &Shapes, output: &Output, exact: bool) -> Self {
-        let mut shapes = output.shapes.clone();
-        if exact {
-            for (point, origin) in shapes.points_mut().iter_mut().zip(&output.origins) {
-                if let Origin::Vertex { operand, index } = *origin {
-                    let of = if operand == Operand::Subject { &self.shapes } else { clip };
-                    *point = of.points().get(index).copied().unwrap_or(*point);
-                }
-            }
-        }
+    /// What became of this area, the subject of an overlay.
+    pub fn overlaid(&self, output: &Output) -> Self {
+        let shapes = output.shapes.clone();
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
         }
@@ -127,6 +120,13 @@ impl Area {
         let of = Values { shapes: &self.shapes, zm: &self.zm };
         // Corners of the mask may lie on edges, which know the values there.
         of.on_edges(shapes.points(), &mut values);
+        let open = values.iter().filter(|value| value.is_none()).count();
+        if open > 0 && open.saturating_mul(self.zm.len()) <= PAIRS {
+            let mean = MeanValues::new(&of);
+            for (value, &p) in values.iter_mut().zip(shapes.points()) {
+                *value = value.or_else(|| mean.at(p));
+            }
+        }
         let by_x = std::cell::OnceCell::new();
         let nearest = |p: DVec2| of.nearest(by_x.get_or_init(|| of.by_x()), p);
         let mut zm = Vec::with_capacity(values.len());
@@ -138,7 +138,11 @@ impl Area {
     }
 }
 
-/// Values where none is known, such as at the window's corners: along the ring, by length, between
+/// So many pairs of a place and a vertex may be looked at for heights within a polygon, half a second or
+/// less; beyond that heights go on along the border from the known ones.
+const PAIRS: usize = 1 << 26;
+
+/// Values where none is known: along the ring, by length, between
 /// the known ones before and after; where the ring has none, by `otherwise`.
 fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -> Vec<Zm> {
     let count = ring.len();
@@ -196,10 +200,15 @@ pub fn pieces(
     lines: &[&Points],
     cut: &durer::clip::polygon::rectangle::ClippedLines,
 ) -> Vec<Points> {
-    let dimensions = lines.first().map(|line| line.dimensions).unwrap_or_default();
+    let any = |has: fn(Dimensions) -> bool| lines.iter().any(|line| has(line.dimensions));
+    let dimensions = Dimensions::new(any(Dimensions::has_z), any(Dimensions::has_m));
     let zm: Vec<Zm> = match dimensions {
         Dimensions::Xy => Vec::new(),
         _ => lines.iter().flat_map(|line| (0..line.len()).map(|i| line.zm(i))).collect(),
+    };
+    let xy: Vec<DVec2> = match dimensions {
+        Dimensions::Xy => Vec::new(),
+        _ => lines.iter().flat_map(|line| line.xy.iter().copied()).collect(),
     };
     let value = |i: usize| zm.get(i).copied().unwrap_or_default();
     let mut next = 0;
@@ -208,8 +217,11 @@ pub fn pieces(
         for &p in run {
             let values = match cut.sources.get(next) {
                 Some(Source::Vertex(i)) => value(*i),
-                Some(Source::Cut { from, to, t }) => mix(value(*from), value(*to), *t),
-                Some(Source::Corner) | None => [0.0; 2],
+                Some(Source::Cut { from, to, .. }) if dimensions != Dimensions::Xy => {
+                    let end = |i: usize| (xy.get(i).copied().unwrap_or(p), value(i));
+                    between(end(*from), end(*to), p)
+                }
+                Some(Source::Cut { .. } | Source::Corner) | None => [0.0; 2],
             };
             points.push(p, values);
             next += 1;

@@ -1,5 +1,6 @@
 //! Heights and measures of polygons at places that are no vertices of theirs.
 
+use durer::clip::attribute::Source;
 use durer::clip::polygon::Shapes;
 use durer::math::DVec2;
 
@@ -22,7 +23,26 @@ pub struct Values<'a> {
     pub zm: &'a [Zm],
 }
 
+/// The values at a place on the edge from a to b, each given by its place and values: the same bits
+/// for either direction, so that neighbours agree.
+pub fn between(a: (DVec2, Zm), b: (DVec2, Zm), p: DVec2) -> Zm {
+    let order = |p: DVec2, q: DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
+    let (a, b) = if order(a.0, b.0).is_le() { (a, b) } else { (b, a) };
+    match Source::on_edge(p, (0, a.0), (1, b.0)) {
+        Source::Vertex(0) => a.1,
+        Source::Cut { t, .. } => mix(a.1, b.1, t),
+        _ => b.1,
+    }
+}
+
 impl Values<'_> {
+    /// The values at a place on the edge between two vertices.
+    pub fn along(&self, ends: [usize; 2], p: DVec2) -> Option<Zm> {
+        let [a, b] =
+            ends.map(|i| self.shapes.points().get(i).copied().zip(self.zm.get(i).copied()));
+        Some(between(a?, b?, p))
+    }
+
     /// Fills in the values of places on edges, as far as rounding lets them be there; where several
     /// edges pass, of the first. Each edge is looked at once, with the places of its own width.
     pub fn on_edges(&self, places: &[DVec2], values: &mut [Option<Zm>]) {

@@ -38,6 +38,11 @@ impl Dimensions {
         matches!(self, Self::Xym | Self::Xyzm)
     }
 
+    /// The ordinates of either.
+    pub fn with(self, other: Self) -> Self {
+        Self::new(self.has_z() || other.has_z(), self.has_m() || other.has_m())
+    }
+
     /// How many numbers a position has.
     pub fn count(self) -> usize {
         2 + usize::from(self.has_z()) + usize::from(self.has_m())
@@ -71,6 +76,14 @@ impl Points {
         self.xy.push(xy);
         if self.dimensions != Dimensions::Xy {
             self.zm.push(zm);
+        }
+    }
+
+    /// Gives all positions the ordinates of other dimensions too, 0 where they had none.
+    pub fn lift(&mut self, dimensions: Dimensions) {
+        self.dimensions = self.dimensions.with(dimensions);
+        if self.dimensions != Dimensions::Xy {
+            self.zm.resize(self.xy.len(), [0.0; 2]);
         }
     }
 
@@ -164,13 +177,15 @@ impl Geometry {
         self.len() == 0
     }
 
-    /// The dimensions of the first position; `Xy` where there is none.
+    /// The ordinates that any position has; `Xy` where there is none.
     pub fn dimensions(&self) -> Dimensions {
-        let mut first = None;
+        let mut all = Dimensions::Xy;
         self.for_each(&mut |points| {
-            first = first.or((!points.is_empty()).then_some(points.dimensions));
+            if !points.is_empty() {
+                all = all.with(points.dimensions);
+            }
         });
-        first.unwrap_or_default()
+        all
     }
 
     /// The smallest rectangle around it; `None` where it is empty.

@@ -71,8 +71,8 @@ pub(super) struct Resolved {
 pub(super) fn resolve(points: &[DVec2], budget: &mut Budget) -> Option<Resolved> {
     budget.spend(100 * points.len())?;
     let outline = Shapes::from_rings([points]);
-    let options =
-        overlay::Options { origins: true, ..overlay::Options::with_rule(FillRule::NonZero) };
+    let rule = overlay::Options::with_rule(FillRule::NonZero);
+    let options = overlay::Options { origins: true, drop_collinear: true, ..rule };
     let union = BooleanOp::Union;
     let out = overlay::overlay(&outline, &Shapes::new(), union, &options, &mut NoTrace).ok()?;
     let mut resolved = Resolved::default();

@@ -8,6 +8,8 @@ use crate::math::{DVec2, orient2d_value};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
+mod pair;
+
 /// Half an ulp of 1: the largest relative error of one rounded operation.
 pub(crate) const EPSILON: f64 = f64::EPSILON * 0.5;
 
@@ -44,6 +46,55 @@ fn side_in_whole_numbers(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let left = (e(b.x) - e(a.x)) * (e(c.y) - e(a.y));
     let right = (e(b.y) - e(a.y)) * (e(c.x) - e(a.x));
     (left - right).sign()
+}
+
+/// The point where two closed segments cross, each coordinate correctly rounded: the same bits for
+/// either order and direction. `None` where they keep apart or lie on one line.
+pub(crate) fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
+    let apart = |s: Ordering, t: Ordering| s == t;
+    if apart(side(a, b, c), side(a, b, d)) || apart(side(c, d, a), side(c, d, b)) {
+        return None;
+    }
+    let axis = |k: usize| crossing_on_axis(k, [a, b], [c, d]);
+    Some(DVec2::new(axis(0), axis(1)))
+}
+
+fn crossing_on_axis(k: usize, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
+    // A border of a window is met as it is; adding zero turns −0 into 0.
+    if a[k] == b[k] {
+        return a[k] + 0.0;
+    }
+    if c[k] == d[k] {
+        return c[k] + 0.0;
+    }
+    pair::crossing(k, [a, b], [c, d])
+        .unwrap_or_else(|| crossing_in_whole_numbers(k, [a, b], [c, d]))
+}
+
+#[cold]
+#[inline(never)]
+fn crossing_in_whole_numbers(k: usize, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> f64 {
+    let minus = |p: DVec2, q: DVec2, k: usize| Exact::from(p[k]) - Exact::from(q[k]);
+    let cross = |p: [DVec2; 2], q: [DVec2; 2]| {
+        minus(p[1], p[0], 0) * minus(q[1], q[0], 1) - minus(p[1], p[0], 1) * minus(q[1], q[0], 0)
+    };
+    let (num, den) = (cross([a, c], [c, d]), cross([a, b], [c, d]));
+    (Exact::from(a[k]) * den.clone() + minus(b, a, k) * num).rounded_ratio(&den)
+}
+
+/// The coordinate on the other axis where the segment a → b, which spans it, crosses the line on
+/// which the coordinate on `axis` is `border`; correctly rounded.
+pub(crate) fn on_border([a, b]: [DVec2; 2], axis: usize, border: f64) -> f64 {
+    let other = 1 - axis;
+    if a[other] == b[other] {
+        return a[other] + 0.0;
+    }
+    pair::on_border([a, b], axis, border).unwrap_or_else(|| {
+        let minus = |p: f64, q: f64| Exact::from(p) - Exact::from(q);
+        let length = minus(b[axis], a[axis]);
+        let rise = minus(b[other], a[other]) * minus(border, a[axis]);
+        (Exact::from(a[other]) * length.clone() + rise).rounded_ratio(&length)
+    })
 }
 
 /// An exact dyadic rational: ± magnitude · 2^exponent.
@@ -92,6 +143,38 @@ impl Exact {
         };
         let ((a, ea), (b, eb)) = (leading(self), leading(other));
         if b == 0.0 { 0.0 } else { libm::scalbn(a / b, ea - eb) }
+    }
+
+    /// self / other, correctly rounded, ties to even, where it is finite; 0 where `other` is 0.
+    pub(crate) fn rounded_ratio(&self, other: &Self) -> f64 {
+        let mut near = self.ratio(other);
+        let (num, den) = match other.sign() {
+            Ordering::Equal => return 0.0,
+            Ordering::Greater => (self.clone(), other.clone()),
+            Ordering::Less => (Self::from(0.0) - self.clone(), Self::from(0.0) - other.clone()),
+        };
+        let twice = num.clone() + num;
+        // The quotient compared with the middle between two neighbours.
+        let beyond = |p: f64, q: f64| {
+            let middle = (Self::from(p) + Self::from(q)) * den.clone();
+            (twice.clone() - middle).sign()
+        };
+        let odd = |v: f64| v.to_bits() & 1 == 1;
+        // What is off by two ulp at most needs no more steps.
+        for _ in 0..4 {
+            let (up, down) = (near.next_up(), near.next_down());
+            near = match (beyond(near, up), beyond(down, near)) {
+                (Ordering::Greater, _) => up,
+                (Ordering::Equal, _) if odd(near) => up,
+                (_, Ordering::Less) => down,
+                (_, Ordering::Equal) if odd(near) => down,
+                _ => break,
+            };
+            if !near.is_finite() {
+                break;
+            }
+        }
+        near + 0.0
     }
 
     /// The digits when the number is written with a smaller exponent.
@@ -213,7 +296,63 @@ mod tests {
         assert_eq!(side(p(-f64::MAX, 0.0), p(f64::MAX, 0.0), p(0.0, -tiny)), Ordering::Less);
     }
 
+    /// Points on a coarse grid, times powers of two, beside ones next to them: many on one line, and many that nearly are.
+    fn points() -> impl Strategy<Value = [DVec2; 4]> {
+        let coordinate = (-40i32..40, prop::sample::select(vec![0.1, 1.0, 3e-7, 1e9]), -2i32..3);
+        let number = coordinate.prop_map(|(v, unit, steps)| {
+            let v = f64::from(v) * unit;
+            (0..steps.abs()).fold(v, |v, _| if steps > 0 { v.next_up() } else { v.next_down() })
+        });
+        prop::array::uniform8(number).prop_map(|c| [0, 2, 4, 6].map(|i| p(c[i], c[i + 1])))
+    }
+
+    fn p(x: f64, y: f64) -> DVec2 {
+        DVec2::new(x, y)
+    }
+
+    #[test]
+    fn crossings_are_correctly_rounded() {
+        // The shared edge of two neighbours, and the edge of a mask.
+        let (edge, mask) = ([p(1.0, 2.0), p(2.0, 5.0)], [p(-1.0, 3.0), p(5.0, 3.1)]);
+        let expected = Some(p(1.346_368_715_083_798_9, 3.039_106_145_251_396_6));
+        for e in [edge, [edge[1], edge[0]]] {
+            for m in [mask, [mask[1], mask[0]]] {
+                assert_eq!((crossing(e, m), crossing(m, e)), (expected, expected));
+            }
+        }
+        let third = [p(0.0, 0.0), p(3.0, 1.0)];
+        assert_eq!(on_border(third, 0, 1.0), 1.0 / 3.0);
+        assert_eq!(crossing(third, [p(1.0, -1.0), p(1.0, 1.0)]), Some(p(1.0, 1.0 / 3.0)));
+        assert_eq!(
+            crossing([p(-1.0, -1.0), p(1.0, 1.0)], [p(-1.0, 1.0), p(1.0, -1.0)]),
+            Some(p(0.0, 0.0))
+        );
+        assert_eq!(crossing(third, [p(6.0, 2.0), p(9.0, 3.0)]), None);
+        let far = 1e300;
+        let diagonals = ([p(-far, -far), p(far, far)], [p(-far, far), p(far, -far)]);
+        assert_eq!(crossing(diagonals.0, diagonals.1), Some(p(0.0, 0.0)));
+    }
+
     proptest! {
+        #[test]
+        fn pairs_of_floats_round_as_whole_numbers_do([a, b, c, d] in points(), border in -4i32..4) {
+            if let Some(point) = crossing([a, b], [c, d]) {
+                let exact = |k| crossing_in_whole_numbers(k, [a, b], [c, d]);
+                prop_assert_eq!(point, p(exact(0), exact(1)));
+                prop_assert_eq!(crossing([d, c], [b, a]), Some(point));
+                // Rounded like the ends, it lies between them.
+                let within = |p: DVec2, q: DVec2| point.cmpge(p.min(q)).all() && point.cmple(p.max(q)).all();
+                prop_assert!(within(a, b) && within(c, d));
+            }
+            let border = f64::from(border) * 0.3;
+            if (a.x < border) != (b.x < border) {
+                let wall = [p(border, -1e12), p(border, 1e12)];
+                prop_assert_eq!(crossing([a, b], wall), Some(p(border + 0.0, on_border([b, a], 0, border))));
+                let exact = crossing_in_whole_numbers(1, [a, b], wall);
+                prop_assert_eq!(on_border([a, b], 0, border), exact);
+            }
+        }
+
         #[test]
         fn whole_numbers_agree_with_i128(v in prop::array::uniform4(-(1i64 << 60)..1i64 << 60)) {
             let [a, b, c, d] = v.map(|v| v >> 8 << 8);

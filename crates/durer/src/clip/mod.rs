@@ -6,4 +6,5 @@ pub mod line;
 pub mod outcode;
 pub mod place;
 pub mod polygon;
+mod touch;
 pub mod volume;

@@ -13,6 +13,7 @@ mod conformance_hidden_line;
 mod conformance_overlay;
 mod conformance_surface_methods;
 mod conformance_visible_surface;
+mod coverage;
 mod curve_path;
 mod curve_stroke_font;
 mod data;

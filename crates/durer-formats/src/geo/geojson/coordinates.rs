@@ -165,6 +165,7 @@ impl Geometries {
         if points.is_empty() {
             points.dimensions = Dimensions::new(count > 2, count > 3);
         } else if count.min(4) != points.dimensions.count() {
+            points.lift(Dimensions::new(count > 2, count > 3));
             let message = "a position with more or fewer numbers than the one before; what is missing is taken as 0";
             self.warnings.push(place(), message);
         }

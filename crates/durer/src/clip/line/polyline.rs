@@ -6,19 +6,20 @@
 //! ([`crate::clip::attribute`]). For a rectangle call [`crate::clip::polygon::rectangle::clip_lines`],
 //! which is much faster.
 //!
-//! Which edges a segment meets is decided exactly, by orientations; the places of the cuts are
-//! rounded, and parts of a segment between two cuts that round to one point are ignored. Whether the
-//! part between two cuts is inside is told by its middle, exactly, by the even-odd rule.
+//! Which edges a segment meets is decided exactly, by orientations; a vertex of either that lies on the
+//! other but for the rounding of its coordinates is met there, so that what was cut before stays as it is.
+//! The places of other cuts are correctly rounded, and parts of a segment between two cuts that round to one
+//! point are ignored. Whether the part between two cuts is inside is told by its middle, exactly, by the
+//! even-odd rule.
 //!
 //! Object space. The border's edges are kept in horizontal slabs, so a segment looks only at edges of
 //! its own heights: O(n·e/s) for n segments, e edges, s ≈ √e slabs crossed by a segment's extent.
 
-use super::border::Canonical;
-use super::convex::{self, Edge, HalfSpace};
 use crate::clip::attribute::Source;
-use crate::clip::exact::side;
+use crate::clip::exact::{crossing, side};
 use crate::clip::polygon::Shapes;
-use crate::clip::polygon::rectangle::ClippedLines;
+use crate::clip::polygon::rectangle::{ClippedLines, Near, Prepared};
+use crate::clip::touch::{are_one, is_on, reach};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
 use crate::trace::Tracer;
@@ -125,6 +126,35 @@ pub fn clip(
             return Err(Error::NonFinite { what, index });
         }
     }
+    run(&Near::all(polygon.clone()), points, ends, options, t)
+}
+
+/// The same for polygons that were made ready: only those near the polylines are looked at.
+///
+/// # Errors
+/// As [`clip`].
+pub fn clip_prepared(
+    polygons: &Prepared,
+    points: &[DVec2],
+    ends: &[usize],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<ClippedLines> {
+    if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+        return Err(Error::NonFinite { what: "point", index });
+    }
+    let bounds = Rect::around(points.iter().copied());
+    let near = bounds.map(|bounds| Near::around(polygons, &bounds)).unwrap_or_default();
+    run(&near, points, ends, options, t)
+}
+
+fn run(
+    polygon: &Near,
+    points: &[DVec2],
+    ends: &[usize],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<ClippedLines> {
     let border = Border::new(polygon);
     let mut out = ClippedLines::default();
     let mut first = 0;
@@ -222,18 +252,29 @@ impl Cuts {
 /// The polygon's edges in horizontal slabs of equal height.
 struct Border {
     bounds: Option<Rect>,
-    slabs: Vec<Vec<[DVec2; 2]>>,
+    slabs: Vec<Vec<Edge>>,
+}
+
+/// An edge of the polygon.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    ends: [DVec2; 2],
+    /// The edge that it is a part of.
+    line: [DVec2; 2],
 }
 
 impl Border {
-    fn new(polygon: &Shapes) -> Self {
-        let count = libm::sqrt(polygon.points().len() as f64) as usize + 1;
-        let mut border = Self { bounds: polygon.bounds(), slabs: vec![Vec::new(); count] };
-        for ring in polygon.rings() {
-            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b) {
-                for slab in border.slabs_of(a.y.min(b.y), a.y.max(b.y)) {
-                    border.slabs[slab].push([*a, *b]);
-                }
+    fn new(polygon: &Near) -> Self {
+        let count = libm::sqrt(polygon.lines.len() as f64) as usize + 1;
+        let mut border = Self { bounds: polygon.shapes.bounds(), slabs: vec![Vec::new(); count] };
+        let ends = polygon
+            .shapes
+            .rings()
+            .flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)).map(|(&a, &b)| [a, b]));
+        for (ends, &line) in ends.zip(&polygon.lines).filter(|([a, b], _)| a != b) {
+            let [a, b] = ends;
+            for slab in border.slabs_of(a.y.min(b.y), a.y.max(b.y)) {
+                border.slabs[slab].push(Edge { ends, line });
             }
         }
         border
@@ -255,12 +296,18 @@ impl Border {
     fn cuts(&self, a: DVec2, b: DVec2) -> Cuts {
         let mut cuts = Cuts { points: Vec::new(), along: Vec::new() };
         let Some(extent) = Rect::around([a, b]) else { return cuts };
-        if self.bounds.is_none_or(|bounds| !bounds.overlaps(&extent)) {
+        let margin = 2.0 * reach(a.abs().max(b.abs()));
+        let near = Rect::new(extent.min() - margin, extent.max() + margin).unwrap_or(extent);
+        if self.bounds.is_none_or(|bounds| !bounds.overlaps(&near)) {
             return cuts;
         }
-        for slab in self.slabs_of(extent.min().y, extent.max().y) {
+        for slab in self.slabs_of(near.min().y, near.max().y) {
             for edge in &self.slabs[slab] {
-                meet([a, b], *edge, &mut cuts);
+                let [c, d] = edge.ends;
+                let beside = c.min(d).cmple(near.max()).all() && c.max(d).cmpge(near.min()).all();
+                if beside {
+                    meet([a, b], edge, &mut cuts);
+                }
             }
         }
         // Along the longer axis, so that rounding does not spoil the order.
@@ -281,7 +328,8 @@ impl Border {
         if self.bounds.is_none_or(|bounds| !bounds.contains(p)) {
             return false;
         }
-        let crosses = |[a, b]: &&[DVec2; 2]| {
+        let crosses = |edge: &&Edge| {
+            let [a, b] = &edge.ends;
             let upwards = a.y <= p.y;
             let wanted = if upwards { Ordering::Greater } else { Ordering::Less };
             upwards != (b.y <= p.y) && side(*a, *b, p) == wanted
@@ -291,54 +339,28 @@ impl Border {
     }
 }
 
-/// Adds where a segment meets an edge; which case it is is decided exactly.
-fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2], cuts: &mut Cuts) {
-    let (low, high) = (a.min(b), a.max(b));
-    let apart = c.max(d).cmplt(low).any() || c.min(d).cmpgt(high).any();
-    if apart {
-        return;
+/// Adds where a segment meets an edge.
+fn meet(segment: [DVec2; 2], edge: &Edge, cuts: &mut Cuts) {
+    let [a, b] = segment;
+    // A vertex of the edge that is as good as an end of the segment is that.
+    let own = |p: DVec2| segment.into_iter().find(|&end| are_one(end, p)).unwrap_or(p);
+    let [c, d] = edge.ends.map(own);
+    let met = |p: DVec2| p == c || p == d || is_on(p, edge.ends, edge.line);
+    let mut touches = [a, b].into_iter().filter(|&p| met(p)).collect::<Vec<_>>();
+    touches.extend([c, d].into_iter().filter(|&p| p != a && p != b && is_on(p, segment, segment)));
+    touches.dedup();
+    let Some(&first) = touches.first() else {
+        let crossed = side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
+        let point = if crossed { crossing(segment, edge.line) } else { None };
+        // What was cut from the edge's line may miss it by its own rounding.
+        let point = point.or_else(|| if crossed { crossing(segment, edge.ends) } else { None });
+        return cuts.points.extend(point);
+    };
+    // With two points in common they run along each other.
+    if let Some(&last) = touches.iter().rev().find(|&&p| p != first) {
+        cuts.along.push((first, last));
     }
-    let (sc, sd) = (side(a, b, c), side(a, b, d));
-    let within = |p: DVec2| p.cmpge(low).all() && p.cmple(high).all();
-    // An end of the edge on the segment is met bit for bit, the segment's own ends likewise.
-    if a != b && sc == Ordering::Equal && sd == Ordering::Equal {
-        cuts.points.extend([c, d].into_iter().filter(|p| within(*p)));
-        let clamp = |p: DVec2| p.clamp(low, high);
-        cuts.points.extend([a, b].into_iter().filter(|p| on_edge(*p, c, d)));
-        cuts.along.push((clamp(c), clamp(d)));
-        return;
-    }
-    if sc == Ordering::Equal || sd == Ordering::Equal {
-        let end = if sc == Ordering::Equal { c } else { d };
-        cuts.points.extend(within(end).then_some(end));
-        cuts.points.extend([a, b].into_iter().filter(|p| on_edge(*p, c, d)));
-        return;
-    }
-    if sc == sd {
-        return;
-    }
-    match (side(c, d, a), side(c, d, b)) {
-        (Ordering::Equal, _) => cuts.points.push(a),
-        (_, Ordering::Equal) => cuts.points.push(b),
-        (sa, sb) if sa == sb => {}
-        _ => cuts.points.push(crossing([a, b], [c, d]).clamp(low, high)),
-    }
-}
-
-/// Whether p lies on the closed edge.
-fn on_edge(p: DVec2, c: DVec2, d: DVec2) -> bool {
-    side(c, d, p) == Ordering::Equal && p.cmpge(c.min(d)).all() && p.cmple(c.max(d)).all()
-}
-
-/// The rounded crossing of two segments that cross; the same from either end of the first.
-fn crossing([a, b]: [DVec2; 2], [from, to]: [DVec2; 2]) -> DVec2 {
-    let Ok(line) = Canonical::new(a.to_array(), b.to_array()) else { return a };
-    let edge = Edge { from, to };
-    let mut point = line.at(convex::parameter(&edge, &line));
-    if let Some((axis, border)) = edge.coordinate() {
-        point[axis] = border;
-    }
-    point.into()
+    cuts.points.extend(touches);
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use super::locate::{Place, group, is_flat, locate, on_segment};
 use super::near::pairs;
 use super::node;
 use super::{BooleanOp, Shapes};
+use crate::clip::exact;
 use crate::math::{DVec2, Orientation, orient2d};
 use crate::{Error, Result};
 use std::cmp::Ordering;
@@ -297,17 +298,9 @@ fn crosses([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
     opposite(orient2d(a, b, c), orient2d(a, b, d)) && opposite(orient2d(c, d, a), orient2d(c, d, b))
 }
 
-/// Where two segments cross, rounded; the same bits for either order and direction.
+/// Where two segments cross, correctly rounded.
 fn crossing_point(e: [DVec2; 2], f: [DVec2; 2]) -> DVec2 {
-    let key = |p: DVec2| (p.x, p.y);
-    let ordered = |[a, b]: [DVec2; 2]| if key(a) <= key(b) { [a, b] } else { [b, a] };
-    let (e, f) = (ordered(e), ordered(f));
-    let first = (key(e[0]), key(e[1])) <= (key(f[0]), key(f[1]));
-    let ([a, b], [c, d]) = if first { (e, f) } else { (f, e) };
-    let (left, right) = ((d - c).perp_dot(a - c), (d - c).perp_dot(b - c));
-    let t = left / (left - right);
-    let point = a + (b - a) * t.clamp(0.0, 1.0);
-    if point.is_finite() { point } else { a }
+    exact::crossing(e, f).unwrap_or(e[0])
 }
 
 /// Which of two segments, which do not cross each other, crosses a → b first; exact. Of two that do

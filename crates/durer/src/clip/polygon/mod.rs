@@ -3,6 +3,7 @@
 //! [`overlay()`] is the robust door: any rings in, valid polygons out. [`rectangle`] is the fast path
 //! for windows and map tiles. The others are the published algorithms, each with its preconditions.
 
+pub mod coverage;
 mod cyclic;
 pub mod greiner_hormann;
 mod locate;

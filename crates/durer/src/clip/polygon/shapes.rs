@@ -98,6 +98,13 @@ impl<P> Shapes<P> {
         if index + 1 < range.end { index + 1 } else { range.start }
     }
 
+    /// The index of the point that precedes a point on its ring, around its start.
+    pub fn previous_point(&self, index: usize) -> usize {
+        let ring = self.ring_ends.partition_point(|&end| end <= index);
+        let range = self.ring_range(ring);
+        if index > range.start { index - 1 } else { range.end.saturating_sub(1) }
+    }
+
     /// How many polygons there are; rings after the last [`Shapes::end_polygon`] are in none.
     pub fn polygon_count(&self) -> usize {
         self.polygon_ends.len()

@@ -195,6 +195,8 @@ pub(super) struct Edge {
     pub ring: usize,
     /// Its place in the ring.
     index: usize,
+    /// The indices of its ends among all points.
+    ends: [usize; 2],
     low: f64,
     high: f64,
 }
@@ -210,10 +212,12 @@ impl Edge {
 pub(super) fn edges_of(shapes: &Shapes) -> Vec<Edge> {
     let mut edges = Vec::with_capacity(shapes.points().len());
     for (ring, points) in shapes.rings().enumerate() {
+        let start = shapes.ring_range(ring).start;
         for (index, &a) in points.iter().enumerate() {
-            let b = points[(index + 1) % points.len()];
+            let next = (index + 1) % points.len();
+            let (b, ends) = (points[next], [start + index, start + next]);
             let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-            edges.push(Edge { a, b, ring, index, low, high });
+            edges.push(Edge { a, b, ring, index, ends, low, high });
         }
     }
     edges.sort_by(|p, q| p.low.total_cmp(&q.low));
@@ -243,26 +247,59 @@ pub(super) fn each_pair(
 /// Returns whether no two edges cross, overlap or, but for what is allowed, touch. `false` too for rings of less than three
 /// points, for points that come twice in a row, and where it takes too many comparisons.
 pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
+    each_fault(shapes, touching, |_| false)
+}
+
+/// Returns the points, by their indices, at the ends of edges that are not apart, each once; `None` where it
+/// takes too many comparisons.
+pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> {
+    let mut points = Vec::new();
+    let all = each_fault(shapes, touching, |ends| {
+        points.extend_from_slice(ends);
+        !ends.is_empty()
+    });
+    points.sort_unstable();
+    points.dedup();
+    all.then_some(points)
+}
+
+/// Calls with the points of each fault, with none where it takes too many comparisons, as long as
+/// the answer is yes; returns whether that was to the end.
+fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+    for ring in 0..shapes.ring_count() {
+        let range = shapes.ring_range(ring);
+        if range.len() < 3 && !tell(&[range.start]) {
+            return false;
+        }
+    }
     let edges = edges_of(shapes);
-    if shapes.rings().any(|ring| ring.len() < 3) || edges.iter().any(|e| e.a == e.b) {
+    if !edges.iter().filter(|e| e.a == e.b).all(|e| tell(&e.ends)) {
         return false;
     }
     let size = |ring: usize| shapes.ring_range(ring).len();
-    let budget = edges.len().saturating_mul(PAIRS_PER_EDGE);
-    let apart = each_pair(&edges, budget, |p, q| match meeting(p, q) {
-        Meeting::Apart => true,
-        Meeting::Crossing | Meeting::Overlap(_) => false,
-        Meeting::Touch(at) => {
-            let neighbours = are_neighbours(p, q, size(p.ring));
-            let at_vertices = [p.a, p.b].contains(&at) && [q.a, q.b].contains(&at);
-            match touching {
-                Touching::No => neighbours,
-                Touching::AtVertices => at_vertices,
-                Touching::AtPoints => neighbours || p.ring != q.ring,
-            }
-        }
+    let most = edges.len().saturating_mul(PAIRS_PER_EDGE);
+    let mut told = true;
+    let all = each_pair(&edges, most, |p, q| {
+        let apart = match meeting(p, q) {
+            Meeting::Apart => true,
+            Meeting::Crossing | Meeting::Overlap(_) => false,
+            Meeting::Touch(at) => may_touch(p, q, at, size(p.ring), touching),
+        };
+        told = apart || tell(&[p.ends[0], p.ends[1], q.ends[0], q.ends[1]]);
+        told
     });
-    apart && (touching == Touching::No || ways_are_apart(shapes))
+    // Too many comparisons, unless the answer was no.
+    let all = all || told && tell(&[]);
+    all && (touching == Touching::No || each_passage(shapes, tell))
+}
+
+/// Whether two edges may touch in a point.
+fn may_touch(p: &Edge, q: &Edge, at: DVec2, size: usize, touching: Touching) -> bool {
+    match touching {
+        Touching::No => are_neighbours(p, q, size),
+        Touching::AtVertices => [p.a, p.b].contains(&at) && [q.a, q.b].contains(&at),
+        Touching::AtPoints => p.ring != q.ring || are_neighbours(p, q, size),
+    }
 }
 
 /// Whether one edge of a ring of `size` edges follows the other.
@@ -273,14 +310,12 @@ fn are_neighbours(p: &Edge, q: &Edge, size: usize) -> bool {
 /// A ring at one of its vertices, or at a point of an edge: where it is, comes from, and goes to.
 type Way = [DVec2; 3];
 
-/// The ways of all rings through their vertices.
-fn ways(shapes: &Shapes) -> impl Iterator<Item = Way> + '_ {
-    shapes.rings().flat_map(|ring| {
-        let last = ring.len().saturating_sub(1);
-        let before = move |i: usize| if i == 0 { last } else { i - 1 };
-        let after = move |i: usize| if i == last { 0 } else { i + 1 };
-        (0..ring.len()).map(move |i| [ring[i], ring[before(i)], ring[after(i)]])
-    })
+/// The ways of a ring through its vertices.
+fn ways(ring: &[DVec2]) -> impl Iterator<Item = Way> + '_ {
+    let last = ring.len().saturating_sub(1);
+    let before = move |i: usize| if i == 0 { last } else { i - 1 };
+    let after = move |i: usize| if i == last { 0 } else { i + 1 };
+    (0..ring.len()).map(move |i| [ring[i], ring[before(i)], ring[after(i)]])
 }
 
 /// Whether two ways through one point only touch there, and do not pass through each other.
@@ -289,16 +324,20 @@ fn ways_touch([at, from, to]: Way, [_, a, b]: Way) -> bool {
     left(a) == left(b)
 }
 
-/// Whether rings that meet in a vertex only touch there, and do not pass through each other.
-fn ways_are_apart(shapes: &Shapes) -> bool {
-    let mut ways: Vec<Way> = ways(shapes).collect();
+/// Calls with the vertices in which rings do not only touch but pass through each other, as long as the
+/// answer is yes; returns whether that was to the end.
+fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+    let of_ring = |ring| shapes.ring_range(ring).zip(ways(shapes.ring(ring)));
+    let mut ways: Vec<(usize, Way)> = (0..shapes.ring_count()).flat_map(of_ring).collect();
     // Zeros of either sign are one place.
     let order = |p: &DVec2, q: &DVec2| {
         (p.x + 0.0).total_cmp(&(q.x + 0.0)).then((p.y + 0.0).total_cmp(&(q.y + 0.0)))
     };
-    ways.sort_by(|[p, ..], [q, ..]| order(p, q));
-    ways.chunk_by(|[p, ..], [q, ..]| p == q).all(|through| {
-        through.iter().enumerate().all(|(i, &way)| through[..i].iter().all(|&w| ways_touch(way, w)))
+    ways.sort_by(|(_, [p, ..]), (_, [q, ..])| order(p, q));
+    ways.chunk_by(|(_, [p, ..]), (_, [q, ..])| p == q).all(|through| {
+        through.iter().enumerate().all(|(i, &(index, way))| {
+            through[..i].iter().all(|&(other, w)| ways_touch(way, w) || tell(&[index, other]))
+        })
     })
 }
 
@@ -333,8 +372,9 @@ impl Touches {
     fn passages(&self, shapes: &Shapes) -> Vec<Flaw> {
         let mut at_vertices: BTreeMap<[u64; 2], Vec<(usize, Way)>> = BTreeMap::new();
         for ring in 0..shapes.ring_count() {
-            let own = Shapes::from_rings([shapes.ring(ring)]);
-            for way in ways(&own).filter(|[at, ..]| self.places.contains_key(&bits(*at))) {
+            for way in
+                ways(shapes.ring(ring)).filter(|[at, ..]| self.places.contains_key(&bits(*at)))
+            {
                 at_vertices.entry(bits(way[0])).or_default().push((ring, way));
             }
         }

@@ -120,7 +120,7 @@ const PARALLEL: f64 = 1.0 - 1e-12;
 fn combined(a: &Shapes, b: &Shapes, op: BooleanOp) -> Result<Shapes> {
     // The grid of the faces.
     let rule = overlay::Options::with_rule(FillRule::NonZero);
-    let options = overlay::Options { grid: Some(1.0), ..rule };
+    let options = overlay::Options { grid: Some(1.0), drop_collinear: true, ..rule };
     Ok(overlay(a, b, op, &options, &mut NoTrace)?.shapes)
 }
 

@@ -343,11 +343,11 @@ impl Lattice {
         let origin = (middle / cell).round() * cell;
         let origin = if origin.is_finite() { origin } else { middle };
         let reach = (half / cell).ceil() + 1.0;
-        if reach > i64::LIMIT as f64 || farthest / cell > 2f64.powi(52) {
+        if reach > i64::LIMIT as f64 || farthest / cell > 2f64.powi(53) {
             // Twice the finest: it is told with one digit.
-            let enough = 2.0 * (half / (i64::LIMIT - 2) as f64).max(farthest / 2f64.powi(52));
+            let enough = 2.0 * (half / (i64::LIMIT - 2) as f64).max(farthest / 2f64.powi(53));
             let value = format!("{cell:e}, where {enough:.0e} would do");
-            let expected = "coarse enough for 2^41 cells across and 2^52 from the origin";
+            let expected = "coarse enough for 2^41 cells across and 2^53 from the origin";
             return Err(Error::parameter("grid", value, expected));
         }
         Ok(Self { origin, cell, reach })

@@ -73,6 +73,9 @@ pub struct Options {
     pub grid: Option<f64>,
     /// Whether [`Output::origins`] is wanted.
     pub origins: bool,
+    /// Whether vertices of the input are left out where the border of the result goes straight on. Else
+    /// only what noding added is: neighbours that share a border, and heights along one, need them.
+    pub drop_collinear: bool,
 }
 
 impl Options {
@@ -429,7 +432,8 @@ impl<P: Vertex> Job<'_, P> {
         };
         let (subject, clip) = (self.options.subject_rule, self.options.clip_rule);
         let inside = |w: Winding| self.op.keeps(subject.fills(w.subject), clip.fills(w.clip));
-        let rings = rings::link(graph, &search, inside);
+        let kept = if self.options.drop_collinear { &[][..] } else { &noding.ends[..] };
+        let rings = rings::link(graph, kept, &search, inside);
         self.report(&noding, t);
         self.output(&rings, &noding, &segments, &sources, t)
     }

@@ -45,6 +45,11 @@ impl CauseWord {
         self.0 += (!self.0 >> 63) << 32;
     }
 
+    /// Whether a segment ends there.
+    fn is_end(self) -> bool {
+        self.0 & Self::CROSSING == 0
+    }
+
     /// Whether two segments were counted, at an end.
     fn is_end_of_two(self) -> bool {
         self.0 >> 32 == 2
@@ -52,7 +57,7 @@ impl CauseWord {
 
     /// The cause itself.
     pub fn get(self) -> Cause {
-        if self.0 & Self::CROSSING == 0 {
+        if self.is_end() {
             Cause::End(self.0 as u32)
         } else {
             Cause::Crossing((self.0 >> 32) as u32 & !(1 << 31), self.0 as u32)
@@ -69,6 +74,8 @@ pub struct Noding<C> {
     pub patch_ends: Vec<u32>,
     /// Of each node whether it is a ring's point that nothing but its two edges touches.
     pub passed: Vec<bool>,
+    /// Of each node whether an end of a segment lies there.
+    pub ends: Vec<bool>,
     /// What made each hot, by patch; empty where nobody wants to know.
     causes: Vec<Vec<CauseWord>>,
     /// The nodes of segment i, in its direction, are `hits[starts[i]..starts[i + 1]]`.
@@ -108,6 +115,7 @@ struct Part<C> {
     nodes: Vec<Point<C>>,
     causes: Vec<CauseWord>,
     passed: Vec<bool>,
+    ends: Vec<bool>,
     /// Segments and nodes that they pass, by the segments' indices over [`SHELF`].
     hits: Vec<Vec<(u32, u32)>>,
 }
@@ -150,9 +158,10 @@ pub fn node<C: Coord>(
     let patch_ends = parallel::ends(parts.iter().map(|part| part.nodes.len()));
     let nodes = parallel::concat(&parts.iter().map(|part| &part.nodes[..]).collect::<Vec<_>>());
     let passed = parallel::concat(&parts.iter().map(|part| &part.passed[..]).collect::<Vec<_>>());
+    let ends = parallel::concat(&parts.iter().map(|part| &part.ends[..]).collect::<Vec<_>>());
     let causes = parts.iter_mut().map(|part| std::mem::take(&mut part.causes)).collect();
     let (starts, hits) = gather(segments, &parts, &patch_ends, &nodes);
-    Noding { nodes, patch_ends, passed, causes, starts, hits }
+    Noding { nodes, patch_ends, passed, ends, causes, starts, hits }
 }
 
 /// How many segment entries one task handles: large enough to hide the cost of a task.
@@ -188,6 +197,7 @@ fn work<C: Coord>(
             nodes: Vec::new(),
             causes: Vec::new(),
             passed: Vec::new(),
+            ends: Vec::new(),
             hits: vec![Vec::new(); segments.len().div_ceil(SHELF)],
         };
         let mut bench = Workbench {
@@ -205,6 +215,7 @@ fn work<C: Coord>(
             part.causes.reserve(load);
         }
         part.passed.reserve(load);
+        part.ends.reserve(load);
         for leaf in leaves {
             bench.leaf(segments, band.items(leaf), leaf, &ends, &mut part);
         }
@@ -249,6 +260,7 @@ impl<C: Coord> Workbench<C> {
             self.hits(items, first, part);
         }
         part.passed.extend(self.pixels.iter().map(|p| p.1.is_end_of_two()));
+        part.ends.extend(self.pixels.iter().map(|p| p.1.is_end()));
     }
 
     /// Every point of a ring is the start of one edge, so only starts are looked at there.

@@ -50,6 +50,8 @@ struct Walk {
 struct Linker<'b, C> {
     graph: Arrangement<'b, C>,
     courses: Vec<Course>,
+    /// Of each node whether it stays on a straight border too; empty where none does.
+    kept: &'b [bool],
     /// What follows an edge on the result's border, as the word of a half-edge.
     next: Vec<u32>,
     /// The walk that an edge belongs to.
@@ -58,10 +60,12 @@ struct Linker<'b, C> {
     rings: Rings,
 }
 
-/// Links the edges where `inside` differs between the two sides.
+/// Links the edges where `inside` differs between the two sides. Nodes on straight borders stay where
+/// `kept` says so of them.
 #[inline(never)]
-pub fn link<C: Coord>(
-    mut graph: Arrangement<C>,
+pub fn link<'b, C: Coord>(
+    mut graph: Arrangement<'b, C>,
+    kept: &'b [bool],
     search: &Search<C>,
     inside: impl Fn(Winding) -> bool + Sync,
 ) -> Rings {
@@ -71,6 +75,7 @@ pub fn link<C: Coord>(
     let mut linker = Linker {
         graph,
         courses,
+        kept,
         next: Vec::new(),
         walk_of: Vec::new(),
         walks: Vec::new(),
@@ -234,6 +239,11 @@ impl<C: Coord> Linker<'_, C> {
             nodes += found.nodes.len() as u32;
             rings += found.ring_ends.len() as u32;
         }
+    }
+
+    /// Whether a node stays where the border goes straight on.
+    fn stays(&self, node: u32) -> bool {
+        self.kept.get(node as usize).is_some_and(|&kept| kept) || self.touched(node)
     }
 
     /// Whether more than one ring passes the node: then it stays, so that the touch is a vertex.
@@ -479,7 +489,8 @@ impl<C: Coord> Trace<'_, '_, C> {
         }
     }
 
-    /// Stores a simple ring, from its smallest node on, without nodes on straight edges.
+    /// Stores a simple ring, from its smallest node on; of the nodes on straight edges only those that
+    /// are to stay.
     fn close(&mut self, path: &[u32], walk: &mut Walk) {
         let nodes = self.linker.graph.nodes;
         let point = |n: u32| nodes[n as usize];
@@ -506,7 +517,7 @@ impl<C: Coord> Trace<'_, '_, C> {
         let mut at = first;
         for &after in head[1..].iter().chain(tail).chain([&first]) {
             let straight = cross(point(before), point(at), point(after)) == C::Wide::default();
-            if !straight || self.linker.touched(at) {
+            if !straight || self.linker.stays(at) {
                 self.found.nodes.push(at);
             }
             (before, at) = (at, after);

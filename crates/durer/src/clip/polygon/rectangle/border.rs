@@ -1,6 +1,6 @@
 //! Points on the window's border and their exact order around it.
 
-use crate::clip::exact::Exact;
+use crate::clip::exact::{Exact, on_border};
 use crate::math::{DVec2, Rect};
 use std::cmp::Ordering;
 
@@ -8,6 +8,26 @@ use std::cmp::Ordering;
 pub(super) fn corners(window: &Rect) -> [DVec2; 4] {
     let (min, max) = (window.min(), window.max());
     [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+}
+
+/// The end of the visible part of an edge, where it is cut, correctly rounded.
+#[inline]
+pub(super) fn exact_cut(window: &Rect, point: DVec2, [a, b]: [DVec2; 2]) -> DVec2 {
+    if point == a || point == b {
+        return point;
+    }
+    let (min, max) = (window.min(), window.max());
+    let cut = |axis: usize| {
+        let border = point[axis];
+        let crossed = (border == min[axis] || border == max[axis]) && a[axis] != b[axis];
+        let other = 1 - axis;
+        let at = crossed.then(|| on_border([a, b], axis, border))?;
+        // Where rounding has moved the end to a corner, it may have crossed the other side.
+        let mut cut = point;
+        cut[other] = at;
+        (min[other] <= at && at <= max[other]).then_some(cut)
+    };
+    cut(0).or_else(|| cut(1)).unwrap_or(point)
 }
 
 /// Where a chain touches the border, with what is needed to order it exactly.

@@ -1,5 +1,6 @@
 //! Polylines against the rectangle.
 
+use super::border::exact_cut;
 use super::{Extent, extent, non_finite};
 use crate::Result;
 use crate::clip::attribute::Source;
@@ -159,6 +160,7 @@ fn cut(
             continue;
         }
         let mut push = |point: DVec2| {
+            let point = exact_cut(window, point, [a, b]);
             out.points.push(point);
             if sources {
                 out.sources.push(Source::on_edge(point, (first + k, a), (first + k + 1, b)));

@@ -18,11 +18,13 @@
 
 mod border;
 mod lines;
+mod near;
 mod prepared;
 mod rings;
-mod tree;
+pub(super) mod tree;
 
 pub use lines::{ClippedLines, clip_lines};
+pub(crate) use near::Near;
 pub use prepared::Prepared;
 
 use super::Shapes;

@@ -8,7 +8,7 @@
 
 use super::rings::{Clipper, Directed, Guide, crosses};
 use super::tree::Tree;
-use crate::clip::attribute::NoSources;
+use crate::clip::attribute::{NoSources, Provenance, Source};
 use crate::clip::exact;
 use crate::clip::polygon::{Ring, Shapes, signed_area};
 use crate::math::{DVec2, Rect};
@@ -95,7 +95,34 @@ impl Prepared {
 
     /// The part of all polygons in the window: bit for bit what [`super::clip`] gives.
     pub fn clip(&self, window: &Rect) -> Shapes {
-        let mut clipper = Clipper::<NoSources>::new(window);
+        self.run::<NoSources>(window).0
+    }
+
+    /// The same, with the source of every point.
+    pub fn clip_with_sources(&self, window: &Rect) -> (Shapes, Vec<Source>) {
+        self.run(window)
+    }
+
+    /// Whether an edge comes near a rectangle: the boxes around both have a point in common.
+    pub fn has_edges_near(&self, window: &Rect) -> bool {
+        self.rings_near(window).into_iter().any(|number| {
+            let ring = self.directed(number);
+            let mut found = false;
+            self.rings[number].tree.visit(|node| {
+                let look = !found && node.around.overlaps(window);
+                if look && node.is_last() {
+                    let edge = |k: usize| Rect::around([ring.point(k), ring.point(k + 1)]);
+                    let near = |k: usize| edge(k).is_some_and(|edge| edge.overlaps(window));
+                    found = node.items.clone().any(near);
+                }
+                look
+            });
+            found
+        })
+    }
+
+    fn run<P: Provenance>(&self, window: &Rect) -> (Shapes, P) {
+        let mut clipper = Clipper::<P>::new(window);
         let mut found = self.rings_near(window);
         found.sort_unstable();
         let mut rest = &found[..];
@@ -112,7 +139,7 @@ impl Prepared {
                 clipper.cut(&self.shapes, near.iter().copied(), self, &mut NoTrace);
             }
         }
-        clipper.finish().0
+        clipper.finish()
     }
 
     /// Whether a point lies in the closed polygons, by the even-odd rule over all rings; exact.

@@ -1,7 +1,7 @@
 //! Chains of one polygon's rings inside the window, and how they close to rings again.
 
 use super::Step;
-use super::border::{BorderPoint, corners};
+use super::border::{BorderPoint, corners, exact_cut};
 use crate::clip::attribute::{Provenance, Source};
 use crate::clip::exact;
 use crate::clip::line::cut_inside;
@@ -241,8 +241,9 @@ impl<P: Provenance> Clipper<P> {
         if self.apart(visible.start, visible.end) {
             return (k + 1, b);
         }
-        let entry = BorderPoint::new(&self.window, visible.start, [a, b]);
-        self.push_end(ring, k, visible.start);
+        let entry = exact_cut(&self.window, visible.start, [a, b]);
+        self.push_end(ring, k, entry);
+        let entry = BorderPoint::new(&self.window, entry, [a, b]);
         let mut before = a;
         while self.strictly_inside(b) {
             k += 1;
@@ -253,6 +254,7 @@ impl<P: Provenance> Clipper<P> {
             b = ring.point(k + 1);
         }
         let exit = cut_inside(&self.window, before, b).map_or(b, |visible| visible.end);
+        let exit = exact_cut(&self.window, exit, [before, b]);
         let exit_edge = [b, before];
         self.push_end(ring, k, exit);
         let exit = BorderPoint::new(&self.window, exit, exit_edge);

@@ -6,31 +6,34 @@ use std::ops::Range;
 /// Boxes around all things, around their halves, and so on down to runs of a few; each is followed by
 /// those within it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Tree {
+pub(in crate::clip::polygon) struct Tree {
     nodes: Vec<Node>,
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Node {
-    pub(super) around: Rect,
-    pub(super) items: Range<usize>,
+pub(in crate::clip::polygon) struct Node {
+    pub(in crate::clip::polygon) around: Rect,
+    pub(in crate::clip::polygon) items: Range<usize>,
     /// The index of the first node that is not within it.
     next: usize,
 }
 
 impl Node {
     /// Whether it is not divided further.
-    pub(super) fn is_last(&self) -> bool {
+    pub(in crate::clip::polygon) fn is_last(&self) -> bool {
         self.items.len() <= Tree::RUN
     }
 }
 
 impl Tree {
     /// So many things are not divided further: to look at them costs about as much as at two boxes.
-    pub(super) const RUN: usize = if cfg!(test) { 2 } else { 16 };
+    pub(in crate::clip::polygon) const RUN: usize = if cfg!(test) { 2 } else { 16 };
 
     /// Over things numbered from 0, with what gives the box around some of them.
-    pub(super) fn new(count: usize, around: &impl Fn(Range<usize>) -> Option<Rect>) -> Self {
+    pub(in crate::clip::polygon) fn new(
+        count: usize,
+        around: &impl Fn(Range<usize>) -> Option<Rect>,
+    ) -> Self {
         let mut tree = Self::default();
         tree.add(0..count, around);
         tree
@@ -56,12 +59,12 @@ impl Tree {
     }
 
     /// The box around everything; `None` where there is nothing.
-    pub(super) fn around(&self) -> Option<Rect> {
+    pub(in crate::clip::polygon) fn around(&self) -> Option<Rect> {
         self.nodes.first().map(|node| node.around)
     }
 
     /// Goes through the boxes, and through those within a box where the answer is yes.
-    pub(super) fn visit(&self, mut look: impl FnMut(&Node) -> bool) {
+    pub(in crate::clip::polygon) fn visit(&self, mut look: impl FnMut(&Node) -> bool) {
         let mut next = 0;
         while let Some(node) = self.nodes.get(next) {
             next = if look(node) { next + 1 } else { node.next };

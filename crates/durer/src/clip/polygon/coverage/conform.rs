@@ -1,0 +1,251 @@
+//! Subject and mask made to meet bit for bit where they come within rounding of each other.
+//!
+//! What is near is told by the point and the edge of the input alone, so that neighbours decide alike.
+
+use crate::clip::attribute::Source;
+use crate::clip::polygon::Shapes;
+use crate::clip::polygon::rectangle::Near;
+use crate::clip::polygon::rectangle::tree::Tree;
+use crate::clip::touch::{are_one, is_on, reach};
+use crate::math::{DVec2, Rect};
+use std::ops::Range;
+
+/// What is cut, with the vertices that the mask puts on its edges.
+#[derive(Debug)]
+pub(super) struct Subject<'a> {
+    input: &'a Shapes,
+    /// With more vertices, where there are any, and where each point comes from.
+    divided: Option<(Shapes, Vec<Source>)>,
+}
+
+impl<'a> Subject<'a> {
+    /// Polygons as they are.
+    pub fn plain(input: &'a Shapes) -> Self {
+        Self { input, divided: None }
+    }
+
+    /// As it was given.
+    pub fn input(&self) -> &Shapes {
+        self.input
+    }
+
+    /// With the vertices that the mask puts on its edges.
+    pub fn shapes(&self) -> &Shapes {
+        self.divided.as_ref().map_or(self.input, |(shapes, _)| shapes)
+    }
+
+    /// Where a point comes from.
+    pub fn source(&self, index: usize) -> Source {
+        let divided = self.divided.as_ref();
+        divided
+            .and_then(|(_, sources)| sources.get(index).copied())
+            .unwrap_or(Source::Vertex(index))
+    }
+
+    /// The edge of the input that the edge from a point belongs to, by its points' indices.
+    pub fn edge(&self, index: usize) -> [usize; 2] {
+        match self.source(index) {
+            Source::Cut { from, to, .. } => [from, to],
+            Source::Vertex(from) => [from, self.input.next_point(from)],
+            Source::Corner => [index, index],
+        }
+    }
+}
+
+/// What is cut with: the mask near the subject.
+#[derive(Debug, Default)]
+pub(super) struct Mask {
+    pub near: Near,
+    /// What each point is of the subject.
+    pub sources: Vec<Source>,
+}
+
+impl Mask {
+    pub fn new(near: Near) -> Self {
+        let sources = vec![Source::Corner; near.shapes.points().len()];
+        Self { near, sources }
+    }
+
+    /// Whether one of its polygons is smaller than a cell of the grid.
+    pub fn loses(&self, cell: f64) -> bool {
+        let size = |ring: &[DVec2]| Rect::around(ring.iter().copied()).map(|r| r.size());
+        let sizes = self.near.shapes.polygons().filter_map(|polygon| size(polygon.outer()));
+        sizes.into_iter().any(|size| size.max_element() < cell)
+    }
+}
+
+/// Where vertices come near to the other side.
+#[derive(Debug, Default)]
+struct Touches {
+    /// Edges of the mask by their first points, and the subject's vertex that lies on each.
+    on_mask: Vec<(usize, usize)>,
+    /// The mask's vertices and those of the subject that they are.
+    same: Vec<(usize, usize)>,
+    /// Edges of the subject, and the mask's vertex that lies on each.
+    on_subject: Vec<(usize, usize)>,
+}
+
+/// An edge, by the index of its first point.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    ends: [DVec2; 2],
+    index: usize,
+}
+
+impl Edge {
+    fn all(shapes: &Shapes) -> Vec<Self> {
+        let of_ring = |ring| {
+            let (points, start) = (shapes.ring(ring), shapes.ring_range(ring).start);
+            let ends = points.iter().zip(points.iter().cycle().skip(1));
+            ends.zip(start..).map(|((&a, &b), index)| Self { ends: [a, b], index })
+        };
+        (0..shapes.ring_count()).flat_map(of_ring).collect()
+    }
+}
+
+/// The box around some edges, and what is near them.
+fn around(edges: &[Edge]) -> Option<Rect> {
+    Rect::around(edges.iter().flat_map(|edge| edge.ends))
+}
+
+impl Touches {
+    fn between(subject: &Shapes, mask: &Mask) -> Self {
+        let mut touches = Self::default();
+        let (ours, theirs) = (Edge::all(subject), Edge::all(&mask.near.shapes));
+        let tree = Tree::new(theirs.len(), &|some: Range<usize>| around(&theirs[some]));
+        for run in ours.chunks(Tree::RUN) {
+            let Some(bounds) = around(run) else { continue };
+            let margin = 2.0 * reach(bounds.max().abs().max(bounds.min().abs()));
+            let (low, high) = (bounds.min() - margin, bounds.max() + margin);
+            let Ok(near) = Rect::new(low, high) else { continue };
+            tree.visit(|node| {
+                let look = node.around.overlaps(&near);
+                if look && node.is_last() {
+                    for other in &theirs[node.items.clone()] {
+                        let [a, b] = other.ends;
+                        if a.min(b).cmple(high).all() && a.max(b).cmpge(low).all() {
+                            run.iter().for_each(|edge| touches.look(edge, other, &mask.near.lines));
+                        }
+                    }
+                }
+                look
+            });
+        }
+        touches
+    }
+
+    /// Looks whether the first point of either edge lies on the other one.
+    #[inline]
+    fn look(&mut self, ours: &Edge, theirs: &Edge, lines: &[[DVec2; 2]]) {
+        let ([p, q], [a, b]) = (ours.ends, theirs.ends);
+        if are_one(p, a) {
+            self.same.push((theirs.index, ours.index));
+            return;
+        }
+        if !are_one(p, b) && is_on(p, [a, b], lines[theirs.index]) {
+            self.on_mask.push((theirs.index, ours.index));
+        }
+        if !are_one(q, a) && is_on(a, [p, q], [p, q]) {
+            self.on_subject.push((ours.index, theirs.index));
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.on_mask.is_empty() && self.same.is_empty() && self.on_subject.is_empty()
+    }
+
+    /// Brings the touches of each edge in their order along it.
+    fn sort(&mut self, subject: &Shapes, mask: &Shapes) {
+        sort_along(&mut self.on_mask, mask, subject);
+        sort_along(&mut self.on_subject, subject, mask);
+        self.same.sort_unstable();
+        // Of several the first.
+        self.same.dedup_by_key(|pair| pair.0);
+    }
+}
+
+fn sort_along(touches: &mut Vec<(usize, usize)>, of: &Shapes, points: &Shapes) {
+    let along = |&(edge, point): &(usize, usize)| {
+        let a = of.points()[edge];
+        let way = of.points()[of.next_point(edge)] - a;
+        (points.points()[point] - a).dot(way)
+    };
+    touches.sort_by(|s, t| {
+        s.0.cmp(&t.0).then_with(|| along(s).total_cmp(&along(t))).then(s.1.cmp(&t.1))
+    });
+    // One vertex for rings that touch there.
+    touches.dedup_by(|s, t| s.0 == t.0 && points.points()[s.1] == points.points()[t.1]);
+}
+
+/// Puts the vertices of each that lie on edges of the other there.
+pub(super) fn conform(input: &Shapes, mask: Mask) -> (Subject<'_>, Mask) {
+    let mut touches = Touches::between(input, &mask);
+    if touches.is_empty() {
+        return (Subject::plain(input), mask);
+    }
+    touches.sort(input, &mask.near.shapes);
+    let conformed = divide_mask(input, &mask, &touches);
+    if touches.on_subject.is_empty() {
+        return (Subject::plain(input), conformed);
+    }
+    (divide_subject(input, &mask, &touches), conformed)
+}
+
+fn divide_mask(input: &Shapes, mask: &Mask, touches: &Touches) -> Mask {
+    let mut sources = mask.sources.clone();
+    for &(edge, vertex) in &touches.on_subject {
+        let p = mask.near.shapes.points()[vertex];
+        sources[vertex] = on_edge(input, edge, p);
+    }
+    let mut points = mask.near.shapes.points().to_vec();
+    for &(vertex, ours) in &touches.same {
+        points[vertex] = input.points()[ours];
+        sources[vertex] = Source::Vertex(ours);
+    }
+    let mut divided = Mask::default();
+    let mut inserted = touches.on_mask.iter().peekable();
+    rebuild(&mask.near.shapes, &mut divided.near.shapes, |k, ring| {
+        let mut push = |p: DVec2, source: Source| {
+            ring.push(p);
+            divided.near.lines.push(mask.near.lines[k]);
+            divided.sources.push(source);
+        };
+        push(points[k], sources[k]);
+        while let Some(&(_, ours)) = inserted.next_if(|touch| touch.0 == k) {
+            push(input.points()[ours], Source::Vertex(ours));
+        }
+    });
+    divided
+}
+
+fn divide_subject<'a>(input: &'a Shapes, mask: &Mask, touches: &Touches) -> Subject<'a> {
+    let (mut shapes, mut sources) = (Shapes::new(), Vec::new());
+    let mut inserted = touches.on_subject.iter().peekable();
+    rebuild(input, &mut shapes, |k, ring| {
+        ring.push(input.points()[k]);
+        sources.push(Source::Vertex(k));
+        while let Some(&(_, vertex)) = inserted.next_if(|touch| touch.0 == k) {
+            let p = mask.near.shapes.points()[vertex];
+            ring.push(p);
+            sources.push(on_edge(input, k, p));
+        }
+    });
+    Subject { input, divided: Some((shapes, sources)) }
+}
+
+fn on_edge(input: &Shapes, edge: usize, p: DVec2) -> Source {
+    let (a, next) = (input.points()[edge], input.next_point(edge));
+    Source::on_edge(p, (edge, a), (next, input.points()[next]))
+}
+
+/// Makes the same polygons with rings to which `push` adds the points for each point.
+fn rebuild(from: &Shapes, to: &mut Shapes, mut push: impl FnMut(usize, &mut Vec<DVec2>)) {
+    let mut points = Vec::new();
+    for polygon in from.polygons() {
+        for ring in polygon.ring_indices() {
+            from.ring_range(ring).for_each(|k| push(k, &mut points));
+            to.push_ring(points.drain(..));
+        }
+        to.end_polygon();
+    }
+}

@@ -1,0 +1,105 @@
+//! Cuts polygons with a mask so that borders which neighbours share stay shared.
+//!
+//! [`overlay`](mod@super::overlay) decides what belongs to the result, on a grid that depends on the extent
+//! of what is cut; its vertices are not left there. Vertices of the input keep their coordinates bit for
+//! bit, and a cut lies where the edges *of the input* cross, correctly rounded. Both depend on nothing but
+//! those vertices and edges, so that two neighbours, and the inside and the outside part, have the same
+//! points on a common border.
+//!
+//! Before that, vertices that come as near to an edge of the other side as rounding moves a point are made
+//! vertices of it: a cut polygon has such vertices all along the mask, and to be cut once more must change
+//! nothing. Where exact points would make rings cross, those around the fault stay on the grid.
+
+mod conform;
+mod place;
+
+use super::overlay::{self, overlay};
+use super::rectangle::{Near, Prepared};
+use super::{BooleanOp, FillRule, Shapes};
+use crate::Result;
+use crate::clip::attribute::Source;
+use crate::math::Rect;
+use crate::trace::NoTrace;
+use conform::{Mask, Subject};
+
+/// What is left of polygons.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cut {
+    /// Valid polygons, in the order of [`overlay::Output`].
+    pub shapes: Shapes,
+    /// Where each point comes from: of the subject. Points of the mask are [`Source::Corner`] where they do
+    /// not lie on the subject's border.
+    pub sources: Vec<Source>,
+    /// How many points stay on the grid, because rings would cross at the exact places.
+    pub snapped: usize,
+    /// Whether the subject has come out as it was, but for the order of its rings and their first points.
+    pub whole: bool,
+    /// Whether a polygon of the mask is smaller than a cell of the grid, so that it may be gone.
+    pub lost: bool,
+}
+
+/// The subject's part inside the mask (intersection) or outside of it (difference). Which points the
+/// subject encloses is told by `rule`; the mask is valid polygons.
+///
+/// ```
+/// use durer::clip::polygon::{BooleanOp, FillRule, Shapes, coverage, rectangle::Prepared};
+/// use durer::math::DVec2;
+///
+/// // Two neighbours of different size, cut through the edge that they share.
+/// let p = DVec2::new;
+/// let wide = Shapes::from_rings([[p(1., 2.), p(2., 5.), p(-300., 5.), p(-300., 2.)]]);
+/// let narrow = Shapes::from_rings([[p(2., 5.), p(1., 2.), p(4., 2.), p(4., 5.)]]);
+/// let mask = Prepared::new(Shapes::from_rings([[p(-1., 3.), p(5., 3.1), p(5., 4.2), p(-1., 4.)]]))?;
+/// let cut = |shapes| coverage::cut(shapes, &mask, BooleanOp::Intersection, FillRule::EvenOdd);
+/// let (left, right) = (cut(&wide)?.shapes, cut(&narrow)?.shapes);
+/// let shared: Vec<_> = left.points().iter().filter(|p| right.points().contains(p)).collect();
+/// assert_eq!(shared.len(), 2);
+/// assert_eq!(shared[0].x, 1.3463687150837989);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`overlay()`](fn@super::overlay) for the subject's points.
+pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, rule: FillRule) -> Result<Cut> {
+    let near = subject.bounds().map(|bounds| Near::around(mask, &bounds)).unwrap_or_default();
+    let (subject, mask) = conform::conform(subject, Mask::new(near));
+    solve(&subject, &mask, op, rule)
+}
+
+/// All of one set of polygons with all of another, the points that the first encloses told by `rule`.
+///
+/// # Errors
+/// As [`overlay()`](fn@super::overlay).
+pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, rule: FillRule) -> Result<Cut> {
+    solve(&Subject::plain(first), &Mask::new(Near::all(second.clone())), op, rule)
+}
+
+/// The grid that [`cut`] and [`join`] decide on: the finest that the overlay takes.
+///
+/// A power of two that leaves 2³⁹ to 2⁴⁰ cells across, and 53 bits for a coordinate; `None` where there is
+/// no extent.
+pub fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
+    let all = Rect::around(bounds.into_iter().flatten().flat_map(|b| [b.min(), b.max()]))?;
+    let farthest = all.min().abs().max(all.max().abs()).max_element();
+    let cell = (all.size().max_element() / 2f64.powi(40)).max(farthest / 2f64.powi(53));
+    // The power of two at or below, without logarithms: the exponent's bits alone.
+    let floor = f64::from_bits(cell.to_bits() & (0x7ff << 52));
+    let cell = if floor < cell { floor * 2.0 } else { floor };
+    (cell.is_normal() && cell.is_finite()).then_some(cell)
+}
+
+fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, rule: FillRule) -> Result<Cut> {
+    let bounds = [subject.shapes().bounds(), mask.near.shapes.bounds()];
+    let options = overlay::Options {
+        subject_rule: rule,
+        clip_rule: FillRule::EvenOdd,
+        grid: finest_grid(bounds),
+        origins: true,
+        drop_collinear: false,
+    };
+    let output = overlay(subject.shapes(), &mask.near.shapes, op, &options, &mut NoTrace)?;
+    Ok(place::place(subject, mask, output))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,61 @@
+//! Points that lie on an edge but for the rounding of their coordinates.
+//!
+//! A crossing is rounded by half an ulp on each axis, so that it mostly lies beside both edges. Whoever cuts
+//! what was cut before has to see that it lies on them. What is near is told by the point and the edge
+//! alone, so that all who have them decide alike.
+
+use super::exact;
+use crate::math::{DVec2, orient2d_value};
+use std::cmp::Ordering;
+
+/// Nearer than this share of its larger coordinate, two to four ulp, a point lies on an edge.
+const NEAR: f64 = 2.0 * f64::EPSILON;
+
+/// How near to a point is as good as there.
+#[inline]
+pub(crate) fn reach(p: DVec2) -> f64 {
+    p.abs().max_element() * NEAR
+}
+
+/// Whether two points are as good as one; the first tells how near that is.
+#[inline]
+pub(crate) fn are_one(p: DVec2, q: DVec2) -> bool {
+    (p - q).abs().max_element() <= reach(p)
+}
+
+/// Whether a point is as good as on the line of an edge, and beside a part of that.
+#[inline]
+pub(crate) fn is_on(p: DVec2, [a, b]: [DVec2; 2], [from, to]: [DVec2; 2]) -> bool {
+    let reach = reach(p);
+    let beside = p.cmpge(a.min(b) - reach).all() && p.cmple(a.max(b) + reach).all();
+    beside && is_near_line(p, [from, to], reach)
+}
+
+fn is_near_line(p: DVec2, [from, to]: [DVec2; 2], reach: f64) -> bool {
+    let (off, bound) = (orient2d_value(from, to, p), reach * from.distance(to));
+    // Huge coordinates overflow.
+    if off.is_finite() && bound.is_finite() {
+        off.abs() <= bound
+    } else {
+        exact::side(from, to, p) == Ordering::Equal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounded_crossings_lie_on_both_edges_and_what_is_farther_does_not() {
+        let p = DVec2::new;
+        let (edge, mask) = ([p(1.0, 2.0), p(2.0, 5.0)], [p(-1.0, 3.0), p(5.0, 3.1)]);
+        let at = exact::crossing(edge, mask).expect("they cross");
+        assert!(is_on(at, edge, edge) && is_on(at, mask, mask));
+        let beside = p(at.x + 1e-14, at.y);
+        assert!(!is_on(beside, edge, edge) && are_one(at, p(at.x.next_up(), at.y)));
+        assert!(!is_on(p(2.0, 5.1), edge, edge));
+        assert!(!are_one(at, beside));
+        let huge = [p(-1e300, -1e300), p(1e300, 1e300)];
+        assert!(is_on(p(1e299, 1e299), huge, huge) && !is_on(p(1e299, 2e299), huge, huge));
+    }
+}
