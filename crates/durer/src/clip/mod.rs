@@ -2,8 +2,10 @@
 
 pub mod attribute;
 pub(crate) mod exact;
+pub mod hilbert;
 pub mod line;
 pub mod outcode;
 pub mod place;
 pub mod polygon;
+pub mod simplify;
 pub mod volume;
