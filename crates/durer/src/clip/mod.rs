@@ -8,4 +8,5 @@ pub mod outcode;
 pub mod place;
 pub mod polygon;
 pub mod simplify;
+pub mod tiles;
 pub mod volume;
