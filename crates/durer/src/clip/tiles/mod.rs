@@ -10,7 +10,7 @@ mod pyramid;
 mod walk;
 
 pub use piece::{Body, Shape};
-pub use pyramid::{Feature, Options, Piece, Pyramid};
+pub use pyramid::{Feature, Options, Piece, Pyramid, WORLDS};
 pub use walk::{Content, count, walk};
 
 use super::hilbert;
