@@ -69,6 +69,12 @@ pub enum Command {
     /// Cut map data to windows, polygons or tiles
     #[command(after_long_help = crate::clip::EXAMPLES, after_help = "--help shows more, and examples.")]
     Clip(Box<crate::clip::ClipArgs>),
+    /// Make vector tiles of map data for the web: PMTiles, MBTiles, or a file per tile
+    #[command(after_long_help = crate::tiles::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Tiles(Box<crate::tiles::TilesArgs>),
+    /// Leave out points of map data; borders that neighbours share stay shared
+    #[command(after_long_help = crate::simplify::EXAMPLES, after_help = "--help shows more, and examples.")]
+    Simplify(Box<crate::simplify::SimplifyArgs>),
     /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a picture
     #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
     Draw(Box<crate::draw::DrawArgs>),

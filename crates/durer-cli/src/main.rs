@@ -31,8 +31,10 @@ mod resources;
 mod section;
 mod shape;
 mod sides;
+mod simplify;
 mod staging;
 mod thumbnailer;
+mod tiles;
 mod values;
 mod warp;
 
@@ -129,6 +131,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Render(args) => on_threads(&args.running, || render::run(&args)),
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Tiles(args) => on_threads(&args.running, || tiles::run(&args)),
+        Command::Simplify(args) => on_threads(&args.running, || simplify::run(&args)),
         Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
         Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
         Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),

@@ -37,6 +37,7 @@ pub mod svg;
 mod texels;
 mod text;
 pub mod threemf;
+pub mod tiles;
 mod xml;
 pub mod xyz;
 

@@ -85,6 +85,12 @@
 //! [tree](clip::polygon::NestingTree) of a result tells which ring lies in which.
 //! [`clip::attribute`] carries heights, colours and other values to new vertices.
 //!
+//! **Which of its points matter?** [`clip::simplify`]: of a line by [Douglas–Peucker](clip::simplify::douglas_peucker)
+//! or [Visvalingam–Whyatt](clip::simplify::visvalingam), of lines and areas that share borders
+//! [all together](clip::simplify::coverage).
+//!
+//! **How does a map become tiles?** [`clip::tiles`].
+//!
 //! **And in three dimensions?** [`clip::volume`] clips in homogeneous coordinates, whatever the sign of
 //! w, [many triangles](clip::volume::clip_triangles) at a time; [`clip::outcode`] sorts points by the borders they are beyond; [`clip::place`] clips before the
 //! camera transform, in clip space, after the division, in the viewport or per pixel, with the same

@@ -75,9 +75,13 @@ pub struct RegionArgs {
     /// The tiles of a web map at this zoom level, 0 to 24
     ///
     /// Each tile becomes OUT/z/x/y.geojson; where OUT is `-` or ends in .geojsonl, all go into one
-    /// sequence of features with the member "tile". A result for folders is held in memory.
+    /// sequence of features with the member "tile". What lies beyond 180 degrees comes in on the other side. For
+    /// simplified vector tiles of many levels see `durer tiles`.
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = clap::value_parser!(u8).range(0..=24))]
     pub tiles: Option<u8>,
+    /// At most so many tiles
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "tiles", value_parser = values::count)]
+    pub max_tiles: u64,
     /// What the coordinates are, for --tiles
     #[arg(long, value_name = "SYSTEM", default_value = "lonlat", requires = "tiles")]
     pub tile_coordinates: TileCoordinates,

@@ -12,28 +12,33 @@ mod tiles;
 mod values;
 mod window;
 
-pub use args::{ClipArgs, EXAMPLES, format};
+pub use args::{ClipArgs, EXAMPLES, TileCoordinates, format};
+pub use report::Counts;
+pub use sink::failure;
 pub use window::window;
 
 use crate::failure::{Failure, in_words};
 use crate::input::{display_name, is_stream};
 use crate::messages::Messages;
-use crate::output::{self, Target};
+use crate::output;
+use crate::tiles::Stopped;
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
+use durer::clip::tiles::Tile;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
 use engine::{Algorithm, Cutter, Made, Rules};
 use mask::Mask;
 use rayon::prelude::*;
-use report::{Counts, Report};
+use report::Report;
 use shapes::Area;
-use sink::{Sink, failure};
+use sink::Sink;
 use srids::Srids;
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::Path;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
-use tiles::Tile;
+use tiles::{Reach, Subject};
 use window::Window;
 
 /// Features that are cut at a time, on all threads.
@@ -45,7 +50,8 @@ const BATCH_POSITIONS: usize = 1 << 18;
 /// Bytes that are looked at to find the format.
 const PROBE: usize = 64 << 10;
 
-type Source = Reader<Box<dyn BufRead>>;
+/// A file that is read feature by feature.
+pub type Source = Reader<Box<dyn BufRead>>;
 
 /// Cuts one file.
 pub fn run(args: &ClipArgs) -> Result<(), Failure> {
@@ -143,7 +149,7 @@ fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
 }
 
 /// Opens a file, or standard input, and finds its format.
-fn open(path: &Path, format: Option<GeoFormat>) -> Result<(GeoFormat, Source), Failure> {
+pub fn open(path: &Path, format: Option<GeoFormat>) -> Result<(GeoFormat, Source), Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let mut source: Box<dyn BufRead> = if is_stream(path) {
         Box::new(BufReader::with_capacity(PROBE, std::io::stdin()))
@@ -167,36 +173,56 @@ fn open(path: &Path, format: Option<GeoFormat>) -> Result<(GeoFormat, Source), F
     Ok((named.unwrap_or(format), reader))
 }
 
-fn words(error: &durer_formats::Error) -> String {
+/// What went wrong with reading, in the command's words.
+pub fn words(error: &durer_formats::Error) -> String {
     match error {
         durer_formats::Error::Io(e) => in_words(e),
         other => other.to_string(),
     }
 }
 
-/// The format of the result: as told, by the suffix, or that of the input.
-fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure> {
-    let fits = |format: &GeoFormat| args.region.tiles.is_none() || format.is_geojson();
-    let named = GeoFormat::of_name(&args.output.to_string_lossy());
-    let stream = is_stream(&args.output) || output::is_special(&args.output);
-    let found = args
-        .to
-        .or(named)
-        .or(stream.then_some(from).filter(fits))
-        .or(args.region.tiles.map(|_| GeoFormat::GeoJson));
-    let Some(format) = found else {
+/// The format of the result: as told, by the suffix, or on a stream that of the input.
+pub fn named_format(
+    output: &Path,
+    to: Option<GeoFormat>,
+    from: Option<GeoFormat>,
+) -> Result<GeoFormat, Failure> {
+    let named = GeoFormat::of_name(&output.to_string_lossy());
+    let stream = is_stream(output) || output::is_special(output);
+    to.or(named).or(from.filter(|_| stream)).ok_or_else(|| {
         let suffixes = GeoFormat::ALL.map(|f| f.suffixes()[0]).join(", .");
         let message = format!("the suffix tells no format; use one of .{suffixes}, or --to");
-        return Err(Failure::Usage(format!("--output {}: {message}", args.output.display())));
-    };
-    if args.region.tiles.is_some() && named == Some(GeoFormat::GeoJson) {
+        Failure::Usage(format!("--output {}: {message}", output.display()))
+    })
+}
+
+/// The format of the result; of tiles always GeoJSON.
+fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure> {
+    if args.region.tiles.is_none() {
+        return named_format(&args.output, args.to, Some(from));
+    }
+    let from = Some(from).filter(|from| from.is_geojson());
+    let format = named_format(&args.output, args.to, from).unwrap_or(GeoFormat::GeoJson);
+    if GeoFormat::of_name(&args.output.to_string_lossy()) == Some(GeoFormat::GeoJson) {
         let message = "--tiles makes a file per tile: name a folder, or a file in .geojsonl";
         return Err(Failure::Usage(message.to_owned()));
     }
-    if !fits(&format) {
+    if !format.is_geojson() {
         return Err(Failure::Usage("tiles are written as GeoJSON".to_owned()));
     }
     Ok(format)
+}
+
+/// A place for one file.
+pub fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
+    if !is_stream(output) {
+        return Sink::file(output);
+    }
+    if to == GeoFormat::Wkb && std::io::stdout().is_terminal() {
+        let message = "--output -: WKB is no text for a terminal; use a pipe or a file";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(Sink::stdout())
 }
 
 /// Warnings of reading and of cutting.
@@ -243,6 +269,18 @@ fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, re
         let op = args.cutting.op;
         found
             .push(format!("left out: {lines} lines and {points} points; --op {op} joins polygons"));
+    }
+    if report.beyond > 0 {
+        let features = report.beyond;
+        found.push(format!(
+            "{features} features reach beyond the latitudes of Web Mercator, ±85.0511; what lies there is in no tile"
+        ));
+    }
+    if report.too_far > 0 {
+        let features = report.too_far;
+        found.push(format!(
+            "{features} features lie more than four worlds beyond 180 degrees; left out"
+        ));
     }
     if report.replaced > 0 {
         let features = report.replaced;
@@ -300,22 +338,10 @@ impl Job<'_> {
         Ok(features)
     }
 
-    /// A place for one file.
-    fn sink(&self) -> Result<Sink, Failure> {
-        if !is_stream(&self.args.output) {
-            return Sink::file(&self.args.output);
-        }
-        if self.to == GeoFormat::Wkb && std::io::stdout().is_terminal() {
-            let message = "--output -: WKB is no text for a terminal; use a pipe or a file";
-            return Err(Failure::Usage(message.to_owned()));
-        }
-        Ok(Sink::stdout())
-    }
-
     /// Writes what there is, whole or not at all.
     fn put(&mut self, writer: &mut Option<Writer<Sink>>, feature: &Feature) -> Result<(), Failure> {
         if writer.is_none() {
-            let mut new = Writer::new(self.to, self.sink()?);
+            let mut new = Writer::new(self.to, place(&self.args.output, self.to)?);
             new.head(self.reader.members());
             *writer = Some(new);
         }
@@ -329,7 +355,7 @@ impl Job<'_> {
     fn end(&mut self, writer: Option<Writer<Sink>>) -> Result<(), Failure> {
         let writer = match writer {
             Some(writer) => writer,
-            None => Writer::new(self.to, self.sink()?),
+            None => Writer::new(self.to, place(&self.args.output, self.to)?),
         };
         let done = writer.finish(self.reader.members());
         done.map_err(|e| failure(&self.args.output, &e))?.commit()
@@ -421,80 +447,133 @@ impl Job<'_> {
 
     /// Each feature to the tiles that it touches.
     fn tile(&mut self, zoom: u8) -> Result<(), Failure> {
-        let (args, coordinates) = (self.args, self.args.region.tile_coordinates);
-        let one_file = self.to != GeoFormat::GeoJson || is_stream(&self.args.output);
-        if one_file && self.to == GeoFormat::GeoJson {
+        let tiling = tiles::Job::new(zoom, self.args.region.tile_coordinates);
+        if self.to == GeoFormat::GeoJson && !is_stream(&self.args.output) {
+            return self.tile_files(&tiling);
+        }
+        if self.to == GeoFormat::GeoJson {
             self.to = GeoFormat::GeoJsonSeq;
         }
-        let mut writer = None;
-        let mut files: BTreeMap<Tile, (Writer<Vec<u8>>, Counts)> = BTreeMap::new();
-        let mut seen = std::collections::BTreeSet::new();
+        self.tile_sequence(&tiling)
+    }
+
+    /// Feature after feature, each tile after tile.
+    fn tile_sequence(&mut self, tiling: &tiles::Job) -> Result<(), Failure> {
+        let (mut writer, mut seen) = (None, BTreeSet::new());
+        let limit = self.args.region.max_tiles;
+        let mut first = 0;
         loop {
             let features = self.batch()?;
             if features.is_empty() {
                 break;
             }
-            let first = self.report.given.features - features.len() as u64;
-            let cuts: Vec<_> = features
-                .par_iter()
-                .map(|f| {
-                    let cut = |g| tiles::cut(g, zoom, coordinates, rules(args, f));
-                    f.geometry.as_ref().map(cut).transpose()
-                })
-                .collect();
-            for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
-                let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
-                let (pieces, repaired) = cut.unwrap_or_default();
-                self.report.repaired += u64::from(repaired);
+            let subjects = self.subjects(tiling, &features, first);
+            let of_one = |subject: &Subject<'_>| {
+                let one = std::slice::from_ref(subject);
+                let count = tiling.count(one, limit)?;
+                crate::tiles::too_many(count, limit).map_err(Stopped::Written)?;
+                let mut pieces = Vec::new();
+                let take = |tile, parts: Vec<(usize, Geometry)>| {
+                    pieces.extend(parts.into_iter().map(|(_, geometry)| (tile, geometry)));
+                    Ok::<_, Stopped>(())
+                };
+                tiling.visit(one, |_, parts| parts, take).map(|()| pieces)
+            };
+            let cuts: Vec<_> = subjects.par_iter().map(of_one).collect();
+            for (subject, pieces) in subjects.iter().zip(cuts) {
+                let pieces = pieces.map_err(|stopped| self.of_tiling(tiling, stopped))?;
+                self.report.repaired += u64::from(subject.repaired.load(Ordering::Relaxed));
+                let feature = &features[subject.index - first];
                 let own = feature.members.iter().any(|member| member.name == TILE);
-                self.report.replaced += u64::from(one_file && own && !pieces.is_empty());
+                self.report.replaced += u64::from(own && !pieces.is_empty());
                 for (tile, geometry) in pieces {
-                    feature.geometry = Some(geometry);
-                    if one_file {
-                        seen.insert(tile);
-                        self.put(&mut writer, &with_tile(&feature, tile))?;
-                    } else {
-                        let new =
-                            || (Writer::new(GeoFormat::GeoJson, Vec::new()), Counts::default());
-                        let (file, counts) = files.entry(tile).or_insert_with(new);
-                        counts.add(feature.geometry.as_ref());
-                        file.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
-                    }
+                    seen.insert(tile);
+                    crate::tiles::too_many(seen.len() as u64, limit)?;
+                    self.put(&mut writer, &with_tile(feature, geometry, tile))?;
                 }
             }
+            first += features.len();
         }
-        self.report.tiles = Some(seen.len().max(files.len()) as u64);
-        if one_file {
-            return self.end(writer);
-        }
-        files.into_iter().try_for_each(|(tile, file)| self.deliver(tile, file))
+        self.report.tiles = Some(seen.len() as u64);
+        self.end(writer)
     }
 
-    /// Writes the file of a tile, `z/x/y.geojson`.
-    fn deliver(
+    /// Tile after tile, each in its file, `z/x/y.geojson`.
+    fn tile_files(&mut self, tiling: &tiles::Job) -> Result<(), Failure> {
+        let mut features = Vec::new();
+        loop {
+            let batch = self.batch()?;
+            if batch.is_empty() {
+                break;
+            }
+            features.extend(batch);
+        }
+        let subjects = self.subjects(tiling, &features, 0);
+        let limit = self.args.region.max_tiles;
+        let count = tiling.count(&subjects, limit);
+        crate::tiles::too_many(count.map_err(|e| self.of_tiling(tiling, e.into()))?, limit)?;
+        let make = |_: Tile, parts: Vec<(usize, Geometry)>| {
+            let mut counts = Counts::default();
+            let mut writer = Writer::new(GeoFormat::GeoJson, Vec::new());
+            for (index, geometry) in parts {
+                let feature = Feature { geometry: Some(geometry), ..features[index].clone() };
+                counts.add(feature.geometry.as_ref());
+                writer.write(&feature)?;
+            }
+            Ok((writer.finish(&[])?, counts))
+        };
+        let (mut out, mut tiles, folder) = (Counts::default(), 0, &self.args.output);
+        let take = |tile: Tile, made: durer_formats::Result<(Vec<u8>, Counts)>| {
+            let (bytes, counts) = made.map_err(|e| Stopped::Written(failure(folder, &e)))?;
+            out.join(&counts);
+            tiles += 1;
+            let suffix = GeoFormat::GeoJson.suffixes()[0];
+            crate::tiles::deliver(folder, tile, suffix, &bytes).map_err(Stopped::Written)
+        };
+        let done = tiling.visit(&subjects, make, take);
+        done.map_err(|stopped| self.of_tiling(tiling, stopped))?;
+        let repaired = |subject: &&Subject<'_>| subject.repaired.load(Ordering::Relaxed);
+        self.report.repaired += subjects.iter().filter(repaired).count() as u64;
+        self.report.out.join(&out);
+        self.report.tiles = Some(tiles);
+        Ok(())
+    }
+
+    /// The features that lie in tiles; takes note of those that do not.
+    fn subjects<'a>(
         &mut self,
-        tile: Tile,
-        (writer, counts): (Writer<Vec<u8>>, Counts),
-    ) -> Result<(), Failure> {
-        self.report.out.join(&counts);
-        let path = self.args.output.join(format!("{tile}.geojson"));
-        output::make_folder(path.parent().unwrap_or(&self.args.output))?;
-        let whole = writer.finish(&[]).map_err(|e| failure(&path, &e))?;
-        let target = Target::File(path);
-        output::deliver(&target, |out| {
-            out.extend_from_slice(&whole);
-            Ok(())
-        })
-        .map(drop)
+        tiling: &'a tiles::Job,
+        features: &'a [Feature],
+        first: usize,
+    ) -> Vec<Subject<'a>> {
+        let mut subjects = Vec::new();
+        for (feature, index) in features.iter().zip(first..) {
+            let Some(geometry) = &feature.geometry else { continue };
+            let reach = tiling.reach(geometry);
+            self.report.beyond += u64::from(reach == Reach::BeyondLatitudes);
+            self.report.too_far += u64::from(reach == Reach::TooFar);
+            if reach != Reach::TooFar {
+                subjects.push(Subject::new(tiling, index, geometry, rules(self.args, feature)));
+            }
+        }
+        subjects
+    }
+
+    fn of_tiling(&self, tiling: &tiles::Job, stopped: Stopped) -> Failure {
+        match (stopped, tiling.failed.load(Ordering::Relaxed)) {
+            (Stopped::Written(failure), _) => failure,
+            (Stopped::Cut(error), usize::MAX) => self.fail(error),
+            (Stopped::Cut(error), index) => self.of_feature(index as u64, &error),
+        }
     }
 }
 
 /// The member that names a feature's tile, as JSON writes it.
 const TILE: &str = "\"tile\"";
 
-/// The feature with a member that names the tile.
-fn with_tile(feature: &Feature, tile: Tile) -> Feature {
-    let mut feature = feature.clone();
+/// The part of a feature in a tile, with a member that names the tile.
+fn with_tile(feature: &Feature, geometry: Geometry, tile: Tile) -> Feature {
+    let mut feature = Feature { geometry: Some(geometry), ..feature.clone() };
     feature.members.retain(|member| member.name != TILE);
     let value = format!("\"{tile}\"");
     feature.members.push(Member { name: TILE.to_owned(), value });

@@ -45,6 +45,12 @@ pub struct Report {
     /// Features whose own member was replaced by the name of their tile.
     #[serde(skip)]
     pub replaced: u64,
+    /// Features that reach beyond the latitudes of tiles.
+    #[serde(skip)]
+    pub beyond: u64,
+    /// Features that lie worlds away.
+    #[serde(skip)]
+    pub too_far: u64,
     /// Tiles that are not empty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tiles: Option<u64>,

@@ -1,95 +1,206 @@
-//! Tiles of web maps: the square of Web Mercator, halved on both axes per zoom level; tile 0/0/0 is
-//! the world, x counts to the east, y to the south.
+//! Tiles of web maps as masks: features keep their coordinates, heights and measures.
 
 use super::args::TileCoordinates;
 use super::engine::{Cutter, Rules};
 use super::mask::Mask;
 use durer::clip::polygon::BooleanOp;
+use durer::clip::tiles::mercator::{self, HALF_WORLD};
+use durer::clip::tiles::{Content, Tile, WORLDS, count, walk};
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::Geometry;
-use std::f64::consts::PI;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Half the circumference of the sphere of Web Mercator, in metres.
-const HALF_WORLD: f64 = PI * 6_378_137.0;
+/// What a tile covers. Borders of neighbours are the same numbers.
+pub fn bounds(tile: Tile, coordinates: TileCoordinates) -> durer::Result<Rect> {
+    let side = f64::from(1u32 << tile.zoom);
+    let x = |x: u32| {
+        let part = f64::from(x) / side * 2.0 - 1.0;
+        part * half_world(coordinates)
+    };
+    let y = |y: u32| {
+        let part = 1.0 - f64::from(y) / side * 2.0;
+        match coordinates {
+            TileCoordinates::Lonlat => mercator::latitude(part),
+            TileCoordinates::Mercator => part * HALF_WORLD,
+        }
+    };
+    Rect::new(DVec2::new(x(tile.x), y(tile.y + 1)), DVec2::new(x(tile.x + 1), y(tile.y)))
+}
 
-/// A tile.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Tile {
+/// How far the world reaches to the east.
+fn half_world(coordinates: TileCoordinates) -> f64 {
+    match coordinates {
+        TileCoordinates::Lonlat => 180.0,
+        TileCoordinates::Mercator => HALF_WORLD,
+    }
+}
+
+/// How all features are cut.
+pub struct Job {
     pub zoom: u8,
-    pub x: u32,
-    pub y: u32,
+    pub coordinates: TileCoordinates,
+    /// The index of the first feature that could not be cut.
+    pub failed: AtomicUsize,
 }
 
-impl std::fmt::Display for Tile {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}/{}/{}", self.zoom, self.x, self.y)
+/// A feature to be cut.
+pub struct Subject<'a> {
+    pub job: &'a Job,
+    pub index: usize,
+    pub geometry: &'a Geometry,
+    pub rules: Rules,
+    /// Whether it had to be made valid.
+    pub repaired: AtomicBool,
+}
+
+/// Where a geometry lies to the world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reach {
+    Within,
+    /// Some of it, or all, lies nearer to a pole than the tiles.
+    BeyondLatitudes,
+    /// More than four worlds away.
+    TooFar,
+}
+
+impl Job {
+    pub fn new(zoom: u8, coordinates: TileCoordinates) -> Self {
+        Self { zoom, coordinates, failed: AtomicUsize::new(usize::MAX) }
     }
-}
 
-impl Tile {
-    const WORLD: Self = Self { zoom: 0, x: 0, y: 0 };
-
-    fn children(self) -> [Self; 4] {
-        let (zoom, x, y) = (self.zoom + 1, 2 * self.x, 2 * self.y);
-        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { zoom, x: x + i, y: y + j })
-    }
-
-    /// What it covers. Borders of neighbours are the same numbers.
-    pub fn bounds(self, coordinates: TileCoordinates) -> durer::Result<Rect> {
-        let side = f64::from(1u32 << self.zoom);
-        let x = |x: u32| {
-            let part = f64::from(x) / side * 2.0 - 1.0;
-            match coordinates {
-                TileCoordinates::Lonlat => part * 180.0,
-                TileCoordinates::Mercator => part * HALF_WORLD,
-            }
-        };
-        let y = |y: u32| {
-            let part = 1.0 - f64::from(y) / side * 2.0;
-            match coordinates {
-                TileCoordinates::Lonlat => latitude(part),
-                TileCoordinates::Mercator => part * HALF_WORLD,
-            }
-        };
-        Rect::new(DVec2::new(x(self.x), y(self.y + 1)), DVec2::new(x(self.x + 1), y(self.y)))
-    }
-}
-
-/// The latitude in degrees at a height of the square, 1 at its upper border.
-fn latitude(part: f64) -> f64 {
-    libm::atan(libm::sinh(part * PI)).to_degrees()
-}
-
-/// A tile and what lies in it.
-pub type Piece = (Tile, Geometry);
-
-/// The parts of a geometry in all tiles of a zoom level, in the order of the tiles' quadtree; and
-/// whether it had to be made valid.
-///
-/// The parts are cut from the parts in the tiles of the level above, so that the time grows with the
-/// geometry in the tiles and not with their number.
-pub fn cut(
-    geometry: &Geometry,
-    zoom: u8,
-    coordinates: TileCoordinates,
-    rules: Rules,
-) -> durer::Result<(Vec<Piece>, bool)> {
-    let mut repaired = false;
-    let mut done = Vec::new();
-    let mut open = vec![(Tile::WORLD, geometry.clone())];
-    while let Some((tile, geometry)) = open.pop() {
-        let mask = &Mask::window(tile.bounds(coordinates)?)?;
-        let cutter = Cutter { mask, op: BooleanOp::Intersection, rules, algorithm: None };
-        let cut = cutter.cut(&geometry)?;
-        repaired |= cut.repaired;
-        let Some(part) = cut.geometry else { continue };
-        if tile.zoom == zoom {
-            done.push((tile, part));
+    /// Where a geometry lies.
+    pub fn reach(&self, geometry: &Geometry) -> Reach {
+        let world = bounds(Tile::WORLD, self.coordinates);
+        let (Some(own), Ok(world)) = (geometry.bounds(), world) else { return Reach::Within };
+        let last = half_world(self.coordinates) * (1.0 + 2.0 * WORLDS);
+        if own.min().x < -last || own.max().x > last {
+            Reach::TooFar
+        } else if own.min().y < world.min().y || own.max().y > world.max().y {
+            Reach::BeyondLatitudes
         } else {
-            open.extend(tile.children().into_iter().rev().map(|child| (child, part.clone())));
+            Reach::Within
         }
     }
-    Ok((done, repaired))
+
+    /// How many tiles there are at least, counted up to a limit.
+    pub fn count(&self, subjects: &[Subject<'_>], limit: u64) -> durer::Result<u64> {
+        let boxes = subjects.iter().map(Subject::count_of_box).fold(0, u64::saturating_add);
+        if boxes <= limit {
+            return Ok(boxes);
+        }
+        count(&contents(subjects), self.zoom, limit)
+    }
+
+    /// Visits all tiles.
+    pub fn visit<R: Send, E: From<durer::Error>>(
+        &self,
+        subjects: &[Subject<'_>],
+        make: impl Fn(Tile, Vec<(usize, Geometry)>) -> R + Sync + Send,
+        take: impl FnMut(Tile, R) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let make = |tile: Tile, parts: Vec<Part<'_>>| {
+            let pieces = parts.into_iter().map(|part| (part.subject.index, part.geometry));
+            make(tile, pieces.collect())
+        };
+        walk(&contents(subjects), self.zoom, make, take)
+    }
+}
+
+impl<'a> Subject<'a> {
+    pub fn new(job: &'a Job, index: usize, geometry: &'a Geometry, rules: Rules) -> Self {
+        Self { job, index, geometry, rules, repaired: AtomicBool::new(false) }
+    }
+
+    /// No fewer tiles than there are.
+    fn count_of_box(&self) -> u64 {
+        let Some(own) = self.geometry.bounds() else { return 0 };
+        let square = |p: DVec2| match self.job.coordinates {
+            TileCoordinates::Lonlat => mercator::project(p),
+            TileCoordinates::Mercator => mercator::of_metres(p),
+        };
+        let side = f64::from(1u32 << self.job.zoom);
+        let (a, b) = (square(own.min()), square(own.max()));
+        // Closed tiles meet at their borders.
+        let tiles = |low: f64, high: f64| {
+            ((high * side).floor() - (low * side).floor() + 2.0).min(2.0 * WORLDS * side)
+        };
+        let down = tiles(b.y.clamp(0.0, 1.0), a.y.clamp(0.0, 1.0));
+        (tiles(a.x, b.x) * down) as u64
+    }
+}
+
+/// A part of a feature, in the first world.
+pub struct Part<'a> {
+    subject: &'a Subject<'a>,
+    geometry: Geometry,
+}
+
+/// All features in all worlds, moved to the first.
+fn contents<'a>(subjects: &'a [Subject<'a>]) -> Vec<Part<'a>> {
+    let mut contents = Vec::new();
+    for subject in subjects {
+        let Some(own) = subject.geometry.bounds() else { continue };
+        let half = half_world(subject.job.coordinates);
+        // What only touches the border of another world is in this one.
+        let first = (((own.min().x - half) / (2.0 * half)).floor() as i64 + 1).min(0);
+        let last = (((own.max().x + half) / (2.0 * half)).ceil() as i64 - 1).max(0);
+        for world in first..=last {
+            let mut geometry = subject.geometry.clone();
+            if world != 0 {
+                shift(&mut geometry, -2.0 * half * world as f64);
+            }
+            contents.push(Part { subject, geometry });
+        }
+    }
+    contents
+}
+
+/// Moves a geometry to the east.
+fn shift(geometry: &mut Geometry, by: f64) {
+    match geometry {
+        Geometry::Point(run) | Geometry::LineString(run) | Geometry::MultiPoint(run) => {
+            run.xy.iter_mut().for_each(|p| p.x += by);
+        }
+        Geometry::Polygon(runs) | Geometry::MultiLineString(runs) => {
+            runs.iter_mut().flat_map(|run| &mut run.xy).for_each(|p| p.x += by);
+        }
+        Geometry::MultiPolygon(polygons) => {
+            polygons.iter_mut().flatten().flat_map(|run| &mut run.xy).for_each(|p| p.x += by);
+        }
+        Geometry::Collection(parts) => parts.iter_mut().for_each(|part| shift(part, by)),
+    }
+}
+
+impl Content for Part<'_> {
+    fn within(&self, tiles: &[Tile]) -> durer::Result<Vec<Option<Self>>> {
+        let Subject { job, rules, index, repaired, .. } = self.subject;
+        let cut = |&tile: &Tile| {
+            let mask = &Mask::window(bounds(tile, job.coordinates)?)?;
+            let cutter =
+                Cutter { mask, op: BooleanOp::Intersection, rules: *rules, algorithm: None };
+            let cut = cutter.cut(&self.geometry)?;
+            repaired.fetch_or(cut.repaired, Ordering::Relaxed);
+            Ok(cut.geometry.map(|geometry| Part { subject: self.subject, geometry }))
+        };
+        let parts = tiles.iter().map(cut).collect::<durer::Result<_>>();
+        parts.inspect_err(|_| {
+            job.failed.fetch_min(*index, Ordering::Relaxed);
+        })
+    }
+
+    fn size(&self) -> usize {
+        self.geometry.len()
+    }
+
+    fn covers(&self, tile: Tile) -> bool {
+        let (Geometry::Polygon(rings), Ok(window)) =
+            (&self.geometry, bounds(tile, self.subject.job.coordinates))
+        else {
+            return false;
+        };
+        let corner = |p: &DVec2| (p.cmpeq(window.min()) | p.cmpeq(window.max())).all();
+        matches!(&rings[..], [ring] if ring.len() == 4 && ring.xy.iter().all(corner))
+    }
 }
 
 #[cfg(test)]
@@ -98,14 +209,34 @@ mod tests {
 
     #[test]
     fn tiles_cover_the_world() {
-        let world = Tile::WORLD.bounds(TileCoordinates::Lonlat).expect("bounds");
+        let world = bounds(Tile::WORLD, TileCoordinates::Lonlat).expect("bounds");
         assert_eq!((world.min().x, world.max().x), (-180.0, 180.0));
         // The latitude where Web Mercator ends.
         assert!((world.max().y - 85.051_128_779_806_59).abs() < 1e-12);
-        let [a, b, ..] = Tile::WORLD.children();
-        let (a, b) = (a.bounds(TileCoordinates::Mercator), b.bounds(TileCoordinates::Mercator));
-        let (a, b) = (a.expect("bounds"), b.expect("bounds"));
+        let child = |y| bounds(Tile { zoom: 1, x: 0, y }, TileCoordinates::Mercator);
+        let (a, b) = (child(0).expect("bounds"), child(1).expect("bounds"));
         assert_eq!((a.min().y, a.max().y), (0.0, HALF_WORLD));
         assert_eq!(a.min().y, b.max().y);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_world_comes_from_the_other_side() {
+        let line = |a: f64, b: f64| {
+            let xy = vec![DVec2::new(a, 1.0), DVec2::new(b, 1.0)];
+            Geometry::LineString(durer_formats::geo::Points::flat(xy))
+        };
+        let job = Job::new(0, TileCoordinates::Lonlat);
+        let starts = |a, b| {
+            let line = line(a, b);
+            let subject = [Subject::new(&job, 0, &line, Rules::default())];
+            let starts =
+                contents(&subject).iter().filter_map(|p| p.geometry.bounds()).map(|r| r.min().x);
+            starts.collect::<Vec<_>>()
+        };
+        assert_eq!(starts(-180.0, 180.0), [-180.0]);
+        assert_eq!(starts(170.0, 190.0), [170.0, -190.0]);
+        assert_eq!(starts(200.0, 210.0), [200.0, -160.0]);
+        assert_eq!(starts(-541.0, -539.0), [179.0, -181.0, -541.0]);
+        assert_eq!(job.reach(&line(0.0, 1e9)), Reach::TooFar);
     }
 }

@@ -2,9 +2,12 @@
 
 pub mod attribute;
 pub(crate) mod exact;
+pub mod hilbert;
 pub mod line;
 pub mod outcode;
 pub mod place;
 pub mod polygon;
+pub mod simplify;
+pub mod tiles;
 mod touch;
 pub mod volume;

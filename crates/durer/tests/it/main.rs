@@ -6,6 +6,7 @@ mod blended;
 mod clip_line;
 mod clip_place;
 mod clip_polygon;
+mod clip_simplify;
 mod clip_volume;
 mod coherence;
 mod commands;

@@ -1,0 +1,141 @@
+//! The options of `durer tiles`.
+
+use crate::args::RunningArgs;
+use crate::clip::TileCoordinates;
+use crate::values;
+use clap::{Args, ValueEnum, ValueHint};
+use durer::clip::simplify::LineSimplifier;
+use durer::clip::tiles::Tile;
+use durer_formats::geo::GeoFormat;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+pub const EXAMPLES: &str = "\
+Examples:
+  durer tiles countries.geojson roads.geojson -o map.pmtiles
+  durer tiles parcels.geojson --zoom 10-16 --select owner,use -o parcels.mbtiles
+  durer tiles countries.geojson --zoom 0-6 -o tiles/
+  durer tiles countries.geojson --zoom 3 -o 'tiles/{z}/{x}/{y}.geojson'
+
+Each file becomes a layer. All of a layer is simplified together, so that neighbours keep their borders; the highest \
+level has all points. Polygons come out valid. What lies beyond 180 degrees comes in on the other side.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer tiles`.
+#[derive(Debug, Args)]
+pub struct TilesArgs {
+    /// GeoJSON (also one feature per line), WKT or WKB; `-` reads standard input
+    #[arg(value_name = "IN", required = true, value_hint = ValueHint::FilePath)]
+    pub inputs: Vec<PathBuf>,
+    /// Where the tiles go: map.pmtiles, map.mbtiles, a folder, or a folder with `{z}/{x}/{y}.mvt` or `.geojson`
+    ///
+    /// Into a folder go one file per tile, not compressed, and `tiles.json`, a TileJSON.
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
+    pub output: PathBuf,
+    /// The zoom levels, e.g. 0-14 or 7; at most 24
+    #[arg(long, value_name = "MIN-MAX", default_value = "0-14", value_parser = zooms, help_heading = "Tiles")]
+    pub zoom: RangeInclusive<u8>,
+    /// The side of a tile, in cells of its grid
+    #[arg(long, value_name = "CELLS", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=8192), help_heading = "Tiles")]
+    pub extent: u32,
+    /// How far features go on beyond the border of their tile, in cells
+    #[arg(long, value_name = "CELLS", default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..8192), help_heading = "Tiles")]
+    pub buffer: u32,
+    /// At most so many tiles
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = values::count, help_heading = "Tiles")]
+    pub max_tiles: u64,
+    /// How far lines may move on levels below the highest, in cells; see `durer simplify`
+    #[arg(long, value_name = "CELLS", default_value_t = 3.0, allow_hyphen_values = true, value_parser = values::not_negative, help_heading = "Simplification")]
+    pub tolerance: f64,
+    /// douglas-peucker or visvalingam
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "visvalingam",
+        help_heading = "Simplification"
+    )]
+    pub method: LineSimplifier,
+    /// Leave out polygons smaller than a square of this side, in cells; those near to each other that are as large
+    /// together become such a square. 0 leaves all in that have an area on the grid
+    #[arg(long, value_name = "CELLS", default_value_t = 4.0, allow_hyphen_values = true, value_parser = values::not_negative, help_heading = "Simplification")]
+    pub tiny: f64,
+    /// The name of a layer; one for each IN, or one for all [default: the names of the files]
+    #[arg(long, value_name = "NAME", help_heading = "Layers")]
+    pub layer: Vec<String>,
+    /// The properties to keep, joined by commas [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Layers")]
+    pub select: Option<Vec<String>>,
+    /// The properties to leave out, joined by commas
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        conflicts_with = "select",
+        help_heading = "Layers"
+    )]
+    pub exclude: Vec<String>,
+    /// The name of the map [default: that of OUT]
+    #[arg(long, value_name = "TEXT", help_heading = "Layers")]
+    pub name: Option<String>,
+    /// What must be told beside the map, as HTML
+    #[arg(long, value_name = "HTML", help_heading = "Layers")]
+    pub attribution: Option<String>,
+    /// What the coordinates are
+    #[arg(long, value_name = "SYSTEM", default_value = "lonlat", help_heading = "Reading")]
+    pub coordinates: TileCoordinates,
+    /// Lines and borders never go more than half around the world: an edge of more than 180 degrees goes the other
+    /// way, across the date line
+    #[arg(long, help_heading = "Reading")]
+    pub short_way: bool,
+    /// The format of all IN [default: by content, then by suffix]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Reading")]
+    pub from: Option<GeoFormat>,
+    /// The format of OUT [default: by its suffix; of a folder mvt]
+    #[arg(long, value_name = "FORMAT")]
+    pub to: Option<TileFormat>,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+    /// Write a report on standard output, in JSON: tiles and bytes of each level
+    #[arg(long, help_heading = "Running")]
+    pub json: bool,
+}
+
+/// How tiles are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TileFormat {
+    /// One file, for any web server
+    Pmtiles,
+    /// One file, a database of SQLite
+    Mbtiles,
+    /// Mapbox vector tiles in a folder
+    Mvt,
+    /// GeoJSON in a folder
+    Geojson,
+}
+
+impl TileFormat {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pmtiles => "pmtiles",
+            Self::Mbtiles => "mbtiles",
+            Self::Mvt => "mvt",
+            Self::Geojson => "geojson",
+        }
+    }
+}
+
+fn zooms(text: &str) -> Result<RangeInclusive<u8>, String> {
+    let level = |text: &str| {
+        let found = text.parse::<u8>().ok().filter(|zoom| *zoom <= Tile::MAX_ZOOM);
+        found.ok_or_else(|| format!("`{text}` is no level; they are 0 to {}", Tile::MAX_ZOOM))
+    };
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    let (first, last) = (level(first)?, level(last)?);
+    if first > last {
+        return Err("the lower level comes first, e.g. 0-14".to_owned());
+    }
+    Ok(first..=last)
+}

@@ -1,0 +1,148 @@
+//! From what lies in a tile to its bytes.
+
+use super::args::{TileFormat, TilesArgs};
+use super::layers::{Layers, Row};
+use durer::clip::tiles::{Piece, Shape, Tile, mercator};
+use durer::math::{DVec2, I64Vec2};
+use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Points, Writer};
+use durer_formats::tiles::{Layer, Value, encode, gzip};
+use std::collections::HashSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Makes tiles, on any thread.
+pub struct Maker<'a> {
+    format: TileFormat,
+    extent: u32,
+    last_zoom: u8,
+    all: &'a Layers,
+    /// Of each row whether it is in any tile.
+    seen: Vec<AtomicBool>,
+}
+
+/// A tile.
+pub struct Made {
+    pub bytes: Vec<u8>,
+    pub features: u64,
+}
+
+impl<'a> Maker<'a> {
+    pub fn new(args: &TilesArgs, format: TileFormat, all: &'a Layers) -> Self {
+        let seen = all.rows.iter().map(|_| AtomicBool::new(false)).collect();
+        Self { format, extent: args.extent, last_zoom: *args.zoom.end(), all, seen }
+    }
+
+    /// How many features are in no tile.
+    pub fn lost(&self) -> u64 {
+        self.seen.iter().filter(|seen| !seen.load(Ordering::Relaxed)).count() as u64
+    }
+
+    /// The bytes of a tile.
+    pub fn make(&self, tile: Tile, mut pieces: Vec<Piece>) -> Made {
+        for piece in &pieces {
+            self.seen[self.all.row_of[piece.feature]].store(true, Ordering::Relaxed);
+        }
+        if tile.zoom < self.last_zoom {
+            self.merge_points(&mut pieces);
+        }
+        let bytes = match self.format {
+            TileFormat::Pmtiles | TileFormat::Mbtiles => gzip(&self.vector(&pieces)),
+            TileFormat::Mvt => self.vector(&pieces),
+            TileFormat::Geojson => self.geojson(tile, &pieces),
+        };
+        Made { bytes, features: pieces.len() as u64 }
+    }
+
+    fn row(&self, piece: &Piece) -> &Row {
+        &self.all.rows[self.all.row_of[piece.feature]]
+    }
+
+    /// Of points with the same properties at the same place the first stays.
+    fn merge_points(&self, pieces: &mut Vec<Piece>) {
+        let mut seen = HashSet::new();
+        pieces.retain_mut(|piece| {
+            let row = self.row(piece);
+            let Shape::Points(points) = &mut piece.shape else { return true };
+            points.retain(|p| seen.insert((row.layer, &row.properties, p.x, p.y)));
+            !points.is_empty()
+        });
+    }
+
+    fn vector(&self, pieces: &[Piece]) -> Vec<u8> {
+        let layer = |l: &'a super::layers::Layer| Layer::new(&l.name, self.extent, &l.dictionary);
+        let mut layers: Vec<Layer<'_>> = self.all.layers.iter().map(layer).collect();
+        for piece in pieces {
+            let row = self.row(piece);
+            layers[row.layer].add(row.id, &row.properties, &piece.shape);
+        }
+        encode(&layers)
+    }
+
+    fn geojson(&self, tile: Tile, pieces: &[Piece]) -> Vec<u8> {
+        let mut writer = Writer::new(GeoFormat::GeoJson, Vec::new());
+        for piece in pieces {
+            let row = self.row(piece);
+            let feature = Feature {
+                geometry: Some(self.geometry(tile, &piece.shape)),
+                properties: Some(self.properties(row)),
+                id: row.id.map(|id| id.to_string()),
+                members: vec![Member {
+                    name: "\"layer\"".to_owned(),
+                    value: serde_json::Value::from(&self.all.layers[row.layer].name[..])
+                        .to_string(),
+                }],
+                ..Feature::default()
+            };
+            // Memory takes all that comes.
+            let _ = writer.write(&feature);
+        }
+        writer.finish(&[]).unwrap_or_default()
+    }
+
+    fn properties(&self, row: &Row) -> String {
+        let dictionary = &self.all.layers[row.layer].dictionary;
+        let mut object = serde_json::Map::new();
+        for &(name, value) in &row.properties {
+            let (Some(name), Some(value)) =
+                (dictionary.names().get(name as usize), dictionary.get(value))
+            else {
+                continue;
+            };
+            let value = match value {
+                Value::Text(text) => text.clone().into(),
+                Value::Number(value) => (*value).into(),
+                Value::Unsigned(value) => (*value).into(),
+                Value::Signed(value) => (*value).into(),
+                Value::Bool(value) => (*value).into(),
+            };
+            object.insert(name.clone(), value);
+        }
+        serde_json::Value::Object(object).to_string()
+    }
+
+    /// A shape in degrees, rings as GeoJSON wants them: outer ones counter-clockwise.
+    fn geometry(&self, tile: Tile, shape: &Shape) -> Geometry {
+        let side = 1.0 / f64::from(1u32 << tile.zoom);
+        let corner = DVec2::new(tile.x.into(), tile.y.into());
+        let degrees = |p: &I64Vec2| {
+            mercator::unproject((corner + p.as_dvec2() / f64::from(self.extent)) * side)
+        };
+        let run = |points: &[I64Vec2]| Points::flat(points.iter().map(degrees).collect());
+        let ring = |points: &[I64Vec2]| Points::flat(points.iter().rev().map(degrees).collect());
+        match shape {
+            Shape::Points(points) if points.len() == 1 => Geometry::Point(run(points)),
+            Shape::Points(points) => Geometry::MultiPoint(run(points)),
+            Shape::Lines(lines) if lines.len() == 1 => Geometry::LineString(run(&lines[0])),
+            Shape::Lines(lines) => {
+                Geometry::MultiLineString(lines.iter().map(|line| run(line)).collect())
+            }
+            Shape::Areas(shapes) => {
+                let polygon = shapes.polygons().map(|p| p.rings().map(ring).collect());
+                let mut polygons: Vec<Vec<Points>> = polygon.collect();
+                match polygons.len() {
+                    1 => Geometry::Polygon(polygons.remove(0)),
+                    _ => Geometry::MultiPolygon(polygons),
+                }
+            }
+        }
+    }
+}

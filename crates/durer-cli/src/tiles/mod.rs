@@ -1,0 +1,216 @@
+//! `durer tiles`.
+
+mod args;
+mod layers;
+mod make;
+mod out;
+
+pub use args::{EXAMPLES, TilesArgs};
+pub use out::deliver;
+
+use crate::failure::Failure;
+use crate::input::{check_streams, display_name};
+use crate::messages::Messages;
+use durer::clip::tiles::{Options, Pyramid, Tile, mercator};
+use durer::math::{DVec2, Rect};
+use durer_formats::tiles::Metadata;
+use layers::Layers;
+use make::Maker;
+use out::Out;
+use serde::Serialize;
+use std::time::Instant;
+
+/// What `--json` says.
+#[derive(Debug, Serialize)]
+struct Report {
+    version: &'static str,
+    inputs: Vec<String>,
+    output: String,
+    to: &'static str,
+    features: u64,
+    /// In no tile.
+    lost: u64,
+    tiles: u64,
+    /// As they are written.
+    bytes: u64,
+    levels: Vec<LevelReport>,
+    warnings: Vec<String>,
+    read_seconds: f64,
+    total_seconds: f64,
+    peak_memory_bytes: Option<u64>,
+}
+
+/// What is said of a level.
+#[derive(Debug, Default, Serialize)]
+struct LevelReport {
+    zoom: u8,
+    tiles: u64,
+    bytes: u64,
+    /// Bytes of the largest tile.
+    largest: u64,
+    /// That tile.
+    largest_tile: String,
+    /// Features in all tiles.
+    features: u64,
+}
+
+/// Makes tiles of all files.
+pub fn run(args: &TilesArgs) -> Result<(), Failure> {
+    let start = Instant::now();
+    check_streams(&args.inputs)?;
+    if args.buffer >= args.extent {
+        return Err(Failure::Usage(
+            "--buffer: it must be less than the extent of a tile".to_owned(),
+        ));
+    }
+    let messages = Messages::new(&args.running, 1);
+    let (format, path) = out::format(args)?;
+    let mut all = layers::read(args, &messages)?;
+    let bounds = bounds(&all);
+    let fail = |e: durer::Error| Failure::Data(e.to_string());
+    let options = Options {
+        zooms: args.zoom.clone(),
+        extent: args.extent,
+        buffer: args.buffer,
+        method: args.method,
+        tolerance: args.tolerance,
+        tiny: args.tiny,
+    };
+    let pyramid = Pyramid::new(std::mem::take(&mut all.features), options).map_err(fail)?;
+    let read_seconds = start.elapsed().as_secs_f64();
+    bounded(args, &pyramid)?;
+    let mut out = Out::new(format, path)?;
+    let maker = Maker::new(args, format, &all);
+    let mut levels = Vec::new();
+    for zoom in args.zoom.clone() {
+        messages.progress.stage(|| format!("level {zoom}"));
+        levels.push(level(zoom, &pyramid, &maker, &mut out)?);
+    }
+    let (tiles, bytes) = levels.iter().fold((0, 0), |(t, b), l| (t + l.tiles, b + l.bytes));
+    out.finish(&metadata(args, &all, bounds))?;
+    let lost = maker.lost();
+    let mut warnings = std::mem::take(&mut all.warnings);
+    for message in told(args, lost, tiles) {
+        messages.warning(&args.output.display().to_string(), &message);
+        warnings.push(message);
+    }
+    drop(messages);
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        inputs: args.inputs.iter().map(|path| display_name(path)).collect(),
+        output: args.output.display().to_string(),
+        to: format.name(),
+        features: all.read,
+        lost,
+        tiles,
+        bytes,
+        levels,
+        warnings,
+        read_seconds,
+        total_seconds: start.elapsed().as_secs_f64(),
+        peak_memory_bytes: crate::report::peak_memory(),
+    };
+    if args.json { crate::report::print(&report) } else { Ok(()) }
+}
+
+/// Refuses too many tiles before one is made.
+fn bounded(args: &TilesArgs, pyramid: &Pyramid) -> Result<(), Failure> {
+    let count = pyramid.count(args.max_tiles).map_err(|e| Failure::Data(e.to_string()))?;
+    too_many(count, args.max_tiles)
+}
+
+/// An error where there are too many tiles; counting stops somewhere above the limit.
+pub fn too_many(count: u64, limit: u64) -> Result<(), Failure> {
+    if count <= limit {
+        return Ok(());
+    }
+    Err(Failure::Data(format!(
+        "there are {count} tiles at least, and no more than {limit} are made; choose a lower zoom level, or raise \
+         --max-tiles"
+    )))
+}
+
+fn told(args: &TilesArgs, lost: u64, tiles: u64) -> Vec<String> {
+    let mut told = Vec::new();
+    if lost > 0 {
+        let last = args.zoom.end();
+        told.push(format!(
+            "{lost} features are in no tile: they lie beyond the latitudes of Web Mercator, ±85.0511, or are too small \
+             for the grid of level {last}"
+        ));
+    }
+    if tiles == 0 {
+        told.push("there is no tile".to_owned());
+    }
+    told
+}
+
+/// Makes and writes all tiles of a level.
+fn level(
+    zoom: u8,
+    pyramid: &Pyramid,
+    maker: &Maker<'_>,
+    out: &mut Out,
+) -> Result<LevelReport, Failure> {
+    let mut report = LevelReport { zoom, ..LevelReport::default() };
+    let done = pyramid.visit(
+        zoom,
+        |tile, pieces| maker.make(tile, pieces),
+        |tile: Tile, made| {
+            let length = made.bytes.len() as u64;
+            report.tiles += 1;
+            report.bytes += length;
+            report.features += made.features;
+            if length > report.largest {
+                (report.largest, report.largest_tile) = (length, tile.to_string());
+            }
+            out.add(tile, &made.bytes).map_err(Stopped::Written)
+        },
+    );
+    done.map(|()| report).map_err(|stopped| match stopped {
+        Stopped::Written(failure) => failure,
+        Stopped::Cut(e) => Failure::Data(e.to_string()),
+    })
+}
+
+/// Why making tiles ended before its time.
+#[derive(Debug)]
+pub enum Stopped {
+    Cut(durer::Error),
+    Written(Failure),
+}
+
+impl From<durer::Error> for Stopped {
+    fn from(error: durer::Error) -> Self {
+        Self::Cut(error)
+    }
+}
+
+/// West, south, east and north of all features, in degrees, within the world.
+fn bounds(all: &Layers) -> [f64; 4] {
+    let points = all.features.iter().flat_map(|f| f.body.points().iter().copied());
+    let Some(around) = Rect::around(points) else { return [-180.0, -85.0, 180.0, 85.0] };
+    let (low, high) = (around.min(), around.max());
+    let world = |p: DVec2| mercator::unproject(p.clamp(DVec2::ZERO, DVec2::ONE));
+    let (low, high) = if low.x < 0.0 || high.x > 1.0 {
+        (DVec2::new(0.0, low.y), DVec2::new(1.0, high.y))
+    } else {
+        (low, high)
+    };
+    let (first, last) = (world(low), world(high));
+    [first.x, last.y, last.x, first.y]
+}
+
+fn metadata(args: &TilesArgs, all: &Layers, bounds: [f64; 4]) -> Metadata {
+    let stem = || args.output.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let pattern = args.output.to_string_lossy().contains("{z}");
+    let name = args.name.clone().or_else(|| stem().filter(|_| !pattern));
+    Metadata {
+        name: name
+            .unwrap_or_else(|| all.layers.first().map_or_else(String::new, |l| l.name.clone())),
+        zooms: (*args.zoom.start(), *args.zoom.end()),
+        bounds,
+        attribution: args.attribution.clone(),
+        layers: all.infos(),
+    }
+}

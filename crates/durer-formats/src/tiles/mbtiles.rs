@@ -1,0 +1,93 @@
+//! MBTiles 1.3: <https://github.com/mapbox/mbtiles-spec/blob/master/1.3/spec.md>, a database of SQLite.
+
+use super::archive::Metadata;
+use super::sqlite::{Cell, Database, Table, index, record};
+use crate::Result;
+use durer::clip::tiles::Tile;
+use serde_json::json;
+use std::io::{Seek, Write};
+
+/// "MPBX", which the specification asks for.
+const APPLICATION: u32 = 0x4d50_4258;
+
+/// Writes tiles.
+pub struct MbTiles<W> {
+    database: Database<W>,
+    tiles: Table,
+    /// Level, column and row of each tile, in the order of the rows.
+    places: Vec<(u8, u32, u32)>,
+}
+
+impl<W: Write + Seek> MbTiles<W> {
+    /// A file without a tile; the target must be empty.
+    ///
+    /// # Errors
+    /// [`crate::Error::Io`].
+    pub fn new(out: W) -> Result<Self> {
+        Ok(Self { database: Database::new(out)?, tiles: Table::new(), places: Vec::new() })
+    }
+
+    /// Adds a tile, compressed by [`gzip`](super::gzip()).
+    ///
+    /// # Errors
+    /// [`crate::Error::Io`]; [`crate::Error::Limit`] where the database has no room.
+    pub fn add(&mut self, tile: Tile, bytes: &[u8]) -> Result<()> {
+        // Rows count to the north.
+        let row = (1u32 << tile.zoom) - 1 - tile.y;
+        let place = (tile.zoom, tile.x, row);
+        let values = cells(place).into_iter().chain([Cell::Blob(bytes)]).collect::<Vec<_>>();
+        self.tiles.add(&mut self.database, &values)?;
+        self.places.push(place);
+        Ok(())
+    }
+
+    /// Writes what the tiles need to be found, and gives the target back.
+    ///
+    /// # Errors
+    /// As [`MbTiles::add`].
+    pub fn finish(self, metadata: &Metadata) -> Result<W> {
+        let Self { mut database, tiles, places } = self;
+        let root = tiles.finish(&mut database)?;
+        let mut sorted: Vec<_> = places.into_iter().zip(1i64..).collect();
+        sorted.sort_unstable();
+        let entry = |(place, row)| {
+            record(&cells(place).into_iter().chain([Cell::Integer(row)]).collect::<Vec<_>>())
+        };
+        let entries: Vec<Vec<u8>> = sorted.into_iter().map(entry).collect();
+        let index_root = index(&mut database, &entries)?;
+        let mut about = Table::new();
+        for (name, value) in rows(metadata) {
+            about.add(&mut database, &[Cell::Text(name), Cell::Text(&value)])?;
+        }
+        let about = about.finish(&mut database)?;
+        let sql = "CREATE TABLE metadata (name text, value text)";
+        database.name("table", "metadata", "metadata", about, sql);
+        let sql = "CREATE TABLE tiles (zoom_level integer, tile_column integer, tile_row integer, tile_data blob)";
+        database.name("table", "tiles", "tiles", root, sql);
+        let sql = "CREATE UNIQUE INDEX tile_index on tiles (zoom_level, tile_column, tile_row)";
+        database.name("index", "tile_index", "tiles", index_root, sql);
+        database.finish(APPLICATION)
+    }
+}
+
+fn cells((zoom, x, y): (u8, u32, u32)) -> [Cell<'static>; 3] {
+    [zoom.into(), x.into(), y.into()].map(Cell::Integer)
+}
+
+/// The table `metadata`.
+fn rows(metadata: &Metadata) -> Vec<(&'static str, String)> {
+    let [west, south, east, north] = metadata.bounds;
+    let ([x, y], (first, last)) = (metadata.center(), metadata.zooms);
+    let mut rows = vec![
+        ("name", metadata.name.clone()),
+        ("format", "pbf".to_owned()),
+        ("bounds", format!("{west},{south},{east},{north}")),
+        ("center", format!("{x},{y},{first}")),
+        ("minzoom", first.to_string()),
+        ("maxzoom", last.to_string()),
+        ("type", "overlay".to_owned()),
+        ("json", json!({ "vector_layers": metadata.vector_layers() }).to_string()),
+    ];
+    rows.extend(metadata.attribution.clone().map(|text| ("attribution", text)));
+    rows
+}

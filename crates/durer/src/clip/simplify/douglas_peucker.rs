@@ -1,0 +1,184 @@
+//! Douglas–Peucker: the farthest points first.
+//!
+//! David Douglas and Thomas Peucker, "Algorithms for the reduction of the number of points required to
+//! represent a digitized line or its caricature", Cartographica 10(2), 1973; the same was found by Urs Ramer,
+//! "An iterative procedure for the polygonal approximation of plane curves", Computer Graphics and Image
+//! Processing 1(3), 1972. Object space; O(n log n) for n points on usual lines, O(n²) at worst.
+//!
+//! The line from the first to the last point is divided at the point farthest from it, and so are the parts,
+//! as long as that point is farther away than the tolerance.
+//!
+//! Distances are those to the segment and not to the line through it, so that what turns back is kept. A point
+//! weighs no more than the one at which its part began: then one run serves all tolerances. Of several
+//! farthest points the first counts.
+
+use super::{check, or_infinite};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::trace::Tracer;
+
+/// The facts of Douglas–Peucker.
+pub const INFO: Info = Info {
+    name: "douglas-peucker",
+    title: "Douglas–Peucker",
+    authors: "Urs Ramer; David Douglas, Thomas Peucker",
+    year: 1973,
+    source: "Algorithms for the reduction of the number of points required to represent a digitized line \
+             or its caricature, Cartographica 10(2)",
+    class: Class::ObjectSpace,
+    cost: "O(n log n) for n points on usual lines, O(n²) at worst",
+    limits: "one line by itself may come to cross itself; a coverage keeps it from that",
+};
+
+/// How much is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// How far a point that is left out may lie from the line that stays, in units of the coordinates. The time
+    /// does not depend on it.
+    pub tolerance: f64,
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A point is kept: an end, or the farthest of its part.
+    Kept {
+        /// Its index.
+        point: usize,
+    },
+}
+
+/// Rebuilds the result from the steps.
+pub fn replay(steps: &[Step]) -> Vec<usize> {
+    let mut kept: Vec<usize> = steps.iter().map(|Step::Kept { point }| *point).collect();
+    kept.sort_unstable();
+    kept
+}
+
+/// The indices of the points of a line that are kept.
+///
+/// # Errors
+/// As [`super::LineSimplifier::simplify`].
+pub fn simplify(
+    points: &[DVec2],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<usize>> {
+    check(points, options.tolerance)?;
+    let mut kept = Vec::new();
+    let mut keep = |point: usize| {
+        t.step(|| Step::Kept { point });
+        kept.push(point);
+    };
+    if !points.is_empty() {
+        keep(0);
+    }
+    if points.len() > 1 {
+        keep(points.len() - 1);
+    }
+    divide(points, options.tolerance, |point, _| keep(point));
+    kept.sort_unstable();
+    Ok(kept)
+}
+
+/// The weight of every point of a line: see [`super`].
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
+pub fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
+    check(points, 0.0)?;
+    let mut weights = vec![0.0; points.len()];
+    for end in [weights.len().checked_sub(1), Some(0)].into_iter().flatten() {
+        if let Some(weight) = weights.get_mut(end) {
+            *weight = f64::INFINITY;
+        }
+    }
+    divide(points, 0.0, |point, weight| weights[point] = weight);
+    Ok(weights)
+}
+
+/// Divides a line as long as points are farther away than the tolerance; tells each of them and its weight.
+fn divide(points: &[DVec2], tolerance: f64, mut found: impl FnMut(usize, f64)) {
+    let mut open = vec![(0, points.len().saturating_sub(1), f64::INFINITY)];
+    while let Some((from, to, limit)) = open.pop() {
+        let Some((at, squared)) = farthest(points, from, to) else { continue };
+        let weight = squared.sqrt().min(limit);
+        if weight > tolerance {
+            found(at, weight);
+            open.extend([(from, at, weight), (at, to, weight)]);
+        }
+    }
+}
+
+/// The first of the points between two that are farthest from the segment between these, and its squared
+/// distance; `None` where no point is between them.
+fn farthest(points: &[DVec2], from: usize, to: usize) -> Option<(usize, f64)> {
+    let (&a, &b) = (points.get(from)?, points.get(to)?);
+    let between = points.get(from + 1..to)?;
+    let along = b - a;
+    let length = along.length_squared();
+    let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
+    let squared = |p: DVec2| {
+        let part = ((p - a).dot(along) * scale).clamp(0.0, 1.0);
+        or_infinite((a + along * part).distance_squared(p))
+    };
+    let mut best = None;
+    for (&p, at) in between.iter().zip(from + 1..) {
+        let distance = squared(p);
+        if best.is_none_or(|(_, most)| distance > most) {
+            best = Some((at, distance));
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{NoTrace, Recorder};
+    use proptest::prelude::*;
+
+    fn line(points: &[(f64, f64)]) -> Vec<DVec2> {
+        points.iter().copied().map(DVec2::from).collect()
+    }
+
+    #[test]
+    fn what_turns_back_is_kept() {
+        let spike = line(&[(0.0, 0.0), (5.0, 0.0), (-3.0, 0.0), (2.0, 0.0)]);
+        let options = Options { tolerance: 0.5 };
+        assert_eq!(simplify(&spike, &options, &mut NoTrace).unwrap(), [0, 1, 2, 3]);
+        let closed = line(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 0.0)]);
+        assert_eq!(simplify(&closed, &options, &mut NoTrace).unwrap(), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn distances_are_told() {
+        let bump = line(&[(0.0, 0.0), (1.0, 3.0), (2.0, 1.0), (4.0, 0.0)]);
+        let weights = weights(&bump).unwrap();
+        assert_eq!((weights[0], weights[1], weights[3]), (f64::INFINITY, 3.0, f64::INFINITY));
+        assert!((weights[2] - 2f64.sqrt().recip()).abs() < 1.0);
+    }
+
+    proptest! {
+        #[test]
+        fn weights_and_steps_tell_the_same(
+            points in prop::collection::vec((-9i32..9, -9i32..9), 0..40),
+            tolerance in 0..40u32,
+        ) {
+            let points: Vec<DVec2> = points.iter().map(|&(x, y)| DVec2::new(x.into(), y.into())).collect();
+            let tolerance = f64::from(tolerance) * 0.25;
+            let mut steps = Recorder::default();
+            let kept = simplify(&points, &Options { tolerance }, &mut steps).unwrap();
+            let heavy: Vec<usize> = weights(&points).unwrap().iter().enumerate()
+                .filter(|(_, w)| **w > tolerance).map(|(i, _)| i).collect();
+            prop_assert_eq!(&kept, &heavy);
+            prop_assert_eq!(&kept, &replay(steps.steps()));
+            // No point is farther from what stays than the tolerance.
+            for pair in kept.windows(2) {
+                let far = farthest(&points, pair[0], pair[1]);
+                prop_assert!(far.is_none_or(|(_, squared)| squared.sqrt() <= tolerance));
+            }
+        }
+    }
+}

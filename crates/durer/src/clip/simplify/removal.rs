@@ -1,0 +1,188 @@
+//! Leaves points out, one after the other, those that matter least first.
+
+use super::or_infinite;
+use crate::math::DVec2;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// No neighbour.
+pub const NONE: u32 = u32::MAX;
+
+/// The two neighbours of each point; those of points that stay are [`NONE`].
+#[derive(Debug, Clone, Default)]
+pub struct Links(pub Vec<[u32; 2]>);
+
+impl Links {
+    /// Those of one line, whose ends stay.
+    pub fn of_line(count: usize) -> Self {
+        let link = |i: usize| match (i.checked_sub(1), i + 1 < count) {
+            (Some(before), true) => [before as u32, i as u32 + 1],
+            _ => [NONE; 2],
+        };
+        Self((0..count).map(link).collect())
+    }
+
+    /// Whether a point may be left out.
+    pub fn is_free(&self, point: u32) -> bool {
+        self.of(point)[0] != NONE
+    }
+
+    /// The neighbours of a point.
+    pub fn of(&self, point: u32) -> [u32; 2] {
+        self.0.get(point as usize).copied().unwrap_or([NONE; 2])
+    }
+
+    /// Puts another neighbour in the place of one.
+    fn replace(&mut self, point: u32, old: u32, new: u32) {
+        if let Some(pair) = self.0.get_mut(point as usize) {
+            if let Some(link) = pair.iter_mut().find(|link| **link == old) {
+                *link = new;
+            }
+        }
+    }
+}
+
+/// How much a point matters, in units of the coordinates.
+#[derive(Debug, Clone)]
+pub enum Measure {
+    /// The side of a square as large as its triangle with its neighbours.
+    Area,
+    /// What is known of each beforehand.
+    Given(Vec<f64>),
+}
+
+impl Measure {
+    fn of(&self, places: &[DVec2], [a, c]: [u32; 2], b: u32) -> f64 {
+        match self {
+            Self::Given(weights) => weights.get(b as usize).copied().unwrap_or(f64::INFINITY),
+            Self::Area => {
+                let [a, b, c] =
+                    [a, b, c].map(|i| places.get(i as usize).copied().unwrap_or_default());
+                or_infinite(((b - a).perp_dot(c - a).abs() * 0.5).sqrt())
+            }
+        }
+    }
+}
+
+/// Why a point cannot be left out now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Obstacle {
+    /// This one lies where the line would jump over it.
+    Point(u32),
+    /// The edge that would come is there already.
+    Edge,
+}
+
+/// Says which points must not be left out.
+pub trait Guard {
+    /// What is in the way of an edge past point b.
+    fn obstacle(&mut self, places: &[DVec2], links: &Links, abc: [u32; 3]) -> Option<Obstacle>;
+    /// Takes note that the point in the middle is left out.
+    fn removed(&mut self, links: &Links, abc: [u32; 3]);
+}
+
+/// Every point may be left out.
+#[derive(Debug, Clone, Copy)]
+pub struct Free;
+
+impl Guard for Free {
+    fn obstacle(&mut self, _: &[DVec2], _: &Links, _: [u32; 3]) -> Option<Obstacle> {
+        None
+    }
+
+    fn removed(&mut self, _: &Links, _: [u32; 3]) {}
+}
+
+/// Everything that is needed.
+pub struct Removal<'a, G> {
+    pub places: &'a [DVec2],
+    pub links: Links,
+    pub measure: Measure,
+    /// Points that matter more stay.
+    pub limit: f64,
+    pub guard: G,
+}
+
+/// Points by how much they matter, then by index.
+#[derive(Default)]
+struct Queue {
+    heap: BinaryHeap<Reverse<(u64, u32)>>,
+    /// What each matters now; entries of the heap that say otherwise are out of date.
+    now: Vec<f64>,
+    /// Points that wait until another one is gone, by that one.
+    waiting: BTreeMap<u32, Vec<u32>>,
+}
+
+impl Queue {
+    fn push(&mut self, point: u32, measure: f64, limit: f64) {
+        // Of numbers that are not negative the bits are in their order.
+        let measure = measure.abs();
+        self.now[point as usize] = measure;
+        if measure <= limit {
+            self.heap.push(Reverse((measure.to_bits(), point)));
+        }
+    }
+
+    /// The next point and what it matters.
+    fn pop(&mut self) -> Option<(u32, f64)> {
+        loop {
+            let Reverse((bits, point)) = self.heap.pop()?;
+            if self.now[point as usize].to_bits() == bits {
+                return Some((point, f64::from_bits(bits)));
+            }
+        }
+    }
+}
+
+/// What a point matters that is gone.
+const GONE: f64 = -1.0;
+
+impl<G: Guard> Removal<'_, G> {
+    /// Leaves out what it can; `told` hears of each point and its weight. Gives the weights, infinite for points
+    /// that stay.
+    pub fn run(mut self, mut told: impl FnMut(usize, f64)) -> Vec<f64> {
+        let count = self.places.len();
+        let mut weights = vec![f64::INFINITY; count];
+        let mut queue = Queue { now: vec![f64::INFINITY; count], ..Queue::default() };
+        for point in 0..count as u32 {
+            self.queue(&mut queue, point);
+        }
+        // A triangle counts as no smaller than one taken before it.
+        let mut least = 0.0f64;
+        while let Some((b, measure)) = queue.pop() {
+            let [a, c] = self.links.of(b);
+            match self.guard.obstacle(self.places, &self.links, [a, b, c]) {
+                Some(Obstacle::Point(other)) => queue.waiting.entry(other).or_default().push(b),
+                // One of the neighbours has to change before.
+                Some(Obstacle::Edge) => {}
+                None => {
+                    least = least.max(measure);
+                    weights[b as usize] = least;
+                    told(b as usize, least);
+                    self.unlink(&mut queue, [a, b, c]);
+                }
+            }
+        }
+        weights
+    }
+
+    fn unlink(&mut self, queue: &mut Queue, [a, b, c]: [u32; 3]) {
+        queue.now[b as usize] = GONE;
+        self.links.replace(a, b, c);
+        self.links.replace(c, b, a);
+        self.guard.removed(&self.links, [a, b, c]);
+        let waiting = queue.waiting.remove(&b).unwrap_or_default();
+        for point in [a, c].into_iter().chain(waiting) {
+            if queue.now.get(point as usize).is_some_and(|now| *now != GONE) {
+                self.queue(queue, point);
+            }
+        }
+    }
+
+    fn queue(&self, queue: &mut Queue, point: u32) {
+        if self.links.is_free(point) {
+            let measure = self.measure.of(self.places, self.links.of(point), point);
+            queue.push(point, measure, self.limit);
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Visvalingam–Whyatt: the smallest triangles first.
+//!
+//! Maheswari Visvalingam and James Whyatt, "Line generalisation by repeated elimination of points", The
+//! Cartographic Journal 30(1), 1993. Object space; O(n log n) for n points.
+//!
+//! Each inner point makes a triangle with the two points beside it. The point of the smallest triangle is left
+//! out, the triangles beside it change, and so on.
+//!
+//! A triangle counts as no smaller than one that was taken before it, so that one run serves all tolerances.
+//! The tolerance is a length, the side of a square as large as the triangle, to be comparable with
+//! [Douglas–Peucker](super::douglas_peucker). Of triangles of the same size the first goes first.
+
+use super::check;
+use super::removal::{Free, Links, Measure, Removal};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::trace::{NoTrace, Tracer};
+
+/// The facts of Visvalingam–Whyatt.
+pub const INFO: Info = Info {
+    name: "visvalingam",
+    title: "Visvalingam–Whyatt",
+    authors: "Maheswari Visvalingam, James Whyatt",
+    year: 1993,
+    source: "Line generalisation by repeated elimination of points, The Cartographic Journal 30(1)",
+    class: Class::ObjectSpace,
+    cost: "O(n log n) for n points",
+    limits: "one line by itself may come to cross itself; a coverage keeps it from that",
+};
+
+/// How much is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// The side of a square as large as the largest triangle that is left out, in units of the coordinates. The
+    /// time falls as it gets smaller.
+    pub tolerance: f64,
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The line has so many points.
+    Begin {
+        /// How many.
+        points: usize,
+    },
+    /// A point is left out.
+    Removed {
+        /// Its index.
+        point: usize,
+        /// The side of a square as large as its triangle.
+        side: f64,
+    },
+}
+
+/// Rebuilds the result from the steps.
+pub fn replay(steps: &[Step]) -> Vec<usize> {
+    let mut kept = Vec::new();
+    for step in steps {
+        match *step {
+            Step::Begin { points } => kept = (0..points).collect(),
+            Step::Removed { point, .. } => kept.retain(|&other| other != point),
+        }
+    }
+    kept
+}
+
+/// The indices of the points of a line that are kept.
+///
+/// # Errors
+/// As [`super::LineSimplifier::simplify`].
+pub fn simplify(
+    points: &[DVec2],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<usize>> {
+    check(points, options.tolerance)?;
+    t.step(|| Step::Begin { points: points.len() });
+    let weights = run(points, options.tolerance, t);
+    Ok((0..points.len()).filter(|&i| weights[i].is_infinite()).collect())
+}
+
+/// The weight of every point of a line: see [`super`].
+///
+/// # Errors
+/// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
+pub fn weights(points: &[DVec2]) -> Result<Vec<f64>> {
+    check(points, 0.0)?;
+    Ok(run(points, f64::INFINITY, &mut NoTrace))
+}
+
+/// The weights of points up to a limit, infinite above it.
+fn run(points: &[DVec2], limit: f64, t: &mut impl Tracer<Step>) -> Vec<f64> {
+    let links = Links::of_line(points.len());
+    let removal = Removal { places: points, links, measure: Measure::Area, limit, guard: Free };
+    removal.run(|point, side| t.step(|| Step::Removed { point, side }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::Recorder;
+    use proptest::prelude::*;
+
+    /// By looking at all triangles again and again.
+    fn slow(points: &[DVec2], tolerance: f64) -> Vec<usize> {
+        let mut kept: Vec<usize> = (0..points.len()).collect();
+        loop {
+            let side = |k: &usize| {
+                let [a, b, c] = [kept[k - 1], kept[*k], kept[k + 1]].map(|i| points[i]);
+                ((b - a).perp_dot(c - a).abs() * 0.5).sqrt()
+            };
+            let all = 1..kept.len().saturating_sub(1).max(1);
+            let Some(least) = all.min_by(|i, j| side(i).total_cmp(&side(j))) else { return kept };
+            if side(&least) > tolerance {
+                return kept;
+            }
+            kept.remove(least);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_smallest_triangles_go_first(
+            points in prop::collection::vec((-9i32..9, -9i32..9), 0..30),
+            tolerance in 0..20u32,
+        ) {
+            let points: Vec<DVec2> = points.iter().map(|&(x, y)| DVec2::new(x.into(), y.into())).collect();
+            let tolerance = f64::from(tolerance) * 0.5;
+            let mut steps = Recorder::default();
+            let kept = simplify(&points, &Options { tolerance }, &mut steps).unwrap();
+            prop_assert_eq!(&kept, &slow(&points, tolerance));
+            prop_assert_eq!(&kept, &replay(steps.steps()));
+            let heavy: Vec<usize> = weights(&points).unwrap().iter().enumerate()
+                .filter(|(_, w)| **w > tolerance).map(|(i, _)| i).collect();
+            prop_assert_eq!(&kept, &heavy);
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Tiles of web maps: the square of Web Mercator, halved on both axes per zoom level; tile 0/0/0 is
+//! the world, x counts to the east, y to the south.
+//!
+//! [`walk()`] goes down from the world to the tiles of one level and cuts what lies in them on the way;
+//! [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole numbers, for many levels.
+
+pub mod mercator;
+mod piece;
+mod pyramid;
+mod walk;
+
+pub use piece::{Body, Shape};
+pub use pyramid::{Feature, Options, Piece, Pyramid, WORLDS};
+pub use walk::{Content, count, walk};
+
+use super::hilbert;
+
+/// A tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Tile {
+    /// The zoom level: there are 2^zoom tiles on each axis. At most [`Tile::MAX_ZOOM`].
+    pub zoom: u8,
+    /// Counts to the east.
+    pub x: u32,
+    /// Counts to the south.
+    pub y: u32,
+}
+
+impl std::fmt::Display for Tile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}/{}", self.zoom, self.x, self.y)
+    }
+}
+
+impl Tile {
+    /// The one that has everything.
+    pub const WORLD: Self = Self { zoom: 0, x: 0, y: 0 };
+
+    /// The finest level: with a grid of 2^14 in each tile, places are still whole numbers of 38 bits.
+    pub const MAX_ZOOM: u8 = 24;
+
+    /// The four tiles that it consists of, in the order of Hilbert's curve.
+    ///
+    /// ```
+    /// use durer::clip::tiles::Tile;
+    /// let ids = Tile::WORLD.children().map(Tile::id);
+    /// assert_eq!(ids, [1, 2, 3, 4]);
+    /// ```
+    pub fn children(self) -> [Self; 4] {
+        let (zoom, x, y) = (self.zoom + 1, 2 * self.x, 2 * self.y);
+        let mut children =
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| Self { zoom, x: x + i, y: y + j });
+        children.sort_unstable_by_key(|child| child.id());
+        children
+    }
+
+    /// Its number over all levels, coarse ones first, each along Hilbert's curve: the one of PMTiles 3.
+    pub fn id(self) -> u64 {
+        let before = ((1u64 << (2 * u32::from(self.zoom))) - 1) / 3;
+        before + hilbert::index(self.zoom, self.x, self.y)
+    }
+
+    /// How many tiles of a level it consists of; 1 where that is not a finer one.
+    pub fn count_at(self, zoom: u8) -> u64 {
+        1 << (2 * u32::from(zoom.saturating_sub(self.zoom)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_those_of_pmtiles() {
+        let id = |zoom, x, y| Tile { zoom, x, y }.id();
+        assert_eq!(
+            [id(0, 0, 0), id(1, 0, 0), id(1, 0, 1), id(1, 1, 1), id(1, 1, 0)],
+            [0, 1, 2, 3, 4]
+        );
+        assert_eq!([id(2, 0, 0), id(2, 3, 0), id(20, 0, 0)], [5, 20, 366_503_875_925]);
+        // From the tests of PMTiles' own library.
+        assert_eq!(id(12, 3423, 1763), 19_078_479);
+    }
+
+    #[test]
+    fn children_are_next_to_each_other_on_the_curve() {
+        let tile = Tile { zoom: 5, x: 19, y: 7 };
+        let ids = tile.children().map(Tile::id);
+        assert!(ids.windows(2).all(|pair| pair[1] == pair[0] + 1), "{ids:?}");
+        assert_eq!((tile.count_at(7), tile.count_at(3)), (16, 1));
+    }
+}

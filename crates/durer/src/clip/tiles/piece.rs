@@ -1,0 +1,157 @@
+//! Geometry in the tiles' plane, and on the tiles' grid.
+
+use crate::Result;
+use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay, rectangle};
+use crate::math::{DVec2, I64Vec2, Rect};
+use crate::trace::NoTrace;
+
+/// Points, lines or areas.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Body {
+    /// Points.
+    Points(Vec<DVec2>),
+    /// Lines in one flat buffer.
+    Lines {
+        /// All points, line after line.
+        points: Vec<DVec2>,
+        /// Where each line ends among them.
+        ends: Vec<usize>,
+    },
+    /// Polygons.
+    Areas(Shapes),
+}
+
+/// Points, lines or areas on a grid of whole numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Points.
+    Points(Vec<I64Vec2>),
+    /// Lines of two points at least, none of which is repeated on the spot.
+    Lines(Vec<Vec<I64Vec2>>),
+    /// Valid polygons.
+    Areas(Shapes<I64Vec2>),
+}
+
+impl Body {
+    /// All points.
+    pub fn points(&self) -> &[DVec2] {
+        match self {
+            Self::Points(points) | Self::Lines { points, .. } => points,
+            Self::Areas(shapes) => shapes.points(),
+        }
+    }
+
+    /// All points, to be moved in place.
+    pub fn points_mut(&mut self) -> &mut [DVec2] {
+        match self {
+            Self::Points(points) | Self::Lines { points, .. } => points,
+            Self::Areas(shapes) => shapes.points_mut(),
+        }
+    }
+
+    /// The part in a closed window; of areas only what has an area. Areas must be valid.
+    ///
+    /// # Errors
+    /// [`crate::Error::NonFinite`] names the first point with a NaN or infinite coordinate.
+    pub fn clip(&self, window: &Rect) -> Result<Option<Self>> {
+        let part = match self {
+            Self::Points(points) => {
+                Self::Points(points.iter().copied().filter(|p| window.contains(*p)).collect())
+            }
+            Self::Lines { points, ends } => {
+                let cut = rectangle::clip_lines(window, points, ends, false)?;
+                Self::Lines { points: cut.points, ends: cut.ends }
+            }
+            Self::Areas(shapes) => {
+                Self::Areas(rectangle::clip(window, shapes, &rectangle::Options, &mut NoTrace)?)
+            }
+        };
+        Ok((!part.points().is_empty()).then_some(part))
+    }
+
+    /// The same on the grid, with `origin` as its zero: every place goes to the nearest whole numbers, halves up. Lines that
+    /// become points are left out, and so is what has no area any more. Areas are made valid.
+    ///
+    /// # Errors
+    /// As [`overlay()`].
+    pub fn snapped(&self, origin: I64Vec2, fill: FillRule) -> Result<Shape> {
+        let snap = |p: DVec2| I64Vec2::new(nearest(p.x, origin.x), nearest(p.y, origin.y));
+        Ok(match self {
+            Self::Points(points) => Shape::Points(points.iter().copied().map(snap).collect()),
+            Self::Lines { points, ends } => {
+                let mut start = 0;
+                let line = |&end: &usize| {
+                    let line = points.get(start..end).unwrap_or_default();
+                    start = end;
+                    let mut line: Vec<I64Vec2> = line.iter().copied().map(snap).collect();
+                    line.dedup();
+                    (line.len() > 1).then_some(line)
+                };
+                Shape::Lines(ends.iter().filter_map(line).collect())
+            }
+            Self::Areas(shapes) => Shape::Areas(valid(shapes, snap, fill)?),
+        })
+    }
+}
+
+impl Shape {
+    /// Whether there is nothing of it.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Points(points) => points.is_empty(),
+            Self::Lines(lines) => lines.is_empty(),
+            Self::Areas(shapes) => shapes.is_empty(),
+        }
+    }
+
+    /// The same with coordinates of f64.
+    pub fn to_body(&self) -> Body {
+        let float = |p: &I64Vec2| p.as_dvec2();
+        match self {
+            Self::Points(points) => Body::Points(points.iter().map(float).collect()),
+            Self::Lines(lines) => {
+                let (mut points, mut ends) = (Vec::new(), Vec::new());
+                for line in lines {
+                    points.extend(line.iter().map(float));
+                    ends.push(points.len());
+                }
+                Body::Lines { points, ends }
+            }
+            Self::Areas(shapes) => {
+                let mut areas = Shapes::new();
+                for polygon in shapes.polygons() {
+                    polygon.rings().for_each(|ring| areas.push_ring(ring.iter().map(float)));
+                    areas.end_polygon();
+                }
+                Body::Areas(areas)
+            }
+        }
+    }
+}
+
+/// The nearest whole number, halves up, so that the grid of one tile is that of all; less `origin`.
+fn nearest(value: f64, origin: i64) -> i64 {
+    ((value + 0.5).floor() as i64).saturating_sub(origin)
+}
+
+/// The polygons on the grid, made valid.
+fn valid(
+    shapes: &Shapes,
+    snap: impl Fn(DVec2) -> I64Vec2,
+    fill: FillRule,
+) -> Result<Shapes<I64Vec2>> {
+    let mut snapped: Shapes<I64Vec2> = Shapes::new();
+    for ring in shapes.rings() {
+        let mut ring: Vec<I64Vec2> = ring.iter().copied().map(&snap).collect();
+        ring.dedup();
+        while ring.len() > 1 && ring.first() == ring.last() {
+            ring.pop();
+        }
+        if ring.len() > 2 {
+            snapped.push_ring(ring);
+        }
+    }
+    snapped.end_polygon();
+    let (none, options) = (Shapes::new(), overlay::Options::with_rule(fill));
+    Ok(overlay(&snapped, &none, BooleanOp::Union, &options, &mut NoTrace)?.shapes)
+}

@@ -1,0 +1,478 @@
+//! Features as vector tiles have them: simplified, on a grid of whole numbers, cut at the tiles' borders.
+//!
+//! All of a layer is simplified together, so that what neighbours share stays shared
+//! ([`crate::clip::simplify::coverage`]); once for all levels. The grid of a level is the same in all tiles, so
+//! that features are put on it, and made valid there, before they are cut, and meet across borders. Where a
+//! cut makes new points, those are put on the grid too, and the part is made valid again.
+//!
+//! What lies beyond the world, or reaches beyond it by its buffer, comes from the other side as well.
+
+use super::Tile;
+use super::piece::{Body, Shape};
+use super::walk::{Content, count as count_tiles, walk};
+use crate::clip::polygon::{FillRule, Polygon, Shapes, signed_area};
+use crate::clip::simplify::coverage::Options as Simplify;
+use crate::clip::simplify::{Coverage, LineSimplifier};
+use crate::math::{DVec2, I64Vec2, Rect};
+use crate::trace::NoTrace;
+use crate::{Error, Result, parallel};
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+/// A feature in the square of [`super::mercator`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Feature {
+    /// Features of one layer are simplified together.
+    pub layer: usize,
+    /// Its geometry, within [`WORLDS`].
+    pub body: Body,
+    /// Which points its areas enclose.
+    pub fill: FillRule,
+}
+
+/// So far from the square, in its sides, features may reach.
+pub const WORLDS: f64 = 4.0;
+
+/// What the tiles are like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The levels, within 0 … [`Tile::MAX_ZOOM`].
+    pub zooms: RangeInclusive<u8>,
+    /// The side of a tile in cells of its grid; 1 to 8192.
+    pub extent: u32,
+    /// How far features go on beyond the borders, in cells; less than `extent`.
+    pub buffer: u32,
+    /// Which points are left out.
+    pub method: LineSimplifier,
+    /// How far lines may move on levels before the last, in cells: 3 of 4096 is three eighths of a pixel where tiles
+    /// have 512. 0 leaves out only what is straight. The last level has all points.
+    pub tolerance: f64,
+    /// Polygons smaller than a square of this side, in cells, are left out; whenever those near to each other
+    /// are together as large, such a square stands for them. 0 leaves all in.
+    pub tiny: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let method = LineSimplifier::Visvalingam;
+        Self { zooms: 0..=14, extent: 4096, buffer: 64, method, tolerance: 3.0, tiny: 4.0 }
+    }
+}
+
+/// A part of a feature in a tile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// The index of the feature.
+    pub feature: usize,
+    /// On the grid of the tile: (0, 0) is its upper left corner, y counts downwards. Outer rings have positive signed
+    /// areas in these coordinates, holes negative ones.
+    pub shape: Shape,
+}
+
+/// Features made ready for all levels.
+#[derive(Debug)]
+pub struct Pyramid {
+    features: Vec<Ready>,
+    options: Options,
+}
+
+#[derive(Debug)]
+struct Ready {
+    body: Body,
+    fill: FillRule,
+    bounds: Rect,
+    /// The first level that has each point; empty for points.
+    levels: Vec<u8>,
+    /// The area of each polygon.
+    areas: Vec<f64>,
+    /// How many polygons the features before have.
+    polygons_before: usize,
+}
+
+impl Pyramid {
+    /// Makes features ready: finds out which points each level has. Those without a point are in no tile.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] and [`Error::Parameter`] for places beyond [`WORLDS`] and for options outside of their domains;
+    /// [`Error::Limit`] for 2³² points of one layer and more.
+    pub fn new(features: Vec<Feature>, options: Options) -> Result<Self> {
+        check(&options)?;
+        let layers = features.iter().map(|f| f.layer + 1).max().unwrap_or(0);
+        let mut levels: Vec<Vec<u8>> = vec![Vec::new(); features.len()];
+        let found =
+            parallel::map((0..layers).collect(), |layer| layer_levels(&features, layer, &options));
+        for (feature, of_feature) in
+            found.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten()
+        {
+            levels[feature] = of_feature;
+        }
+        let mut polygons_before = 0;
+        let ready = |(feature, levels): (Feature, Vec<u8>)| {
+            let ready = Ready::new(feature, levels, polygons_before)?;
+            polygons_before += ready.areas.len();
+            Ok(ready)
+        };
+        let features = features.into_iter().zip(levels).map(ready).collect::<Result<_>>()?;
+        Ok(Self { features, options })
+    }
+
+    /// Visits the tiles of a level that something lies in, in the order of their numbers; the pieces are in the
+    /// order of the features. See [`walk()`](super::walk()).
+    ///
+    /// # Errors
+    /// Of the overlay, and what `take` says.
+    pub fn visit<R: Send, E: From<Error>>(
+        &self,
+        zoom: u8,
+        make: impl Fn(Tile, Vec<Piece>) -> R + Sync + Send,
+        mut take: impl FnMut(Tile, R) -> std::result::Result<(), E>,
+    ) -> std::result::Result<(), E> {
+        let level = Level::new(self, zoom);
+        let finish = |tile: Tile, parts: Vec<Part<'_>>| {
+            let pieces = parts.into_iter().filter_map(|part| part.finished(tile).transpose());
+            let pieces = pieces.collect::<Result<Vec<_>>>()?;
+            Ok((!pieces.is_empty()).then(|| make(tile, pieces)))
+        };
+        walk(&level.contents(), zoom, finish, |tile, made: Result<Option<R>>| match made? {
+            Some(made) => take(tile, made),
+            None => Ok(()),
+        })
+    }
+
+    /// How many tiles there are on all levels, at least: counted up to a limit. See [`count()`](super::count()).
+    ///
+    /// # Errors
+    /// Of the overlay.
+    pub fn count(&self, limit: u64) -> Result<u64> {
+        let zooms = || self.options.zooms.clone();
+        let levels = zooms().map(|zoom| Level::new(self, zoom).count_of_boxes());
+        let boxes = levels.fold(0u64, u64::saturating_add);
+        if boxes <= limit {
+            return Ok(boxes);
+        }
+        let mut count = 0u64;
+        // The last level has the most of them.
+        for zoom in zooms().rev() {
+            let level = Level::new(self, zoom);
+            let left = limit.saturating_sub(count);
+            count = count.saturating_add(count_tiles(&level.contents(), zoom, left)?);
+            if count > limit {
+                break;
+            }
+        }
+        Ok(count)
+    }
+}
+
+fn check(options: &Options) -> Result<()> {
+    if options.zooms.is_empty() || *options.zooms.end() > Tile::MAX_ZOOM {
+        let (a, b) = (options.zooms.start(), options.zooms.end());
+        let value = format!("{a}-{b}");
+        return Err(Error::parameter(
+            "zoom",
+            value,
+            "a range within 0 to 24, the smaller one first",
+        ));
+    }
+    if !(1..=8192).contains(&options.extent) {
+        return Err(Error::parameter("extent", options.extent, "1 to 8192"));
+    }
+    if options.buffer >= options.extent {
+        return Err(Error::parameter("buffer", options.buffer, "less than the extent"));
+    }
+    for (name, value) in [("tolerance", options.tolerance), ("tiny", options.tiny)] {
+        if !(0.0..=8192.0).contains(&value) {
+            return Err(Error::parameter(name, value, "0 to 8192"));
+        }
+    }
+    Ok(())
+}
+
+/// The first level that has each point, of the lines and areas of a layer.
+fn layer_levels(
+    features: &[Feature],
+    layer: usize,
+    options: &Options,
+) -> Result<Vec<(usize, Vec<u8>)>> {
+    let mut coverage = Coverage::default();
+    let own = || features.iter().enumerate().filter(|(_, f)| f.layer == layer);
+    for (_, feature) in own() {
+        match &feature.body {
+            Body::Points(_) => {}
+            Body::Lines { points, ends } => runs(ends).for_each(|run| {
+                coverage.push_line(points.get(run).unwrap_or_default().iter().copied());
+            }),
+            Body::Areas(shapes) => {
+                shapes.rings().for_each(|ring| coverage.push_ring(ring.iter().copied()));
+            }
+        }
+    }
+    let (first, last) = (*options.zooms.start(), *options.zooms.end());
+    let tolerance = |zoom: u8| options.tolerance / cells(options, zoom);
+    let limit = if first < last { tolerance(first) } else { 0.0 };
+    let simplify = Simplify { method: options.method, limit };
+    let mut weights = coverage.weights(&simplify, &mut NoTrace)?.into_iter();
+    let level = |weight: f64| (first..last).find(|&zoom| weight > tolerance(zoom)).unwrap_or(last);
+    let levels = own()
+        .filter(|(_, f)| !matches!(f.body, Body::Points(_)))
+        .map(|(i, f)| (i, weights.by_ref().take(f.body.points().len()).map(level).collect()));
+    Ok(levels.collect())
+}
+
+/// The side of the world in cells.
+fn cells(options: &Options, zoom: u8) -> f64 {
+    f64::from(options.extent) * f64::from(1u32 << zoom)
+}
+
+/// The ranges between ends.
+fn runs(ends: &[usize]) -> impl Iterator<Item = std::ops::Range<usize>> {
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    starts.zip(ends.iter().copied()).map(|(start, end)| start..end)
+}
+
+impl Ready {
+    fn new(feature: Feature, levels: Vec<u8>, polygons_before: usize) -> Result<Self> {
+        let Feature { body, fill, .. } = feature;
+        let points = body.points();
+        if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+            return Err(Error::NonFinite { what: "point", index });
+        }
+        let bounds = Rect::around(points.iter().copied());
+        let bounds = bounds.map_or_else(|| Rect::new(DVec2::ZERO, DVec2::ZERO), Ok)?;
+        let far = bounds.min().cmplt(DVec2::splat(-WORLDS))
+            | bounds.max().cmpgt(DVec2::splat(1.0 + WORLDS));
+        if far.any() {
+            return Err(Error::parameter("place", bounds.max(), "within four worlds of the first"));
+        }
+        let areas = match &body {
+            Body::Areas(shapes) => shapes.polygons().map(area).collect(),
+            _ => Vec::new(),
+        };
+        Ok(Self { body, fill, bounds, levels, areas, polygons_before })
+    }
+}
+
+/// The area of a polygon, whichever way its rings run.
+fn area(polygon: Polygon<'_>) -> f64 {
+    let holes: f64 = polygon.holes().map(|hole| signed_area(hole).abs()).sum();
+    (signed_area(polygon.outer()).abs() - holes).max(0.0)
+}
+
+/// All features on one level.
+struct Level<'a> {
+    pyramid: &'a Pyramid,
+    zoom: u8,
+    /// The side of the world in cells.
+    cells: f64,
+    /// Of each polygon whether a square stands for it, if it is tiny.
+    squares: Vec<bool>,
+}
+
+impl<'a> Level<'a> {
+    fn new(pyramid: &'a Pyramid, zoom: u8) -> Self {
+        let cells = cells(&pyramid.options, zoom);
+        let level = Self { pyramid, zoom, cells, squares: Vec::new() };
+        Self { squares: level.squares(), ..level }
+    }
+
+    fn is_tiny(&self, area: f64) -> bool {
+        let side = self.pyramid.options.tiny / self.cells;
+        area < side * side
+    }
+
+    /// Which of the tiny polygons a square stands for: the one that fills it.
+    fn squares(&self) -> Vec<bool> {
+        /// Polygons in one square of so many times the side count together.
+        const NEAR: f64 = 8.0;
+        let side = self.pyramid.options.tiny / self.cells;
+        let (mut squares, mut sums) = (Vec::new(), BTreeMap::<[i64; 2], f64>::new());
+        for feature in &self.pyramid.features {
+            let Body::Areas(shapes) = &feature.body else { continue };
+            for (polygon, &area) in shapes.polygons().zip(&feature.areas) {
+                let mut full = false;
+                if self.is_tiny(area) {
+                    let at = polygon.outer().first().copied().unwrap_or_default() / (side * NEAR);
+                    let sum = sums.entry([at.x.floor() as i64, at.y.floor() as i64]).or_default();
+                    *sum += area;
+                    full = *sum >= side * side;
+                    *sum -= if full { side * side } else { 0.0 };
+                }
+                squares.push(full);
+            }
+        }
+        squares
+    }
+
+    /// All features, in all worlds from which they are seen in the first.
+    fn contents(&'a self) -> Vec<Part<'a>> {
+        let reach = f64::from(self.pyramid.options.buffer) / self.cells + self.margin();
+        let mut contents = Vec::new();
+        for (i, feature) in self.pyramid.features.iter().enumerate() {
+            if feature.body.points().is_empty() {
+                continue;
+            }
+            let first = (-reach - feature.bounds.max().x).ceil() as i64;
+            let last = (1.0 + reach - feature.bounds.min().x).floor() as i64;
+            contents.extend((first..=last).rev().map(|shift| Part {
+                level: self,
+                feature: i,
+                shift: shift as f64,
+                cut: None,
+            }));
+        }
+        contents
+    }
+
+    /// How far a feature's points on the grid may lie beyond its bounds.
+    fn margin(&self) -> f64 {
+        (self.pyramid.options.tiny + 1.0) / self.cells
+    }
+
+    /// What features of a tile are cut at, in cells.
+    fn window(&self, tile: Tile) -> Result<Rect> {
+        let buffer = DVec2::splat(self.pyramid.options.buffer.into());
+        let side = self.cells / f64::from(1u32 << tile.zoom);
+        let corner = DVec2::new(tile.x.into(), tile.y.into()) * side;
+        Rect::new(corner - buffer, corner + DVec2::splat(side) + buffer)
+    }
+
+    /// No fewer tiles than there are: those that the boxes around the features meet.
+    fn count_of_boxes(&self) -> u64 {
+        let side = self.cells / f64::from(1u32 << self.zoom);
+        let last = f64::from((1u32 << self.zoom) - 1);
+        let reach = f64::from(self.pyramid.options.buffer);
+        let mut count = 0u64;
+        for part in self.contents() {
+            let around = part.around();
+            let first = ((around.min() - reach) / side).floor().max(DVec2::ZERO);
+            let end = ((around.max() + reach) / side).floor().min(DVec2::splat(last));
+            let tiles = (end - first + 1.0).max(DVec2::ZERO);
+            count = count.saturating_add((tiles.x * tiles.y) as u64);
+        }
+        count
+    }
+}
+
+/// A feature, or a part of it that lies in a tile.
+struct Part<'a> {
+    level: &'a Level<'a>,
+    feature: usize,
+    /// By how many worlds it is moved to the east.
+    shift: f64,
+    /// In cells; `None` as long as nothing is cut away.
+    cut: Option<Body>,
+}
+
+impl Part<'_> {
+    fn ready(&self) -> &Ready {
+        &self.level.pyramid.features[self.feature]
+    }
+
+    /// A box around the whole feature, in cells.
+    fn around(&self) -> Rect {
+        let Ready { bounds, .. } = self.ready();
+        let (margin, shift) = (DVec2::splat(self.level.margin()), DVec2::new(self.shift, 0.0));
+        let corners = [bounds.min() + shift - margin, bounds.max() + shift + margin];
+        Rect::around(corners.map(|p| p * self.level.cells)).unwrap_or(*bounds)
+    }
+
+    /// The whole feature on the grid, with `origin` as its zero.
+    fn on_grid(&self, origin: I64Vec2) -> Result<Shape> {
+        let ready = self.ready();
+        let place = |p: DVec2| DVec2::new(p.x + self.shift, p.y) * self.level.cells;
+        let kept = |run: std::ops::Range<usize>| {
+            let levels = ready.levels.get(run.clone()).unwrap_or_default();
+            let points = ready.body.points().get(run).unwrap_or_default();
+            let here = points.iter().zip(levels).filter(|(_, level)| **level <= self.level.zoom);
+            here.map(|(&p, _)| place(p))
+        };
+        let body = match &ready.body {
+            Body::Points(points) => Body::Points(points.iter().copied().map(place).collect()),
+            Body::Lines { ends, .. } => {
+                let (mut points, mut new_ends) = (Vec::new(), Vec::new());
+                for run in runs(ends) {
+                    points.extend(kept(run));
+                    new_ends.push(points.len());
+                }
+                Body::Lines { points, ends: new_ends }
+            }
+            Body::Areas(shapes) => {
+                let mut areas = Shapes::new();
+                for (i, polygon) in shapes.polygons().enumerate() {
+                    if !self.level.is_tiny(ready.areas[i]) {
+                        let rings = polygon.ring_indices();
+                        rings.for_each(|ring| areas.push_ring(kept(shapes.ring_range(ring))));
+                    } else if self.level.squares.get(ready.polygons_before + i) == Some(&true) {
+                        let at = polygon.outer().first().copied().unwrap_or_default();
+                        areas.push_ring(self.square(place(at)));
+                    }
+                    areas.end_polygon();
+                }
+                Body::Areas(areas)
+            }
+        };
+        body.snapped(origin, ready.fill)
+    }
+
+    /// What stands for tiny polygons.
+    fn square(&self, around: DVec2) -> [DVec2; 4] {
+        let half = (self.level.pyramid.options.tiny * 0.5).max(0.5);
+        [(-half, -half), (half, -half), (half, half), (-half, half)]
+            .map(|(x, y)| around + DVec2::new(x, y))
+    }
+
+    /// What becomes of it in its tile.
+    fn finished(self, tile: Tile) -> Result<Option<Piece>> {
+        let side = i64::from(self.level.pyramid.options.extent);
+        let origin = I64Vec2::new(tile.x.into(), tile.y.into()) * side;
+        let shape = match &self.cut {
+            Some(cut) => cut.snapped(origin, FillRule::EvenOdd)?,
+            None => self.on_grid(origin)?,
+        };
+        Ok((!shape.is_empty()).then_some(Piece { feature: self.feature, shape }))
+    }
+}
+
+impl Content for Part<'_> {
+    fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>> {
+        let part = |cut: Option<Body>| Self { cut, ..*self };
+        if let Some(body) = &self.cut {
+            let cut = |&tile: &Tile| {
+                Ok(body.clip(&self.level.window(tile)?)?.map(|body| part(Some(body))))
+            };
+            return tiles.iter().map(cut).collect();
+        }
+        let around = self.around();
+        let mut body: Option<Body> = None;
+        let mut parts = Vec::with_capacity(tiles.len());
+        for &tile in tiles {
+            let window = self.level.window(tile)?;
+            parts.push(if !window.overlaps(&around) {
+                None
+            } else if window.contains(around.min()) && window.contains(around.max()) {
+                Some(part(None))
+            } else {
+                let whole = match body.take() {
+                    Some(body) => body,
+                    None => self.on_grid(I64Vec2::ZERO)?.to_body(),
+                };
+                let cut = whole.clip(&window)?;
+                body = Some(whole);
+                cut.map(|cut| part(Some(cut)))
+            });
+        }
+        Ok(parts)
+    }
+
+    fn size(&self) -> usize {
+        self.cut.as_ref().unwrap_or(&self.ready().body).points().len()
+    }
+
+    fn covers(&self, tile: Tile) -> bool {
+        let (Some(Body::Areas(shapes)), Ok(window)) = (&self.cut, self.level.window(tile)) else {
+            return false;
+        };
+        let corner = |p: &DVec2| p.cmpeq(window.min()) | p.cmpeq(window.max());
+        shapes.points().len() == 4 && shapes.points().iter().all(|p| corner(p).all())
+    }
+}

@@ -1,0 +1,129 @@
+//! From the world down to the tiles of one level.
+
+use super::Tile;
+use crate::Result;
+use crate::parallel;
+
+/// Something that lies in tiles, or a part of it.
+pub trait Content: Send + Sync + Sized {
+    /// The parts in some tiles, which lie in the tile where this part comes from; `None` where nothing is.
+    ///
+    /// # Errors
+    /// Whatever goes wrong.
+    fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>>;
+
+    /// How much there is to do, in positions.
+    fn size(&self) -> usize;
+
+    /// Whether it covers a tile wholly, so that it lies in all tiles of this one.
+    fn covers(&self, tile: Tile) -> bool;
+}
+
+/// Subtrees of so many levels are worked on at once by one thread, if they have no more than …
+const LEVELS: u8 = 2;
+
+/// … so many positions.
+const SIZE: usize = 1 << 16;
+
+/// Results of so many subtrees are held at once.
+const JOBS: usize = 32;
+
+type Open<C> = Vec<(Tile, Vec<C>)>;
+
+/// Visits the tiles of a level that something lies in, in the order of Hilbert's curve: `make` makes something
+/// of a tile's contents, on any thread, and `take` takes it, one after the other.
+///
+/// The contents are in the order in which they were given. Parts are cut from the parts in the tiles of the level
+/// above, so that the time grows with the contents and not with the number of tiles. Held at a time is what is in the
+/// tiles on the way down to one.
+///
+/// # Errors
+/// The first error of [`Content::within`], and what `take` says.
+pub fn walk<C: Content, R: Send, E: From<crate::Error>>(
+    contents: &[C],
+    zoom: u8,
+    make: impl Fn(Tile, Vec<C>) -> R + Sync + Send,
+    mut take: impl FnMut(Tile, R) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E> {
+    let mut open: Open<C> = parts(contents, &[Tile::WORLD])?;
+    let mut jobs: Open<C> = Vec::new();
+    while let Some((tile, contents)) = open.pop() {
+        let levels = zoom.saturating_sub(tile.zoom);
+        let size: usize = contents.iter().map(Content::size).sum();
+        if levels == 0 || (levels <= LEVELS && size <= SIZE) {
+            jobs.push((tile, contents));
+        } else {
+            open.extend(parts(&contents, &tile.children())?.into_iter().rev());
+        }
+        if jobs.len() >= JOBS || open.is_empty() {
+            let done = parallel::map(std::mem::take(&mut jobs), |(tile, contents)| {
+                subtree(tile, contents, zoom, &make)
+            });
+            for tiles in done {
+                tiles?.into_iter().try_for_each(|(tile, made)| take(tile, made))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What is made of the tiles of a subtree.
+fn subtree<C: Content, R>(
+    tile: Tile,
+    contents: Vec<C>,
+    zoom: u8,
+    make: &impl Fn(Tile, Vec<C>) -> R,
+) -> Result<Vec<(Tile, R)>> {
+    let (mut open, mut done) = (vec![(tile, contents)], Vec::new());
+    while let Some((tile, contents)) = open.pop() {
+        if tile.zoom >= zoom {
+            done.push((tile, make(tile, contents)));
+        } else {
+            open.extend(parts(&contents, &tile.children())?.into_iter().rev());
+        }
+    }
+    Ok(done)
+}
+
+/// So many contents are cut by one task.
+const TASK: usize = 64;
+
+/// The contents of some tiles, of those that have any.
+fn parts<C: Content>(contents: &[C], tiles: &[Tile]) -> Result<Open<C>> {
+    let tasks: Vec<&[C]> = contents.chunks(TASK).collect();
+    let cut = parallel::map(tasks, |some| {
+        some.iter().map(|content| content.within(tiles)).collect::<Result<Vec<_>>>()
+    });
+    let mut open: Open<C> = tiles.iter().map(|&tile| (tile, Vec::new())).collect();
+    for some in cut {
+        for parts in some? {
+            for ((_, contents), part) in open.iter_mut().zip(parts) {
+                contents.extend(part);
+            }
+        }
+    }
+    open.retain(|(_, contents)| !contents.is_empty());
+    Ok(open)
+}
+
+/// How many tiles of a level something lies in; counted up to a limit, above which it is more than the limit and
+/// maybe less than the number.
+///
+/// Tiles that one content covers wholly are counted without looking at those that they consist of.
+///
+/// # Errors
+/// The first error of [`Content::within`].
+pub fn count<C: Content>(contents: &[C], zoom: u8, limit: u64) -> Result<u64> {
+    let (mut open, mut count) = (parts(contents, &[Tile::WORLD])?, 0);
+    while let Some((tile, contents)) = open.pop() {
+        if tile.zoom >= zoom || contents.iter().any(|content| content.covers(tile)) {
+            count += tile.count_at(zoom);
+        } else {
+            open.extend(parts(&contents, &tile.children())?);
+        }
+        if count > limit {
+            break;
+        }
+    }
+    Ok(count)
+}
