@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+mod budget;
 mod cloud;
 pub mod collada;
 mod color;
@@ -13,6 +14,7 @@ pub mod css;
 pub mod drawing;
 pub mod e57;
 mod error;
+mod eye;
 mod facets;
 pub mod formula;
 pub mod geo;
@@ -27,6 +29,7 @@ mod number;
 pub mod obj;
 pub mod off;
 pub mod picture;
+mod piece;
 mod place;
 pub mod ply;
 pub mod png;
@@ -37,6 +40,7 @@ pub mod svg;
 mod texels;
 mod text;
 pub mod threemf;
+mod uri;
 mod xml;
 pub mod xyz;
 
