@@ -16,6 +16,7 @@ pub mod e57;
 mod error;
 mod eye;
 mod facets;
+pub mod fbx;
 pub mod formula;
 pub mod geo;
 pub mod gltf;
