@@ -1,11 +1,11 @@
 //! What must hold for any bytes, read as a model: the bodies of the fuzz targets `gltf`, `draco`,
-//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf`, `collada`, `off`, `las`, `e57` and `xyz`, which
+//! `image`, `meshopt`, `obj`, `mtl`, `stl`, `ply`, `threemf`, `collada`, `fbx`, `off`, `las`, `e57` and `xyz`, which
 //! the tests call as well.
 
 use arbitrary::{Result, Unstructured};
 use durer_formats::{
-    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, collada, e57, gltf, image, las,
-    obj, off, ply, stl, threemf, xyz,
+    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, collada, e57, fbx, gltf, image,
+    las, obj, off, ply, stl, threemf, xyz,
 };
 use std::io::{Cursor, Write};
 
@@ -351,6 +351,11 @@ const OFF: &[&str] = &[
     " 1",
     "\n",
 ];
+
+/// FBX: where it is not read, there is a word.
+pub fn fbx(bytes: &[u8]) {
+    check(fbx::read(bytes, &Same(bytes), &options()));
+}
 
 /// OFF.
 pub fn off(bytes: &[u8]) {

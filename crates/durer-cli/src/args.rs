@@ -123,8 +123,8 @@ pub struct InfoArgs {
 /// The options of `durer render`.
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs {
-    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF, COLLADA, OFF, and points in LAS, LAZ, E57, XYZ, PTS; `-` reads
-    /// one from standard input
+    /// Models: glTF, GLB, OBJ, STL, PLY, 3MF, COLLADA, OFF, FBX where the build has it, and points in LAS, LAZ,
+    /// E57, XYZ, PTS; `-` reads one from standard input
     #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
     /// Where the picture goes

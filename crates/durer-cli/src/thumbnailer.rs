@@ -44,6 +44,8 @@ const TYPES: &[(&str, &[&str])] = &[
         ],
     ),
     ("COLLADA", &["model/vnd.collada+xml"]),
+    #[cfg(feature = "fbx")]
+    ("FBX", &["application/vnd.fbx", "model/fbx"]),
     ("OFF", &["model/off", "application/x-off"]),
     ("LAS", &["application/vnd.las", "application/vnd.laszip"]),
     ("E57", &["model/e57"]),
@@ -67,6 +69,12 @@ const UNKNOWN: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
     <comment>OFF 3D model</comment>
     <alias type="application/x-off"/>
     <glob pattern="*.off"/>
+  </mime-type>
+  <mime-type type="application/vnd.fbx">
+    <comment>FBX model</comment>
+    <alias type="model/fbx"/>
+    <magic priority="50"><match type="string" offset="0" value="Kaydara FBX Binary"/></magic>
+    <glob pattern="*.fbx"/>
   </mime-type>
   <mime-type type="application/vnd.las">
     <comment>LAS points</comment>

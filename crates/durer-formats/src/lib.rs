@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arc;
+mod budget;
 mod cloud;
 pub mod collada;
 mod color;
@@ -13,7 +14,9 @@ pub mod css;
 pub mod drawing;
 pub mod e57;
 mod error;
+mod eye;
 mod facets;
+pub mod fbx;
 pub mod formula;
 pub mod geo;
 pub mod gltf;
@@ -27,6 +30,7 @@ mod number;
 pub mod obj;
 pub mod off;
 pub mod picture;
+mod piece;
 mod place;
 pub mod ply;
 pub mod png;
@@ -38,6 +42,7 @@ mod texels;
 mod text;
 pub mod threemf;
 pub mod tiles;
+mod uri;
 mod xml;
 pub mod xyz;
 

@@ -20,7 +20,7 @@ mod notes;
 mod parse;
 mod pictures;
 
-use crate::gltf::uri::steps;
+use crate::uri::steps;
 use crate::{Found, Model, Place, ReadOptions, Resources, text};
 use durer::scene::Material;
 use image::Images;

@@ -2,7 +2,7 @@
 
 use crate::text::{Cursor, utf8};
 use crate::{
-    Error, Model, ReadOptions, Resources, Result, collada, e57, gltf, las, obj, off, ply, stl,
+    Error, Model, ReadOptions, Resources, Result, collada, e57, fbx, gltf, las, obj, off, ply, stl,
     threemf, xyz,
 };
 
@@ -24,6 +24,8 @@ pub enum ModelFormat {
     ThreeMf,
     /// COLLADA 1.4 and 1.5.
     Collada,
+    /// FBX; read with the feature `fbx`.
+    Fbx,
     /// Geomview's OFF, as text.
     Off,
     /// LAS and LAZ.
@@ -35,14 +37,16 @@ pub enum ModelFormat {
 }
 
 impl ModelFormat {
-    /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 10] = [
+    /// All formats that are read, in the order in which messages list them.
+    pub const ALL: [Self; if cfg!(feature = "fbx") { 11 } else { 10 }] = [
         Self::Gltf,
         Self::Obj,
         Self::Stl,
         Self::Ply,
         Self::ThreeMf,
         Self::Collada,
+        #[cfg(feature = "fbx")]
+        Self::Fbx,
         Self::Off,
         Self::Las,
         Self::E57,
@@ -58,6 +62,7 @@ impl ModelFormat {
             Self::Ply => "PLY",
             Self::ThreeMf => "3MF",
             Self::Collada => "COLLADA",
+            Self::Fbx => "FBX",
             Self::Off => "OFF",
             Self::Las => "LAS",
             Self::E57 => "E57",
@@ -74,6 +79,7 @@ impl ModelFormat {
             Self::Ply => &["ply"],
             Self::ThreeMf => &["3mf"],
             Self::Collada => &["dae"],
+            Self::Fbx => &["fbx"],
             Self::Off => &["off"],
             Self::Las => &["las", "laz"],
             Self::E57 => &["e57"],
@@ -91,6 +97,8 @@ impl ModelFormat {
             Some(Self::ThreeMf)
         } else if collada::sniff(bytes.get(..PROBE).unwrap_or(bytes)) {
             Some(Self::Collada)
+        } else if fbx::sniff(bytes) {
+            Some(Self::Fbx)
         } else if las::sniff(bytes) {
             Some(Self::Las)
         } else if e57::sniff(bytes) {
@@ -106,7 +114,8 @@ impl ModelFormat {
 
     /// Whether a file that begins so is none of the formats that are asked before STL.
     pub(crate) fn may_be_stl(head: &[u8]) -> bool {
-        let other: [&[u8]; 4] = [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC];
+        let other: [&[u8]; 5] =
+            [b"glTF", b"PK\x03\x04", b"LASF", e57::MAGIC, b"Kaydara FBX Binary"];
         !other.iter().any(|magic| head.starts_with(magic))
             && !starts_as_json(head)
             && !ply::sniff(head)
@@ -155,7 +164,7 @@ fn is_obj(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither content nor name tell the format; else those of the reader:
-/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`], [`off::read`],
+/// [`obj::read`], [`stl::read`], [`ply::read`], [`threemf::read`], [`collada::read`], [`fbx::read`], [`off::read`],
 /// [`las::read`], [`e57::read`], [`xyz::read`].
 pub fn read_model(
     bytes: &[u8],
@@ -170,6 +179,7 @@ pub fn read_model(
         Some(ModelFormat::Ply) => ply::read(bytes, resources, options),
         Some(ModelFormat::ThreeMf) => threemf::read(bytes, resources, options),
         Some(ModelFormat::Collada) => collada::read(bytes, resources, options),
+        Some(ModelFormat::Fbx) => fbx::read(bytes, resources, options),
         Some(ModelFormat::Off) => off::read(bytes, resources, options),
         Some(ModelFormat::Las) => las::read(bytes, resources, options),
         Some(ModelFormat::E57) => e57::read(bytes, resources, options),

@@ -1,11 +1,11 @@
 //! Geometries: primitives over sources of numbers, to meshes.
 
-use super::Budget;
 use super::document::Document;
 use super::faults::Faults;
-use super::piece::{Builder, Corner, NONE, Piece, SETS, Slots};
-use super::source::{self, Source};
+use super::source::{self, Slots, Slotted, Source, Sources};
 use crate::Result;
+use crate::budget::Budget;
+use crate::piece::{Builder, Corner, NONE, Piece, SETS, Values};
 use durer::math::DVec3;
 use durer::scene::Topology;
 use std::collections::HashMap;
@@ -32,8 +32,9 @@ struct Reader<'d, 'a> {
     document: &'d Document<'a>,
     budget: &'d mut Budget,
     faults: &'d mut Faults,
-    sources: HashMap<usize, Option<Rc<Source>>>,
-    builders: Vec<Builder>,
+    sources: Sources,
+    /// With the source of each slot.
+    builders: Vec<(Slots, Builder)>,
     /// Numbers of builders by what tells them apart.
     numbers: HashMap<(Topology, Slots, Vec<u64>), usize>,
 }
@@ -61,8 +62,8 @@ pub(super) fn read(
     let name = document.attribute(geometry, "name").or(document.attribute(geometry, "id"));
     let name = name.unwrap_or_default().to_owned();
     let builders = std::mem::take(&mut reader.builders);
-    let pieces = builders.into_iter().filter_map(|b| b.piece(&reader.sources, &name)).collect();
-    Ok(Geometry { pieces })
+    let piece = |(slots, b): (Slots, Builder)| b.piece(&Slotted(&reader.sources, slots), &name);
+    Ok(Geometry { pieces: builders.into_iter().filter_map(piece).collect() })
 }
 
 impl Reader<'_, '_> {
@@ -84,8 +85,7 @@ impl Reader<'_, '_> {
         }
         let builder = self.builder(topology, &inputs);
         let symbol = document.attribute(element, "material").unwrap_or_default();
-        let start = self.builders[builder].indices.len();
-        self.builders[builder].runs.push((start, symbol.to_owned()));
+        self.builders[builder].1.begin(symbol);
         if kind == "polylist" {
             return self.polylist(element, builder, &inputs, stride);
         }
@@ -178,7 +178,7 @@ impl Reader<'_, '_> {
             return at;
         }
         let at = self.builders.len();
-        self.builders.push(Builder::new(topology, slots, key.2.clone()));
+        self.builders.push((slots, Builder::new(topology, key.2.clone())));
         self.numbers.insert(key, at);
         at
     }
@@ -202,7 +202,7 @@ impl Reader<'_, '_> {
                 continue;
             }
             let key = key(inputs, &sources, &corner);
-            let vertex = key.map(|(key, _)| self.builders[builder].vertex(key));
+            let vertex = key.map(|(key, _)| self.builders[builder].1.vertex(key));
             match key {
                 None => self.faults.indices.add(|| document.place(p)),
                 Some((_, false)) => self.faults.attributes.add(|| document.place(p)),
@@ -265,11 +265,12 @@ impl Reader<'_, '_> {
     /// Puts a hole into an outline where they are nearest to each other; `false` where that would
     /// take too long, or there is nothing to join.
     fn bridge(&self, outline: &mut Vec<Option<u32>>, hole: &[Option<u32>], builder: usize) -> bool {
-        let builder = &self.builders[builder];
-        let source = builder.slots[0].and_then(|s| self.sources.get(&s)?.as_ref());
+        let (slots, builder) = &self.builders[builder];
+        let values = Slotted(&self.sources, *slots);
         let point = |v: Option<u32>| {
             let corner = builder.corners.get(v? as usize)?;
-            source?.get::<3>(corner[0], 0.0).map(DVec3::from)
+            let [x, y, z, _] = values.get(0, corner[0], 0.0)?;
+            Some(DVec3::new(x, y, z))
         };
         if outline.len().saturating_mul(hole.len()) > 4_000_000 {
             return false;
@@ -336,7 +337,7 @@ impl Reader<'_, '_> {
     fn line(&mut self, builder: usize, ends: [Option<u32>; 2], at: usize) -> Result<()> {
         let [Some(a), Some(b)] = ends else { return Ok(()) };
         self.budget.primitives(1, || self.document.place(at))?;
-        self.builders[builder].indices.extend([a, b]);
+        self.builders[builder].1.line([a, b]);
         Ok(())
     }
 
@@ -344,17 +345,13 @@ impl Reader<'_, '_> {
     fn polygon(&mut self, builder: usize, corners: &[Option<u32>], at: usize) -> Result<()> {
         let document = self.document;
         let whole: Option<Vec<u32>> = corners.iter().copied().collect();
-        let Some([first, rest @ ..]) = whole.as_deref() else { return Ok(()) };
-        if rest.len() < 2 {
+        let Some(vertices) = whole.filter(|v| !v.is_empty()) else { return Ok(()) };
+        if vertices.len() < 3 {
             self.faults.short.add(|| document.place(at));
             return Ok(());
         }
-        self.budget.primitives(rest.len() as u64 - 1, || document.place(at))?;
-        let builder = &mut self.builders[builder];
-        builder.faces.push((builder.indices.len() / 3) as u32);
-        for w in rest.windows(2) {
-            builder.indices.extend([*first, w[0], w[1]]);
-        }
+        self.budget.primitives(vertices.len() as u64 - 2, || document.place(at))?;
+        self.builders[builder].1.polygon(&vertices);
         Ok(())
     }
 }

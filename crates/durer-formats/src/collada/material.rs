@@ -1,9 +1,9 @@
 //! Effects of the common profile, to materials.
 
 use super::document::{Document, float};
-use crate::gltf::uri::percent_decode;
 use crate::mtl::image::Images;
 use crate::text::Tally;
+use crate::uri::percent_decode;
 use crate::{Model, Place, color};
 use durer::math::{DMat3, Vec3, Vec4};
 use durer::scene::{AlphaMode, Material, Sampler, ShadingModel, Texture, TextureRef, Wrap};
@@ -298,7 +298,7 @@ impl<'d, 'a> Materials<'d, 'a> {
 }
 
 /// Whether the file comes from a Blender since 2.80, which writes the linear values of its nodes.
-fn is_linear(document: &Document<'_>) -> bool {
+pub(super) fn is_linear(document: &Document<'_>) -> bool {
     let contributors = document.root().and_then(|root| document.find(root, &["asset"]));
     let mut contributors = contributors.into_iter().flat_map(|a| document.named(a, "contributor"));
     contributors.any(|c| {

@@ -3,21 +3,21 @@
 //! Source: Khronos Group, *COLLADA – Digital Asset Schema Release 1.4.1* and *1.5.0*, 2008.
 //!
 //! Read are meshes (triangles, strips, fans, polygons with holes, lines) with normals, colours and
-//! texture coordinates, the nodes of the scene with all transforms, materials of the common profile,
-//! and skins and morphs at the shape that they were bound at. Not read are lights, cameras, animations,
-//! splines and physics. Lengths become metres through the matrices of the instances. Colours are sRGB
+//! texture coordinates, the nodes of the scene with all transforms, materials of the common profile, cameras,
+//! lights, and skins and morphs at the shape that they were bound at. Not read are animations, splines
+//! and physics. Lengths become metres through the matrices of the instances. Colours are sRGB
 //! values, those of materials from Blender since 2.80 linear. An x axis that is up becomes y.
 
 mod document;
+mod eye;
 mod faults;
 mod geometry;
 mod material;
 mod nodes;
-mod piece;
 mod source;
 
 use crate::mtl::image::Images;
-use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result, xml};
+use crate::{Error, Model, Place, ReadOptions, Resources, Result, xml};
 use document::{Document, float};
 use durer::math::{DMat4, DVec3, DVec4};
 use durer::scene::UpAxis;
@@ -51,13 +51,14 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     let images = Images::new(resources, limits);
     let materials = Materials::new(&document, images, &mut model);
     let mut nodes = Nodes::new(&document, materials, limits);
-    let (up_axis, world) = frame(&document, root, &mut model);
+    let (up_axis, world, unit) = frame(&document, root, &mut model);
     model.scene.up_axis = up_axis;
     match scene(&document, root) {
         Some(scene) => nodes.place(&mut model, scene, world)?,
         None => model.warn(Place::Whole, "the file has no visual scene"),
     }
     nodes.warn(&mut model);
+    eye::add(&mut model, &document, &nodes.cameras, &nodes.lights, unit);
     animations(&document, root, &mut model);
     if model.scene.instances.is_empty() {
         model.warn(Place::Whole, "the scene has no nodes with a mesh");
@@ -70,8 +71,8 @@ fn format(document: &Document<'_>, root: usize) -> String {
     format!("COLLADA {}", document.attribute(root, "version").unwrap_or_default()).trim().to_owned()
 }
 
-/// Which axis is up, and the matrix to metres.
-fn frame(document: &Document<'_>, root: usize, model: &mut Model) -> (UpAxis, DMat4) {
+/// Which axis is up, the matrix to metres, and the length of the file's unit.
+fn frame(document: &Document<'_>, root: usize, model: &mut Model) -> (UpAxis, DMat4, f64) {
     let unit = document.find(root, &["asset", "unit"]);
     let meter = unit.and_then(|u| document.attribute(u, "meter"));
     let length = meter.map_or(Some(1.0), |m| float(m.trim()).filter(|m| *m > 0.0 && m.is_finite()));
@@ -79,16 +80,17 @@ fn frame(document: &Document<'_>, root: usize, model: &mut Model) -> (UpAxis, DM
         let message = "<unit> has no length above 0 in `meter`; a unit is taken as a metre";
         model.warn(document.place(unit), message);
     }
-    let scale = DMat4::from_scale(DVec3::splat(length.unwrap_or(1.0)));
+    let length = length.unwrap_or(1.0);
+    let scale = DMat4::from_scale(DVec3::splat(length));
     let up = document.find(root, &["asset", "up_axis"]).map(|n| document.text(n));
     match up.as_deref() {
-        Some("Z_UP") => (UpAxis::Z, scale),
+        Some("Z_UP") => (UpAxis::Z, scale, length),
         Some("X_UP") => {
             // −y is to the right, x up, z towards the eye.
             let turn = DMat4::from_cols(DVec4::Y, -DVec4::X, DVec4::Z, DVec4::W);
-            (UpAxis::Y, scale * turn)
+            (UpAxis::Y, scale * turn, length)
         }
-        _ => (UpAxis::Y, scale),
+        _ => (UpAxis::Y, scale, length),
     }
 }
 
@@ -108,41 +110,4 @@ fn animations(document: &Document<'_>, root: usize, model: &mut Model) {
         let message = format!("{count} animations are not read; the model is shown at rest");
         model.warn(document.place(first), message);
     }
-}
-
-/// What may still be made of a file.
-pub(crate) struct Budget {
-    limits: Limits,
-    primitives: u64,
-    bytes: u64,
-    copies: u64,
-}
-
-impl Budget {
-    fn new(limits: Limits) -> Self {
-        Self { limits, primitives: 0, bytes: 0, copies: 0 }
-    }
-
-    /// Takes so many triangles and lines.
-    fn primitives(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
-        self.primitives = self.primitives.saturating_add(count);
-        let limit = self.limits.primitives.min(u64::from(u32::MAX / 3));
-        take("number of triangles and lines", self.primitives, limit, place)
-    }
-
-    /// Takes so many triangles and lines of meshes that are the same but for their materials.
-    fn copied(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
-        self.copies = self.copies.saturating_add(count);
-        take("triangles and lines in all materials", self.copies, self.limits.primitives, place)
-    }
-
-    /// Takes so many bytes of numbers.
-    fn bytes(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
-        self.bytes = self.bytes.saturating_add(count);
-        take("memory for numbers", self.bytes, self.limits.decoded_bytes, place)
-    }
-}
-
-fn take(what: &'static str, value: u64, limit: u64, place: impl FnOnce() -> Place) -> Result<()> {
-    if value > limit { Err(Error::Limit { place: place(), what, value, limit }) } else { Ok(()) }
 }

@@ -1,11 +1,11 @@
 //! The visual scene: nodes in their places, walked without recursion.
 
-use super::Budget;
 use super::document::Document;
 use super::faults::{self, Faults};
 use super::geometry::{self, Geometry};
 use super::material::Materials;
-use super::piece::Piece;
+use crate::budget::Budget;
+use crate::piece::Piece;
 use crate::text::Tally;
 use crate::{Error, Limits, Model, Result, color, place, polygon};
 use durer::math::{DMat4, DVec3, DVec4};
@@ -27,8 +27,18 @@ pub(super) struct Nodes<'d, 'a> {
     missing: Tally,
     cycles: Tally,
     broken: Tally,
-    /// Lights, whose place is taken by those of the picture.
-    pub lights: Tally,
+    pub cameras: Vec<Placed>,
+    pub lights: Vec<Placed>,
+}
+
+/// What a node holds besides geometry.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placed {
+    /// The element that is held.
+    pub target: usize,
+    pub node: usize,
+    /// From the node's frame.
+    pub world: DMat4,
 }
 
 /// A geometry, and the symbols and targets of an instance's materials.
@@ -55,7 +65,8 @@ impl<'d, 'a> Nodes<'d, 'a> {
             missing: Tally::default(),
             cycles: Tally::default(),
             broken: Tally::default(),
-            lights: Tally::default(),
+            cameras: Vec::new(),
+            lights: Vec::new(),
         }
     }
 
@@ -80,12 +91,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
                 self.cycles.add(|| document.place(node));
                 continue;
             }
-            self.visits += 1;
-            let (value, limit) = (self.visits, self.limits.instances);
-            if value > limit {
-                let place = document.place(node);
-                return Err(Error::Limit { place, what: "number of placed nodes", value, limit });
-            }
+            self.visit(node)?;
             let world = world * self.local(node);
             steps.push(Step::Leave(node));
             let first = steps.len();
@@ -99,11 +105,37 @@ impl<'d, 'a> Nodes<'d, 'a> {
                     "instance_geometry" | "instance_controller" => {
                         self.instance(model, node, child, world)?;
                     }
-                    "instance_light" => self.lights.add(|| document.place(child)),
+                    "instance_camera" | "instance_light" => self.hold(node, child, world)?,
                     _ => {}
                 }
             }
             steps[first..].reverse();
+        }
+        Ok(())
+    }
+
+    /// Counts what is placed.
+    fn visit(&mut self, element: usize) -> Result<()> {
+        self.visits += 1;
+        let (value, limit) = (self.visits, self.limits.instances);
+        if value > limit {
+            let place = self.document.place(element);
+            return Err(Error::Limit { place, what: "number of placed nodes", value, limit });
+        }
+        Ok(())
+    }
+
+    /// Keeps a camera or a light.
+    fn hold(&mut self, node: usize, element: usize, world: DMat4) -> Result<()> {
+        self.visit(element)?;
+        let document = self.document;
+        let placed = |target| Placed { target, node, world };
+        match document.refers(element, "url").map(placed) {
+            Some(placed) if document.name(element) == "instance_camera" => {
+                self.cameras.push(placed);
+            }
+            Some(placed) => self.lights.push(placed),
+            None => self.missing.add(|| document.place(element)),
         }
         Ok(())
     }
@@ -116,7 +148,6 @@ impl<'d, 'a> Nodes<'d, 'a> {
             (&self.missing, "instances name what the file does not have; they are left out"),
             (&self.cycles, "nodes are inside themselves; they are left out there"),
             (&self.broken, "transforms have not the right numbers; they are left out"),
-            (&self.lights, "lights are not read; the picture has its own"),
         ] {
             if tally.count > 0 {
                 model.warn(tally.first.clone(), format!("{} {what}", tally.count));

@@ -1,9 +1,12 @@
 //! Sources: arrays of numbers, taken in tuples.
 
-use super::Budget;
 use super::document::Document;
 use crate::Result;
+use crate::budget::Budget;
+use crate::piece::{SETS, Values};
 use crate::text::Tally;
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// Numbers in tuples.
 #[derive(Debug)]
@@ -28,6 +31,32 @@ impl Source {
             let at = self.components.get(i);
             at.and_then(|&at| values.get(at)).copied().unwrap_or(fill)
         }))
+    }
+}
+
+/// The source of each of a corner's indices.
+pub(super) type Slots = [Option<usize>; 3 + SETS];
+
+/// Sources that have been read, by their elements.
+pub(super) type Sources = HashMap<usize, Option<Rc<Source>>>;
+
+/// What the slots of corners stand for.
+pub(super) struct Slotted<'s>(pub &'s Sources, pub Slots);
+
+impl Slotted<'_> {
+    fn source(&self, slot: usize) -> Option<&Source> {
+        let number = self.1.get(slot).copied().flatten()?;
+        self.0.get(&number)?.as_deref()
+    }
+}
+
+impl Values for Slotted<'_> {
+    fn has(&self, slot: usize) -> bool {
+        self.source(slot).is_some()
+    }
+
+    fn get(&self, slot: usize, index: u32, fill: f64) -> Option<[f64; 4]> {
+        self.source(slot)?.get(index, fill)
     }
 }
 

@@ -4,8 +4,8 @@ use super::bytes::Bytes;
 use super::check::missing;
 use super::container::Container;
 use super::json::{BufferView, Root, Whole};
-use super::{meshopt, uri};
-use crate::{Error, Found, Limits, Place, Resources, Result, Warning};
+use super::meshopt;
+use crate::{Error, Found, Limits, Place, Resources, Result, Warning, uri};
 use std::cell::Cell;
 
 /// What has been taken of the limits so far.

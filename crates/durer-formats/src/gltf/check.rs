@@ -3,8 +3,7 @@
 
 use super::accessor::Layout;
 use super::json::{Material, Root, TextureInfo, Whole};
-use super::uri;
-use crate::{Error, Result};
+use crate::{Error, Result, uri};
 use std::fmt::Display;
 
 /// Checks every reference of the file.

@@ -1,11 +1,11 @@
-//! Cameras and lights, brought from their nodes to the world.
+//! Cameras, and the lights of KHR_lights_punctual.
 
 use super::buffer::Source;
 use super::json;
+use crate::eye::{self, Eye, Lens};
 use crate::{Place, Warning};
 use durer::math::{DMat4, DVec3, Vec3};
-use durer::scene::{Camera, Light, LightKind, NamedCamera, Projection, Scene};
-use std::cell::LazyCell;
+use durer::scene::{Light, LightKind, Projection, Scene};
 use std::f64::consts::PI;
 
 /// Stronger lights count as this strong, so that all that is made of them stays finite.
@@ -20,64 +20,28 @@ pub fn cameras(
     scene: &mut Scene,
     warnings: &mut Vec<Warning>,
 ) {
-    // Found where a camera asks for it: that takes all vertices.
-    let sphere = LazyCell::new(|| scene.bounding_sphere());
-    let mut cameras: Vec<NamedCamera> = Vec::new();
-    for &n in nodes {
+    let eyes = nodes.iter().filter_map(|&n| {
         let node = &source.root.nodes[n];
-        let Some(camera) = node.camera.and_then(|c| source.root.cameras.get(c.index())) else {
-            continue;
-        };
-        let behind = |eye: DVec3| sphere.map_or(0.0, |s| (s.center - eye).length() + s.radius);
-        let found = place_camera(camera, world[n], behind);
-        match found.and_then(|c| c.camera.check().map(|()| c).map_err(|e| e.to_string())) {
-            Ok(mut found) => {
-                let name = camera.name.as_ref().or(node.name.as_ref()).filter(|n| !n.is_empty());
-                found.name = unique(name, &cameras);
-                cameras.push(found);
-            }
-            Err(why) => {
-                let place = Place::Path(format!("nodes[{n}].camera"));
-                warnings.push(Warning { place, message: format!("{why}; the camera is left out") });
-            }
-        }
-    }
-    scene.cameras = cameras;
+        let camera = node.camera.and_then(|c| source.root.cameras.get(c.index()))?;
+        let name = camera.name.as_ref().or(node.name.as_ref()).cloned().unwrap_or_default();
+        let place = Place::Path(format!("nodes[{n}].camera"));
+        Some(Eye { name, world: world[n], lens: lens(camera), place })
+    });
+    eye::add_cameras(eyes, scene, warnings);
 }
 
-/// The name, or `camera` and a number, with a number more where it is taken.
-fn unique(name: Option<&String>, taken: &[NamedCamera]) -> String {
-    let base = name.cloned().unwrap_or_else(|| format!("camera{}", taken.len()));
-    let free = |name: &String| taken.iter().all(|c| c.name != *name);
-    let numbered = (2..).map(|i| format!("{base}.{i}"));
-    std::iter::once(base.clone()).chain(numbered).find(free).unwrap_or(base)
-}
-
-/// The camera at the origin of `world`, looking along its −z; scale has no meaning for it.
-fn place_camera(
-    camera: &json::Camera,
-    world: DMat4,
-    behind: impl Fn(DVec3) -> f64,
-) -> Result<NamedCamera, String> {
-    let eye = world.w_axis.truncate();
-    let backward = world.z_axis.truncate().try_normalize().ok_or("its node has no direction")?;
-    let up = world.y_axis.truncate().try_normalize().ok_or("its node has no direction")?;
+fn lens(camera: &json::Camera) -> Result<Lens, String> {
     let (projection, near, far, aspect) = match (&camera.perspective, &camera.orthographic) {
         (Some(p), _) => {
-            let perspective = Projection::Perspective { fov_y: p.yfov };
-            // Infinite: a little behind everything, so that nothing is cut off.
-            let far = p.zfar.unwrap_or_else(|| (behind(eye) * 1.01).max(p.znear * 1000.0));
-            (perspective, p.znear, far, p.aspect_ratio)
+            (Projection::Perspective { fov_y: p.yfov }, p.znear, p.zfar, p.aspect_ratio)
         }
         (None, Some(o)) => {
             let parallel = Projection::Orthographic { height: 2.0 * o.ymag.abs() };
-            (parallel, o.znear, o.zfar, Some((o.xmag / o.ymag).abs()))
+            (parallel, o.znear, Some(o.zfar), Some((o.xmag / o.ymag).abs()))
         }
         (None, None) => return Err("it has no projection".to_owned()),
     };
-    let camera = Camera { eye, target: eye - backward, up, projection, near, far };
-    let aspect = aspect.filter(|a| a.is_finite() && *a > 0.0);
-    Ok(NamedCamera { name: String::new(), camera, aspect })
+    Ok(Lens { projection, near: Some(near), far, aspect })
 }
 
 /// The lights of KHR_lights_punctual.

@@ -3,8 +3,8 @@
 use super::buffer::Source;
 use super::json::{self, Root, Sampler, TextureInfo, Whole};
 use super::surface::{self, Todo};
-use super::{broken, derived, uri};
-use crate::{Error, Place, Resources, Result, Warning, image};
+use super::{broken, derived};
+use crate::{Error, Place, Resources, Result, Warning, image, uri};
 use durer::math::{DMat3, DVec2, DVec3, Vec3, Vec4};
 use durer::scene::{
     AlphaMode, Filter, Image, Material, MipFilter, Sampler as SceneSampler, Scene, ShadingModel,

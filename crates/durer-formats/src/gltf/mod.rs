@@ -39,7 +39,6 @@ mod placing;
 mod primitive;
 mod specular_glossiness;
 mod surface;
-pub(crate) mod uri;
 mod variant;
 
 use crate::{Error, Model, Place, ReadOptions, Resources, Result};

@@ -115,6 +115,6 @@ fn is_normal_map(image: &Image) -> bool {
 }
 
 /// A pixel as one grey value: Rec. 709 luma of its stored values.
-pub(super) fn grey([r, g, b, _]: [u8; 4]) -> u8 {
+pub(crate) fn grey([r, g, b, _]: [u8; 4]) -> u8 {
     ((u32::from(r) * 54 + u32::from(g) * 183 + u32::from(b) * 19) >> 8) as u8
 }

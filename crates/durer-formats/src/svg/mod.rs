@@ -33,7 +33,7 @@ mod values;
 
 pub use fonts::{Fonts, no_glyphs};
 
-use crate::gltf::uri::path;
+use crate::uri::path;
 use crate::{Error, Found, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;

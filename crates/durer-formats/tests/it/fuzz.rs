@@ -20,7 +20,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 22] = [
+const TARGETS: [(&str, Body); 23] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -36,6 +36,7 @@ const TARGETS: [(&str, Body); 22] = [
     ("ply", model::ply),
     ("threemf", model::threemf),
     ("collada", model::collada),
+    ("fbx", model::fbx),
     ("off", model::off),
     ("las", model::las),
     ("e57", model::e57),

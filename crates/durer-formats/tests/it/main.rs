@@ -1,6 +1,7 @@
 //! One test binary for the formats.
 
 mod collada;
+mod collada_eyes;
 mod conformance_geo;
 mod conformance_gltf;
 mod conformance_height_map;

@@ -6,7 +6,7 @@ use crate::{Error, Found, Place, Resources, Result};
 ///
 /// # Errors
 /// [`Error::Resource`] where the URI cannot be followed or read; [`Error::Decode`] for a broken data URI.
-pub fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -> Result<Found> {
+pub(crate) fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -> Result<Found> {
     if let Some(data) = strip_data_scheme(uri) {
         return decode_data(data, at).map(|bytes| Found { bytes, note: None });
     }
@@ -18,7 +18,7 @@ pub fn load(uri: &str, at: &str, resources: &dyn Resources, limit: u64) -> Resul
 ///
 /// # Errors
 /// As [`load`], where the URI is broken.
-pub fn check(uri: &str, at: &str) -> Result<()> {
+pub(crate) fn check(uri: &str, at: &str) -> Result<()> {
     strip_data_scheme(uri).map_or(Ok(()), |data| data_parts(data, at).map(|_| ()))
 }
 
@@ -31,7 +31,7 @@ fn refused(uri: &str, at: &str, message: &str) -> Error {
 }
 
 /// Whether the data stand in the URI itself.
-pub fn is_data(uri: &str) -> bool {
+pub(crate) fn is_data(uri: &str) -> bool {
     strip_data_scheme(uri).is_some()
 }
 

@@ -1,27 +1,30 @@
-//! Pieces of geometries: primitives that share sources, as they become a mesh.
+//! Primitives whose corners have an index for each of their attributes, as they become a mesh.
 
-use super::source::Source;
 use crate::{color, place};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 use durer::scene::{Mesh, Part, Topology};
 use std::collections::HashMap;
 use std::ops::Range;
-use std::rc::Rc;
 
 /// The most sets of texture coordinates that are read.
-pub(super) const SETS: usize = 4;
+pub(crate) const SETS: usize = 4;
 /// Where a corner has no such attribute.
-pub(super) const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// Indices of a corner: position, normal, colour, sets of texture coordinates.
-pub(super) type Corner = [u32; 3 + SETS];
+pub(crate) type Corner = [u32; 3 + SETS];
 
-/// The source of each of a corner's indices.
-pub(super) type Slots = [Option<usize>; 3 + SETS];
+/// What the indices of corners stand for.
+pub(crate) trait Values {
+    /// Whether there is anything for one of a corner's indices.
+    fn has(&self, slot: usize) -> bool;
+    /// The numbers behind an index, `fill` where they are fewer; `None` beyond the end.
+    fn get(&self, slot: usize, index: u32, fill: f64) -> Option<[f64; 4]>;
+}
 
 /// A mesh of a geometry, without materials.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// Its parts have no material yet.
     pub mesh: Mesh,
     /// What positions are relative to.
@@ -32,23 +35,41 @@ pub(super) struct Piece {
     pub sets: Vec<u64>,
 }
 
-/// Primitives that share sources: one mesh.
-pub(super) struct Builder {
-    pub topology: Topology,
-    /// The source of each slot, and the sets' numbers.
-    pub slots: Slots,
-    pub sets: Vec<u64>,
+/// Primitives that share what their indices stand for: one mesh.
+pub(crate) struct Builder {
+    topology: Topology,
+    /// The file's numbers of the sets of texture coordinates.
+    sets: Vec<u64>,
     pub corners: Vec<Corner>,
-    pub known: HashMap<Corner, u32>,
-    pub indices: Vec<u32>,
-    pub faces: Vec<u32>,
-    pub runs: Vec<(usize, String)>,
+    known: HashMap<Corner, u32>,
+    indices: Vec<u32>,
+    faces: Vec<u32>,
+    runs: Vec<(usize, String)>,
 }
 
 impl Builder {
-    pub fn new(topology: Topology, slots: Slots, sets: Vec<u64>) -> Self {
+    pub fn new(topology: Topology, sets: Vec<u64>) -> Self {
         let (corners, known, indices, faces, runs) = Default::default();
-        Self { topology, slots, sets, corners, known, indices, faces, runs }
+        Self { topology, sets, corners, known, indices, faces, runs }
+    }
+
+    /// Begins what has another material, by its name.
+    pub fn begin(&mut self, symbol: &str) {
+        self.runs.push((self.indices.len(), symbol.to_owned()));
+    }
+
+    /// Adds a polygon of at least three vertices as a fan.
+    pub fn polygon(&mut self, vertices: &[u32]) {
+        let [first, rest @ ..] = vertices else { return };
+        self.faces.push((self.indices.len() / 3) as u32);
+        for w in rest.windows(2) {
+            self.indices.extend([*first, w[0], w[1]]);
+        }
+    }
+
+    /// Adds a line.
+    pub fn line(&mut self, ends: [u32; 2]) {
+        self.indices.extend(ends);
     }
 
     /// The number of a corner's vertex.
@@ -60,36 +81,31 @@ impl Builder {
     }
 
     /// The mesh; `None` where it is empty.
-    pub fn piece(self, sources: &HashMap<usize, Option<Rc<Source>>>, name: &str) -> Option<Piece> {
-        let Builder { topology, slots, sets, corners, indices, mut faces, runs, .. } = self;
+    pub fn piece(self, values: &dyn Values, name: &str) -> Option<Piece> {
+        let Builder { topology, sets, corners, indices, mut faces, runs, .. } = self;
         if indices.is_empty() {
             return None;
         }
-        let source = |slot: usize| {
-            let number: usize = slots[slot]?;
-            sources.get(&number)?.clone()
+        let get = |slot: usize, index: u32, fill: f64| values.get(slot, index, fill);
+        let vector = |slot: usize, index: u32| {
+            get(slot, index, 0.0).map_or(DVec3::ZERO, |[x, y, z, _]| DVec3::new(x, y, z))
         };
-        let positions = source(0)?;
-        let points: Vec<DVec3> = corners
-            .iter()
-            .map(|c| positions.get(c[0], 0.0).map_or(DVec3::ZERO, DVec3::from))
-            .collect();
+        let points: Vec<DVec3> = corners.iter().map(|c| vector(0, c[0])).collect();
         let origin = place::origin(&points);
         let mut mesh = Mesh { name: name.to_owned(), topology, ..Mesh::default() };
         mesh.positions = place::narrow(&points, origin);
-        if let Some(normals) = source(1).filter(|_| topology == Topology::Triangles) {
-            let of = |c: &Corner| normals.get(c[1], 0.0).map_or(DVec3::ZERO, DVec3::from);
-            mesh.normals = corners.iter().map(|c| of(c).normalize_or_zero().as_vec3()).collect();
+        if values.has(1) && topology == Topology::Triangles {
+            let of = |c: &Corner| vector(1, c[1]).normalize_or_zero().as_vec3();
+            mesh.normals = corners.iter().map(of).collect();
         }
-        if let Some(colors) = source(2) {
-            let of = |c: &Corner| linear(colors.get(c[2], 1.0).unwrap_or([1.0; 4]));
+        if values.has(2) {
+            let of = |c: &Corner| linear(get(2, c[2], 1.0).unwrap_or([1.0; 4]));
             mesh.colors = corners.iter().map(of).collect();
         }
-        for set in 0..sets.len() {
-            let Some(places) = source(3 + set) else { continue };
-            // The format's v runs upwards.
+        for slot in (0..sets.len()).map(|set| 3 + set).filter(|&slot| values.has(slot)) {
+            // That of files runs upwards.
             let of = |c: &Corner| {
-                let [u, v] = places.get(c[3 + set], 0.0).unwrap_or([0.0; 2]);
+                let [u, v, ..] = get(slot, c[slot], 0.0).unwrap_or_default();
                 Vec2::new(u as f32, (1.0 - v) as f32)
             };
             mesh.tex_coords.push(corners.iter().map(of).collect());

@@ -1,0 +1,145 @@
+//! A file as a whole.
+
+use super::eye;
+use super::frame::{Frames, World};
+use super::material::Materials;
+use super::node::Nodes;
+use super::picture::Pictures;
+use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result};
+use ufbx::{AllocatorOpts, ErrorType, IndexErrorHandling, LoadOpts, Scene, SceneRoot, WarningType};
+
+/// Reads an FBX file.
+///
+/// # Errors
+/// [`Error::Decode`] where it is broken, [`Error::Limit`] for too much of anything. What is missing or
+/// left out is a warning.
+pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
+    let limits = options.limits;
+    let scene = load(bytes, &limits)?;
+    let mut model = Model { format: format(&scene), ..Model::default() };
+    if scene.metadata.ascii && ends_inside(bytes) {
+        model.warn(Place::Whole, "the file ends before its last `}`; what follows is missing");
+    }
+    repairs(&scene, &mut model);
+    let world = World::of(&scene, &mut model);
+    model.scene.up_axis = world.up_axis;
+    let frames = Frames::of(&scene, world.matrix);
+    let pictures = Pictures::new(&scene, resources);
+    let materials = Materials::new(&scene, &pictures, limits);
+    let mut nodes = Nodes::new(&scene, &frames, materials, limits);
+    nodes.place(&mut model)?;
+    nodes.warn(&mut model);
+    eye::add(&mut model, &scene, &frames, world.unit);
+    left_out(&scene, &frames, &mut model);
+    if model.scene.instances.is_empty() {
+        model.warn(Place::Whole, "the scene has no nodes with a mesh");
+    }
+    model.scene.check()?;
+    Ok(model)
+}
+
+/// Lets the library read what is in memory, and nothing else.
+fn load(bytes: &[u8], limits: &Limits) -> Result<SceneRoot> {
+    let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
+    let allocator = || AllocatorOpts {
+        allocator: ufbx::Allocator::Libc,
+        memory_limit: memory,
+        ..AllocatorOpts::default()
+    };
+    let options = LoadOpts {
+        temp_allocator: allocator(),
+        result_allocator: allocator(),
+        ignore_animation: true,
+        ignore_missing_external_files: true,
+        use_blender_pbr_material: true,
+        index_error_handling: IndexErrorHandling::NoIndex,
+        node_depth_limit: limits.depth,
+        file_format: ufbx::FileFormat::Fbx,
+        ..LoadOpts::default()
+    };
+    ufbx::load_memory(bytes, options).map_err(|e| error(&e, limits))
+}
+
+fn error(e: &ufbx::Error, limits: &Limits) -> Error {
+    let limit = |what, limit| Error::Limit { place: Place::Whole, what, value: limit + 1, limit };
+    match e.type_ {
+        ErrorType::MemoryLimit | ErrorType::OutOfMemory => {
+            limit("memory for elements", limits.decoded_bytes)
+        }
+        ErrorType::NodeDepthLimit => limit("depth of nodes", u64::from(limits.depth)),
+        // The library's own words say no more.
+        ErrorType::Unknown => Error::whole(
+            "the FBX file cannot be read: an element is broken, or has an index beyond its list",
+        ),
+        _ => Error::whole(format!("the FBX file cannot be read: {}", e.description.to_lowercase())),
+    }
+}
+
+fn format(scene: &Scene) -> String {
+    let (version, kind) = (scene.metadata.version, scene.metadata.ascii);
+    let kind = if kind { "ASCII" } else { "binary" };
+    format!("FBX {}.{} {kind}", version / 1000, version % 1000 / 100)
+}
+
+/// Whether text ends where braces are open, which the library takes as their end.
+fn ends_inside(text: &[u8]) -> bool {
+    let (mut depth, mut quoted, mut comment) = (0u64, false, false);
+    for byte in text {
+        match byte {
+            b'\n' => comment = false,
+            _ if comment => {}
+            b'"' => quoted = !quoted,
+            _ if quoted => {}
+            b';' => comment = true,
+            b'{' => depth += 1,
+            b'}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    depth > 0
+}
+
+/// Tells what the library repaired.
+fn repairs(scene: &Scene, model: &mut Model) {
+    for warning in &scene.metadata.warnings {
+        // That nothing is lost by, or that is none of this reader's files.
+        if matches!(
+            warning.type_,
+            WarningType::DuplicateConnection
+                | WarningType::MissingExternalFile
+                | WarningType::ImplicitMtl
+        ) {
+            continue;
+        }
+        model.warn(Place::Whole, format!("{} ({} times)", warning.description, warning.count));
+    }
+}
+
+/// Tells of kinds of elements that are not read.
+fn left_out(scene: &Scene, frames: &Frames, model: &mut Model) {
+    let levels = scene.meshes.into_iter().filter(|m| m.subdivision_preview_levels > 0).count();
+    let blends = scene.blend_channels.count;
+    for (count, what) in [
+        (
+            scene.skin_deformers.count,
+            "skins are not bent by their bones; their meshes are shown at rest",
+        ),
+        (blends, "blend shapes are not read; meshes have their basic shape"),
+        (levels, "meshes are subdivided by what shows them; their control meshes are shown"),
+        (scene.cache_deformers.count, "meshes move by a cache, which is not read"),
+        (scene.nurbs_surfaces.count, "NURBS surfaces are not read"),
+        (scene.nurbs_curves.count + scene.line_curves.count, "curves are not read"),
+        (scene.procedural_geometries.count, "procedural geometries are not read"),
+        (frames.broken, "transforms have numbers that are not finite; those are as if not there"),
+    ] {
+        if count > 0 {
+            model.warn(Place::Whole, format!("{count} {what}"));
+        }
+    }
+    let animations = scene.anim_curves.count;
+    if animations > 0 {
+        let message =
+            format!("{animations} curves of animations are not read; the model is shown at rest");
+        model.warn(Place::Whole, message);
+    }
+}
