@@ -13,12 +13,13 @@ mod values;
 
 pub use args::{ClipArgs, EXAMPLES, format, window};
 
-use crate::failure::{Failure, in_words};
+use crate::failure::Failure;
 use crate::input::{display_name, is_stream};
+use crate::layer::{Fields, Shift, Source, words};
 use crate::messages::Messages;
 use crate::output::{self, Target};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
-use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
+use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
 use engine::{Algorithm, Cutter, Rules};
 use mask::Mask;
 use rayon::prelude::*;
@@ -27,8 +28,7 @@ use shapes::Area;
 use sink::{Sink, failure};
 use srids::Srids;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufRead, BufReader, IsTerminal};
+use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Instant;
 use tiles::Tile;
@@ -38,11 +38,6 @@ const BATCH: usize = 256;
 
 /// Positions that are held before a batch is cut, however few features they are.
 const BATCH_POSITIONS: usize = 1 << 18;
-
-/// Bytes that are looked at to find the format.
-const PROBE: usize = 64 << 10;
-
-type Source = Reader<Box<dyn BufRead>>;
 
 /// Cuts one file.
 pub fn run(args: &ClipArgs) -> Result<(), Failure> {
@@ -57,8 +52,10 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         (_, Some(path)) => Some(mask::read(path, args, &mut mask_srids, &messages)?),
         _ => None,
     };
-    let (from, mut reader) = open(&args.input, args.from)?;
+    let (from, mut reader) = crate::layer::open(&args.input, args.from, args.layer.as_deref())?;
     let to = output_format(args, from)?;
+    let shift = Shift::new(&args.systems, from, &reader.system())?;
+    let fields = Fields::new(&args.fields);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: display_name(&args.input),
@@ -68,22 +65,34 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         mask_srids,
         ..Report::default()
     };
-    let (source, told) = (&mut reader, &mut report);
-    let mut job = Job { args, to, messages: &messages, reader: source, report: told, failed: None };
-    match (args.region.tiles, mask) {
-        (Some(zoom), _) => job.tile(zoom)?,
-        (None, mask) if joins(args) => job.join(mask.as_ref())?,
-        (None, Some(mask)) => job.cut(mask)?,
-        (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
-    }
-    tell(&messages, args, to, &reader, &mut report);
+    let is_shifted = shift.is_some();
+    let further = {
+        let (messages, reader, report) = (&messages, &mut reader, &mut report);
+        let mut job = Job { args, to, messages, reader, report, failed: None, shift, fields };
+        match (args.region.tiles, mask) {
+            (Some(zoom), _) => job.tile(zoom)?,
+            (None, mask) if joins(args) => job.join(mask.as_ref())?,
+            (None, Some(mask)) => job.cut(mask)?,
+            (None, None) if converts(args, from, to) => job.convert()?,
+            (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
+        }
+        [job.fields.told(), job.shift.as_ref().and_then(Shift::told), job.unfit()]
+    };
+    tell(&messages, args, to, &reader, &mut report, is_shifted, further.into_iter().flatten());
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
-const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles";
+const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles; without them features are only \
+                       converted to another format, chosen by --where and the like, or brought to --to-crs";
+
+/// Whether features are to be changed or written otherwise without being cut.
+fn converts(args: &ClipArgs, from: GeoFormat, to: GeoFormat) -> bool {
+    let systems = &args.systems;
+    from != to || !args.fields.is_idle() || systems.to_crs.is_some() || systems.from_crs.is_some()
+}
 
 /// Whether all polygons become one.
 fn joins(args: &ClipArgs) -> bool {
@@ -98,7 +107,10 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
         return usage("`-` is given twice; standard input holds one file");
     }
     let mask = region.window.is_some() || region.by.is_some();
-    if !mask && region.tiles.is_none() && !joins(args) {
+    let is_plain = !region.outside
+        && args.cutting.op == BooleanOp::Intersection
+        && args.cutting.algorithm.is_none();
+    if !mask && region.tiles.is_none() && !joins(args) && !is_plain {
         return usage(NO_MASK);
     }
     if args.json && is_stream(&args.output) {
@@ -137,34 +149,13 @@ fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
 
 /// Opens a file, or standard input, and finds its format.
 fn open(path: &Path, format: Option<GeoFormat>) -> Result<(GeoFormat, Source), Failure> {
-    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let mut source: Box<dyn BufRead> = if is_stream(path) {
-        Box::new(BufReader::with_capacity(PROBE, std::io::stdin()))
-    } else {
-        let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
-        if file.metadata().is_ok_and(|m| m.is_dir()) {
-            return Err(fail("it is a folder; name the file in it".to_owned()));
-        }
-        Box::new(BufReader::with_capacity(PROBE, file))
-    };
-    let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
-    let by_name = || GeoFormat::of_name(&path.to_string_lossy());
-    let found = format.or_else(|| GeoFormat::of_content(head)).or_else(by_name);
-    let Some(format) = found else {
-        let what = if head.is_empty() { "the file is empty" } else { "not a known format" };
-        return Err(fail(format!("{what}; map data are read from GeoJSON, WKT, WKB and SVG")));
-    };
-    // The layouts of GeoJSON are read alike; the suffix tells the one to write to a stream.
-    let named = by_name().filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
-    let reader = Reader::new(format, source).map_err(|e| fail(words(&e)))?;
-    Ok((named.unwrap_or(format), reader))
+    crate::layer::open(path, format, None)
 }
 
-fn words(error: &durer_formats::Error) -> String {
-    match error {
-        durer_formats::Error::Io(e) => in_words(e),
-        other => other.to_string(),
-    }
+/// Whether no polygons of a geometry cross, pinch or overlap themselves or one another.
+pub fn is_valid(geometry: &Geometry) -> bool {
+    let area = Area::of_geometry(geometry);
+    area.shapes.is_empty() || validity::is_valid(&area.shapes, validity::Touching::AtPoints)
 }
 
 /// The format of the result: as told, by the suffix, or that of the input.
@@ -175,13 +166,22 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
     let found = args
         .to
         .or(named)
-        .or(stream.then_some(from).filter(fits))
+        .or(stream.then_some(from).filter(fits).filter(|format| format.is_written()))
         .or(args.region.tiles.map(|_| GeoFormat::GeoJson));
     let Some(format) = found else {
-        let suffixes = GeoFormat::ALL.map(|f| f.suffixes()[0]).join(", .");
+        let written = GeoFormat::ALL.into_iter().filter(|f| f.is_written());
+        let suffixes = written.map(|f| f.suffixes()[0]).collect::<Vec<_>>().join(", .");
         let message = format!("the suffix tells no format; use one of .{suffixes}, or --to");
         return Err(Failure::Usage(format!("--output {}: {message}", args.output.display())));
     };
+    if !format.is_written() {
+        let message = format!("{format} is only read; write .geojson, .fgb or another format");
+        return Err(Failure::Usage(format!("--output {}: {message}", args.output.display())));
+    }
+    if format == GeoFormat::Shapefile && stream {
+        let message = "a Shapefile is several files; name the .shp among them";
+        return Err(Failure::Usage(format!("--output {}: {message}", args.output.display())));
+    }
     if args.region.tiles.is_some() && named == Some(GeoFormat::GeoJson) {
         let message = "--tiles makes a file per tile: name a folder, or a file in .geojsonl";
         return Err(Failure::Usage(message.to_owned()));
@@ -193,7 +193,15 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
 }
 
 /// Warnings of reading and of cutting.
-fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, report: &mut Report) {
+fn tell(
+    messages: &Messages,
+    args: &ClipArgs,
+    to: GeoFormat,
+    reader: &Source,
+    report: &mut Report,
+    is_shifted: bool,
+    further: impl Iterator<Item = String>,
+) {
     let name = display_name(&args.input);
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
@@ -220,7 +228,11 @@ fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, re
     if report.given.features == 0 {
         found.push("there is no feature in it".to_owned());
     }
-    found.extend(report.srids.told(&report.mask_srids, joins(args), to));
+    if !is_shifted {
+        let is_told = reader.system().code.is_some() && to.is_geojson();
+        found.extend(report.srids.told(&report.mask_srids, joins(args), to, is_told));
+    }
+    found.extend(further);
     let (lines, points) = (report.given.lines, report.given.points);
     if joins(args) && lines + points > 0 {
         let op = args.cutting.op;
@@ -249,6 +261,8 @@ struct Job<'a> {
     report: &'a mut Report,
     /// Why reading ended, told when what was read before is written.
     failed: Option<Failure>,
+    shift: Option<Shift>,
+    fields: Fields,
 }
 
 impl Job<'_> {
@@ -264,7 +278,7 @@ impl Job<'_> {
         let mut features = Vec::new();
         let mut positions = 0;
         while features.len() < BATCH && positions < BATCH_POSITIONS {
-            let feature = match self.reader.next_feature() {
+            let mut feature = match self.reader.next_feature() {
                 Ok(Some(feature)) => feature,
                 Ok(None) => break,
                 Err(e) if features.is_empty() => return Err(self.fail(words(&e))),
@@ -273,8 +287,16 @@ impl Job<'_> {
                     break;
                 }
             };
+            if !self.fields.apply(&mut feature) {
+                self.report.unchosen += 1;
+                continue;
+            }
             self.report.given.add(feature.geometry.as_ref());
             self.report.srids.add(feature.srid);
+            // Tiles are in their own system, which features are brought to before.
+            if self.args.region.tiles.is_some() && !self.shifted(&mut feature) {
+                feature.geometry = None;
+            }
             positions += feature.geometry.as_ref().map_or(0, Geometry::len);
             features.push(feature);
         }
@@ -288,19 +310,25 @@ impl Job<'_> {
         if !is_stream(&self.args.output) {
             return Sink::file(&self.args.output);
         }
-        if self.to == GeoFormat::Wkb && std::io::stdout().is_terminal() {
-            let message = "--output -: WKB is no text for a terminal; use a pipe or a file";
-            return Err(Failure::Usage(message.to_owned()));
+        if self.to.is_binary() && std::io::stdout().is_terminal() {
+            let message =
+                format!("--output -: {} is no text for a terminal; use a pipe or a file", self.to);
+            return Err(Failure::Usage(message));
         }
         Ok(Sink::stdout())
     }
 
     /// Writes what there is, whole or not at all.
-    fn put(&mut self, writer: &mut Option<Writer<Sink>>, feature: &Feature) -> Result<(), Failure> {
+    fn put(
+        &mut self,
+        writer: &mut Option<Writer<Sink>>,
+        feature: &mut Feature,
+    ) -> Result<(), Failure> {
+        if self.args.region.tiles.is_none() && !self.shifted(feature) {
+            return Ok(());
+        }
         if writer.is_none() {
-            let mut new = Writer::new(self.to, self.sink()?);
-            new.head(self.reader.members());
-            *writer = Some(new);
+            *writer = Some(self.writer()?);
         }
         self.report.out.add(feature.geometry.as_ref());
         match writer {
@@ -312,10 +340,95 @@ impl Job<'_> {
     fn end(&mut self, writer: Option<Writer<Sink>>) -> Result<(), Failure> {
         let writer = match writer {
             Some(writer) => writer,
-            None => Writer::new(self.to, self.sink()?),
+            None => self.writer()?,
         };
-        let done = writer.finish(self.reader.members());
-        done.map_err(|e| failure(&self.args.output, &e))?.commit()
+        let done =
+            writer.finish_all(&self.members()).map_err(|e| failure(&self.args.output, &e))?;
+        for (suffix, bytes) in done.beside {
+            let target = Target::File(self.args.output.with_extension(suffix));
+            output::deliver(&target, |out| {
+                out.extend_from_slice(&bytes);
+                Ok(())
+            })?;
+        }
+        self.messages.warnings(&self.args.output.display().to_string(), &done.warnings);
+        self.report.warnings.extend(done.warnings.iter().map(ToString::to_string));
+        done.out.commit()
+    }
+
+    /// A writer that knows what stands before the features.
+    fn writer(&self) -> Result<Writer<Sink>, Failure> {
+        let mut writer = Writer::new(self.to, self.sink()?);
+        writer.head(&self.members());
+        writer.set_system(self.system());
+        Ok(writer)
+    }
+
+    /// The coordinate system of what is written.
+    fn system(&self) -> System {
+        match (&self.shift, &self.args.systems.from_crs) {
+            (Some(shift), _) => shift.system.clone(),
+            (None, Some(from)) => from.system(),
+            (None, None) => {
+                let told = self.reader.system();
+                let common = self.report.srids.common().filter(|_| told.is_unknown());
+                common.map_or(told, System::of_code)
+            }
+        }
+    }
+
+    /// Members of the collection, with the one that tells the coordinate system where GeoJSON must be told.
+    fn members(&self) -> Vec<Member> {
+        let mut members = self.reader.members().to_vec();
+        if !matches!(self.to, GeoFormat::GeoJson | GeoFormat::TopoJson) {
+            return members;
+        }
+        let is_new = self.shift.is_some() || self.args.systems.from_crs.is_some();
+        members.retain(|member| !is_new || member.name != CRS);
+        let told = members.iter().any(|member| member.name == CRS);
+        let told_by_file = is_new || !self.reader.system().is_unknown();
+        members.extend(self.system().member().filter(|_| !told && told_by_file));
+        members
+    }
+
+    /// What is to be told where GeoJSON has other coordinates than it should.
+    fn unfit(&self) -> Option<String> {
+        let code = self.system().code.filter(|code| *code != 4326 && self.to.is_lonlat())?;
+        let told = self.members().iter().any(|member| member.name == CRS);
+        let own = self.reader.members().iter().any(|member| member.name == CRS);
+        (told && (self.shift.is_some() || !own)).then(|| {
+            format!(
+                "{} stands for longitude and latitude (RFC 7946); that coordinates are EPSG:{code} is told by \
+                 its older member crs, which not all programs heed",
+                self.to
+            )
+        })
+    }
+
+    /// Whether a feature has a place in the system that is asked for, to which it is brought.
+    fn shifted(&mut self, feature: &mut Feature) -> bool {
+        match &mut self.shift {
+            Some(shift) => shift.apply(feature),
+            None => {
+                let from = self.args.systems.from_crs.as_ref();
+                feature.srid = from.map_or(feature.srid, |from| from.code());
+                true
+            }
+        }
+    }
+
+    /// All features as they are.
+    fn convert(&mut self) -> Result<(), Failure> {
+        let mut writer = None;
+        loop {
+            let features = self.batch()?;
+            if features.is_empty() {
+                return self.end(writer);
+            }
+            for mut feature in features {
+                self.put(&mut writer, &mut feature)?;
+            }
+        }
     }
 
     /// Each feature for itself.
@@ -343,7 +456,7 @@ impl Job<'_> {
                 if cut.geometry.is_some() {
                     feature.geometry = cut.geometry;
                     feature.fill_rule = FillRule::EvenOdd;
-                    self.put(&mut writer, &feature)?;
+                    self.put(&mut writer, &mut feature)?;
                 }
             }
         }
@@ -383,7 +496,8 @@ impl Job<'_> {
         let mut writer = None;
         if let Some(geometry) = joined.into_geometry() {
             let srid = self.report.srids.common();
-            self.put(&mut writer, &Feature { srid, ..Feature::of_geometry(geometry) })?;
+            let mut joined = Feature { srid, ..Feature::of_geometry(geometry) };
+            self.put(&mut writer, &mut joined)?;
         }
         self.end(writer)
     }
@@ -421,7 +535,7 @@ impl Job<'_> {
                     feature.geometry = Some(geometry);
                     if one_file {
                         seen.insert(tile);
-                        self.put(&mut writer, &with_tile(&feature, tile))?;
+                        self.put(&mut writer, &mut with_tile(&feature, tile))?;
                     } else {
                         let new =
                             || (Writer::new(GeoFormat::GeoJson, Vec::new()), Counts::default());
@@ -457,6 +571,9 @@ impl Job<'_> {
         .map(drop)
     }
 }
+
+/// The member of GeoJSON's older version that tells the coordinate system, as JSON writes it.
+const CRS: &str = "\"crs\"";
 
 /// The member that names a feature's tile, as JSON writes it.
 const TILE: &str = "\"tile\"";
