@@ -81,7 +81,7 @@ pub enum Command {
     /// Fill what is connected with a pixel of a PNG or JPEG, by seed fill
     #[command(after_long_help = crate::fill::EXAMPLES, after_help = "--help shows more, and examples.")]
     Fill(Box<crate::fill::FillArgs>),
-    /// Say what is in a model
+    /// Say what is in a model, or in a layer of a map
     Info(InfoArgs),
     /// Say which objects, triangles, lines and points lie behind a point or a rectangle of the picture
     Pick(Box<PickArgs>),
@@ -106,10 +106,11 @@ pub enum Command {
 /// The options of `durer info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Models; `-` reads one from standard input
-    #[arg(required = true, value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    /// Models, or map data: GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads a model
+    /// from standard input
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,
-    /// Write JSON: one object, or an array of them for several models
+    /// Write JSON: one object, or an array of them for several files
     #[arg(long)]
     pub json: bool,
     /// Reading and its limits.

@@ -3,14 +3,34 @@
 use crate::args::InfoArgs;
 use crate::failure::Failure;
 use crate::input;
+use crate::layer::{self, LayerInfo};
 use crate::messages::Messages;
 use crate::report;
 use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
 use durer::view::cull::triangle_area;
 use durer::view::topology::mesh_topology;
-use durer_formats::Model;
+use durer_formats::{Model, ModelFormat};
 use serde::Serialize;
 use std::fmt::Write;
+use std::io::BufRead;
+use std::path::Path;
+
+/// What a file holds.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Told {
+    Model(Box<Info>),
+    Layer(Box<LayerInfo>),
+}
+
+impl Told {
+    fn text(&self) -> String {
+        match self {
+            Self::Model(info) => info.text(),
+            Self::Layer(info) => info.text(),
+        }
+    }
+}
 
 /// What a model holds.
 #[derive(Debug, Serialize)]
@@ -73,19 +93,37 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     for path in &args.models {
         let name = input::display_name(path);
         messages.progress.stage(|| format!("reading {name}"));
-        let model = input::read(path, &options)?;
-        infos.push(of_model(name, &model));
+        infos.push(if is_layer(path) {
+            Told::Layer(Box::new(layer::of_layer(path)?))
+        } else {
+            Told::Model(Box::new(of_model(name, &input::read(path, &options)?)))
+        });
         messages.progress.advance();
     }
     drop(messages);
     if !args.json {
-        let texts: Vec<String> = infos.iter().map(Info::text).collect();
+        let texts: Vec<String> = infos.iter().map(Told::text).collect();
         return report::print_text(&texts.join("\n"));
     }
     match &infos[..] {
         [one] => report::print(one),
         several => report::print(&several),
     }
+}
+
+/// Whether a file holds map data, and no model: by its first bytes, or else by its name. Standard input holds a model.
+fn is_layer(path: &Path) -> bool {
+    if input::is_stream(path) {
+        return false;
+    }
+    let Ok(mut source) = layer::bytes(path) else { return false };
+    let Ok(head) = source.fill_buf() else { return false };
+    let lower = head.get(..2).unwrap_or_default().to_ascii_lowercase();
+    // Rows that begin with x are points of a model, as other columns beside them say.
+    let is_cloud = ModelFormat::of_name(&path.to_string_lossy()) == Some(ModelFormat::Xyz)
+        && lower.starts_with(b"x");
+    let is_model = ModelFormat::of_content(head).is_some() || is_cloud;
+    !is_model && layer::format_of(path, head).is_some()
 }
 
 fn of_model(name: String, model: &Model) -> Info {

@@ -94,6 +94,12 @@ fn read_whole(
         .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
 }
 
+/// What stands beside a file, where it is one.
+pub fn folder(path: &Path) -> Box<dyn Resources> {
+    let folder = if is_stream(path) { None } else { Folder::of(path).ok() };
+    folder.map_or_else(|| Box::new(NoResources) as Box<dyn Resources>, |f| Box::new(f))
+}
+
 /// What a model may refer to.
 fn resources(path: &Path, root: Option<&Path>) -> Result<Box<dyn Resources>, Failure> {
     let of_root = |root: &Path, e: std::io::Error| {

@@ -18,6 +18,7 @@ mod fit;
 mod info;
 mod input;
 mod kind;
+mod layer;
 mod lights;
 mod messages;
 mod output;

@@ -1,9 +1,10 @@
 //! `durer simplify`.
 
 use crate::args::RunningArgs;
-use crate::clip::{Counts, Source, named_format, open, place, words};
+use crate::clip::Counts;
 use crate::failure::Failure;
 use crate::input::{display_name, is_stream};
+use crate::layer::{self, Source, failure, named_format, open, words};
 use crate::messages::Messages;
 use crate::values;
 use clap::{ArgGroup, Args, ValueHint};
@@ -112,7 +113,7 @@ pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
         return Err(Failure::Usage(message.to_owned()));
     }
     let messages = Messages::new(&args.running, 1);
-    let (from, mut reader) = open(&args.input, args.from)?;
+    let (from, mut reader) = open(&args.input, args.from, None)?;
     let to = named_format(&args.output, args.to, Some(from))?;
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
@@ -129,7 +130,7 @@ pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
         total_seconds: 0.0,
         peak_memory_bytes: None,
     };
-    write(args, to, &mut reader, &mut report)?;
+    write(args, to, &mut reader, &mut report, &messages)?;
     tell(&messages, args, &reader, &mut report);
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
@@ -140,7 +141,7 @@ pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
 fn tell(messages: &Messages, args: &SimplifyArgs, reader: &Source, report: &mut Report) {
     let name = display_name(&args.input);
     messages.warnings(&name, reader.warnings());
-    report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
+    report.warnings.extend(reader.warnings().iter().map(ToString::to_string));
     let gone = report.given.features - report.out.features;
     let mut found = Vec::new();
     if report.given.features == 0 {
@@ -161,6 +162,7 @@ fn write(
     to: GeoFormat,
     reader: &mut Source,
     report: &mut Report,
+    messages: &Messages,
 ) -> Result<(), Failure> {
     let mut writer: Option<Writer<_>> = None;
     loop {
@@ -177,9 +179,8 @@ fn write(
         let writer = match &mut writer {
             Some(writer) => writer,
             none => {
-                let mut new = Writer::new(to, place(&args.output, to)?);
-                new.head(reader.members());
-                none.insert(new)
+                let system = reader.system();
+                none.insert(layer::writer(&args.output, to, reader.members(), system)?)
             }
         };
         for mut feature in features {
@@ -190,13 +191,13 @@ fn write(
             }
             if feature.geometry.is_some() || !had {
                 report.out.add(feature.geometry.as_ref());
-                writer.write(&feature).map_err(|e| crate::clip::failure(&args.output, &e))?;
+                writer.write(&feature).map_err(|e| failure(&args.output, &e))?;
             }
         }
     }
     let Some(writer) = writer else { return Ok(()) };
-    let done = writer.finish(reader.members());
-    done.map_err(|e| crate::clip::failure(&args.output, &e))?.commit()
+    report.warnings = layer::finish(writer, &args.output, reader.members(), messages)?;
+    Ok(())
 }
 
 /// The next features.

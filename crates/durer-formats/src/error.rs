@@ -100,6 +100,17 @@ impl Error {
         Self::Decode { place: Place::Path(path.into()), message: message.into() }
     }
 
+    /// The same error at a place that is made of its own.
+    pub(crate) fn at(self, place_of: impl FnOnce(Place) -> Place) -> Self {
+        match self {
+            Self::Decode { place, message } => Self::Decode { place: place_of(place), message },
+            Self::Unsupported { place, what, hint } => {
+                Self::Unsupported { place: place_of(place), what, hint }
+            }
+            other => other,
+        }
+    }
+
     /// A decode error of the file as a whole.
     pub fn whole(message: impl Into<String>) -> Self {
         Self::Decode { place: Place::Whole, message: message.into() }

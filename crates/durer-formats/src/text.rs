@@ -31,6 +31,14 @@ impl Tally {
         }
         self.count += 1;
     }
+
+    /// Adds what another one counted after this one.
+    pub fn append(&mut self, other: Self) {
+        if self.count == 0 {
+            self.first = other.first;
+        }
+        self.count += other.count;
+    }
 }
 
 /// Names and messages from bytes that should be UTF-8, at most 60 characters.

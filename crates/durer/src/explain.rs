@@ -49,6 +49,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &raster::line::anti_aliased::WU,
     &raster::line::anti_aliased::INFO,
     &raster::line::wide::INFO,
+    &raster::line::wide::buffer::INFO,
     &raster::line::tiled::INFO,
     &raster::triangle::edge_function::INFO,
     &raster::triangle::edge_walking::INFO,

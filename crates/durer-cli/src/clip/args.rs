@@ -3,6 +3,7 @@
 use super::engine::Algorithm;
 use super::window::{Window, region};
 use crate::args::RunningArgs;
+use crate::layer::{FieldArgs, SystemArgs};
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::polygon::{BooleanOp, FillRule};
@@ -17,6 +18,8 @@ Examples:
   durer clip parcels.geojson --op union -o built_up.geojson
   durer clip countries.geojson --tiles 4 -o tiles/
   durer clip countries.geojson --window -10,35,30,60 -o europe.svg
+  durer clip parcels.shp -o parcels.fgb --where 'use~forest' --select id,use
+  durer clip roads.gpx -o roads.geojson --to-crs EPSG:32632
   cat planet.geojsonl | durer clip - --window 5,45,11,48 -o - > alps.geojsonl
 
 Properties, ids and members that GeoJSON does not define are kept; heights and measures are \
@@ -28,14 +31,16 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer clip`.
 #[derive(Debug, Args)]
 pub struct ClipArgs {
-    /// GeoJSON (also one feature per line), WKT, WKB or SVG; `-` reads standard input
+    /// GeoJSON (also one feature per line), TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB or SVG, also
+    /// compressed by gzip; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
     /// Where the result goes
     ///
     /// A file whose suffix tells the format: .geojson, .json; .geojsonl, .ndjson, .jsonl (one
-    /// feature per line); .geojsons (RFC 8142); .wkt; .wkb; .hex; .svg. `-` for standard output, in
-    /// the format of the input. A file is replaced only by a whole result. With --tiles, a folder.
+    /// feature per line); .geojsons (RFC 8142); .topojson; .fgb; .shp, with .dbf, .shx, .cpg and .prj beside it; .csv;
+    /// .wkt; .wkb; .hex; .svg. `-` for standard output, in the format of the input. A file is replaced only by a whole
+    /// result. With --tiles, a folder.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// What to cut with.
@@ -44,10 +49,20 @@ pub struct ClipArgs {
     /// How to cut.
     #[command(flatten)]
     pub cutting: CuttingArgs,
+    /// Which features and fields.
+    #[command(flatten)]
+    pub fields: FieldArgs,
+    /// From which coordinates to which.
+    #[command(flatten)]
+    pub systems: SystemArgs,
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
     pub from: Option<GeoFormat>,
-    /// The format of OUT: geojson, geojsonl, geojsons, wkt, wkb, wkb-hex or svg [default: by its suffix]
+    /// The layer of a TopoJSON with several [default: all, as one]
+    #[arg(long, value_name = "NAME", help_heading = "Formats")]
+    pub layer: Option<String>,
+    /// The format of OUT: geojson, geojsonl, geojsons, topojson, flatgeobuf, shapefile, csv, wkt, wkb, wkb-hex or svg
+    /// [default: by its suffix]
     #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
     pub to: Option<GeoFormat>,
     /// Threads and messages.

@@ -2,14 +2,14 @@
 
 use super::args::ClipArgs;
 use super::engine::{Algorithm, Rules};
+use super::rules;
 use super::shapes::Area;
 use super::srids::Srids;
-use super::{open, rules, words};
 use crate::failure::Failure;
 use crate::input::display_name;
+use crate::layer::{open, words};
 use crate::messages::Messages;
 use durer::clip::polygon::rectangle::Prepared;
-use durer::clip::polygon::validity::{Touching, is_valid};
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes};
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::GeoFormat;
@@ -107,7 +107,7 @@ pub fn read(
     messages: &Messages,
 ) -> std::result::Result<Mask, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let (from, mut reader) = open(path, None)?;
+    let (from, mut reader) = open(path, None, None)?;
     let (mut all, mut rings, mut repaired) = (Area::default(), false, false);
     while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
         if let Some(geometry) = &feature.geometry {

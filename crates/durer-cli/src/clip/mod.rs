@@ -6,7 +6,6 @@ mod mask;
 mod mean_value;
 mod report;
 mod shapes;
-mod sink;
 mod srids;
 mod tiles;
 mod values;
@@ -14,28 +13,24 @@ mod window;
 
 pub use args::{ClipArgs, EXAMPLES, TileCoordinates, format};
 pub use report::Counts;
-pub use sink::failure;
 pub use window::window;
 
-use crate::failure::{Failure, in_words};
+use crate::failure::Failure;
 use crate::input::{display_name, is_stream};
+use crate::layer::{self, Fields, Shift, Sink, Source, failure, named_format, words};
 use crate::messages::Messages;
-use crate::output;
 use crate::tiles::Stopped;
+use durer::clip::polygon::validity::{self, Touching};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer::clip::tiles::Tile;
-use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Reader, Writer};
+use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
 use engine::{Algorithm, Cutter, Made, Rules};
 use mask::Mask;
 use rayon::prelude::*;
 use report::Report;
 use shapes::Area;
-use sink::Sink;
 use srids::Srids;
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::{BufRead, BufReader, IsTerminal};
-use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 use tiles::{Reach, Subject};
@@ -46,12 +41,6 @@ const BATCH: usize = 256;
 
 /// Positions that are held before a batch is cut, however few features they are.
 const BATCH_POSITIONS: usize = 1 << 18;
-
-/// Bytes that are looked at to find the format.
-const PROBE: usize = 64 << 10;
-
-/// A file that is read feature by feature.
-pub type Source = Reader<Box<dyn BufRead>>;
 
 /// Cuts one file.
 pub fn run(args: &ClipArgs) -> Result<(), Failure> {
@@ -66,8 +55,10 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         (_, Some(path)) => Some(mask::read(path, args, &mut mask_srids, &messages)?),
         _ => None,
     };
-    let (from, mut reader) = open(&args.input, args.from)?;
+    let (from, mut reader) = crate::layer::open(&args.input, args.from, args.layer.as_deref())?;
     let to = output_format(args, from)?;
+    let shift = Shift::new(&args.systems, from, &reader.system())?;
+    let fields = Fields::new(&args.fields);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
         input: display_name(&args.input),
@@ -77,22 +68,34 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         mask_srids,
         ..Report::default()
     };
-    let (source, told) = (&mut reader, &mut report);
-    let mut job = Job { args, to, messages: &messages, reader: source, report: told, failed: None };
-    match (args.region.tiles, mask) {
-        (Some(zoom), _) => job.tile(zoom)?,
-        (None, mask) if joins(args) => job.join(mask.as_ref())?,
-        (None, Some(mask)) => job.cut(mask)?,
-        (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
-    }
-    tell(&messages, args, to, &reader, &mut report);
+    let is_shifted = shift.is_some();
+    let further = {
+        let (messages, reader, report) = (&messages, &mut reader, &mut report);
+        let mut job = Job { args, to, messages, reader, report, failed: None, shift, fields };
+        match (args.region.tiles, mask) {
+            (Some(zoom), _) => job.tile(zoom)?,
+            (None, mask) if joins(args) => job.join(mask.as_ref())?,
+            (None, Some(mask)) => job.cut(mask)?,
+            (None, None) if converts(args, from, to) => job.convert()?,
+            (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
+        }
+        [job.fields.told(), job.shift.as_ref().and_then(Shift::told), job.unfit()]
+    };
+    tell(&messages, args, to, &reader, &mut report, is_shifted, further.into_iter().flatten());
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
-const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles";
+const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles; without them features are only \
+                       converted to another format, chosen by --where and the like, or brought to --to-crs";
+
+/// Whether features are to be changed or written otherwise without being cut.
+fn converts(args: &ClipArgs, from: GeoFormat, to: GeoFormat) -> bool {
+    let systems = &args.systems;
+    from != to || !args.fields.is_idle() || systems.to_crs.is_some() || systems.from_crs.is_some()
+}
 
 /// Whether all polygons become one.
 fn joins(args: &ClipArgs) -> bool {
@@ -107,7 +110,10 @@ fn check(args: &ClipArgs) -> Result<(), Failure> {
         return usage("`-` is given twice; standard input holds one file");
     }
     let mask = region.window.is_some() || region.by.is_some();
-    if !mask && region.tiles.is_none() && !joins(args) {
+    let is_plain = !region.outside
+        && args.cutting.op == BooleanOp::Intersection
+        && args.cutting.algorithm.is_none();
+    if !mask && region.tiles.is_none() && !joins(args) && !is_plain {
         return usage(NO_MASK);
     }
     if args.json && is_stream(&args.output) {
@@ -148,52 +154,10 @@ fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
     Rules { fill, grid: args.cutting.grid }
 }
 
-/// Opens a file, or standard input, and finds its format.
-pub fn open(path: &Path, format: Option<GeoFormat>) -> Result<(GeoFormat, Source), Failure> {
-    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let mut source: Box<dyn BufRead> = if is_stream(path) {
-        Box::new(BufReader::with_capacity(PROBE, std::io::stdin()))
-    } else {
-        let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
-        if file.metadata().is_ok_and(|m| m.is_dir()) {
-            return Err(fail("it is a folder; name the file in it".to_owned()));
-        }
-        Box::new(BufReader::with_capacity(PROBE, file))
-    };
-    let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
-    let by_name = || GeoFormat::of_name(&path.to_string_lossy());
-    let found = format.or_else(|| GeoFormat::of_content(head)).or_else(by_name);
-    let Some(format) = found else {
-        let what = if head.is_empty() { "the file is empty" } else { "not a known format" };
-        return Err(fail(format!("{what}; map data are read from GeoJSON, WKT, WKB and SVG")));
-    };
-    // The layouts of GeoJSON are read alike; the suffix tells the one to write to a stream.
-    let named = by_name().filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
-    let reader = Reader::new(format, source).map_err(|e| fail(words(&e)))?;
-    Ok((named.unwrap_or(format), reader))
-}
-
-/// What went wrong with reading, in the command's words.
-pub fn words(error: &durer_formats::Error) -> String {
-    match error {
-        durer_formats::Error::Io(e) => in_words(e),
-        other => other.to_string(),
-    }
-}
-
-/// The format of the result: as told, by the suffix, or on a stream that of the input.
-pub fn named_format(
-    output: &Path,
-    to: Option<GeoFormat>,
-    from: Option<GeoFormat>,
-) -> Result<GeoFormat, Failure> {
-    let named = GeoFormat::of_name(&output.to_string_lossy());
-    let stream = is_stream(output) || output::is_special(output);
-    to.or(named).or(from.filter(|_| stream)).ok_or_else(|| {
-        let suffixes = GeoFormat::ALL.map(|f| f.suffixes()[0]).join(", .");
-        let message = format!("the suffix tells no format; use one of .{suffixes}, or --to");
-        Failure::Usage(format!("--output {}: {message}", output.display()))
-    })
+/// Whether no polygons of a geometry cross, pinch or overlap themselves or one another.
+pub fn is_valid(geometry: &Geometry) -> bool {
+    let area = Area::of_geometry(geometry);
+    area.shapes.is_empty() || validity::is_valid(&area.shapes, Touching::AtPoints)
 }
 
 /// The format of the result; of tiles always GeoJSON.
@@ -213,23 +177,19 @@ fn output_format(args: &ClipArgs, from: GeoFormat) -> Result<GeoFormat, Failure>
     Ok(format)
 }
 
-/// A place for one file.
-pub fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
-    if !is_stream(output) {
-        return Sink::file(output);
-    }
-    if to == GeoFormat::Wkb && std::io::stdout().is_terminal() {
-        let message = "--output -: WKB is no text for a terminal; use a pipe or a file";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    Ok(Sink::stdout())
-}
-
 /// Warnings of reading and of cutting.
-fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, report: &mut Report) {
+fn tell(
+    messages: &Messages,
+    args: &ClipArgs,
+    to: GeoFormat,
+    reader: &Source,
+    report: &mut Report,
+    is_shifted: bool,
+    further: impl Iterator<Item = String>,
+) {
     let name = display_name(&args.input);
     messages.warnings(&name, reader.warnings());
-    report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
+    report.warnings.extend(reader.warnings().iter().map(ToString::to_string));
     let more = reader.further_warnings();
     if more > 0 {
         report.warnings.push(format!("and {more} more"));
@@ -263,7 +223,11 @@ fn tell(messages: &Messages, args: &ClipArgs, to: GeoFormat, reader: &Source, re
     if report.given.features == 0 {
         found.push("there is no feature in it".to_owned());
     }
-    found.extend(report.srids.told(&report.mask_srids, joins(args), to));
+    if !is_shifted {
+        let is_told = reader.system().code.is_some() && to.is_geojson();
+        found.extend(report.srids.told(&report.mask_srids, joins(args), to, is_told));
+    }
+    found.extend(further);
     let (lines, points) = (report.given.lines, report.given.points);
     if joins(args) && lines + points > 0 {
         let op = args.cutting.op;
@@ -304,6 +268,8 @@ struct Job<'a> {
     report: &'a mut Report,
     /// Why reading ended, told when what was read before is written.
     failed: Option<Failure>,
+    shift: Option<Shift>,
+    fields: Fields,
 }
 
 impl Job<'_> {
@@ -319,7 +285,7 @@ impl Job<'_> {
         let mut features = Vec::new();
         let mut positions = 0;
         while features.len() < BATCH && positions < BATCH_POSITIONS {
-            let feature = match self.reader.next_feature() {
+            let mut feature = match self.reader.next_feature() {
                 Ok(Some(feature)) => feature,
                 Ok(None) => break,
                 Err(e) if features.is_empty() => return Err(self.fail(words(&e))),
@@ -328,8 +294,16 @@ impl Job<'_> {
                     break;
                 }
             };
+            if !self.fields.apply(&mut feature) {
+                self.report.unchosen += 1;
+                continue;
+            }
             self.report.given.add(feature.geometry.as_ref());
             self.report.srids.add(feature.srid);
+            // Tiles are in their own system, which features are brought to before.
+            if self.args.region.tiles.is_some() && !self.shifted(&mut feature) {
+                feature.geometry = None;
+            }
             positions += feature.geometry.as_ref().map_or(0, Geometry::len);
             features.push(feature);
         }
@@ -339,11 +313,16 @@ impl Job<'_> {
     }
 
     /// Writes what there is, whole or not at all.
-    fn put(&mut self, writer: &mut Option<Writer<Sink>>, feature: &Feature) -> Result<(), Failure> {
+    fn put(
+        &mut self,
+        writer: &mut Option<Writer<Sink>>,
+        feature: &mut Feature,
+    ) -> Result<(), Failure> {
+        if self.args.region.tiles.is_none() && !self.shifted(feature) {
+            return Ok(());
+        }
         if writer.is_none() {
-            let mut new = Writer::new(self.to, place(&self.args.output, self.to)?);
-            new.head(self.reader.members());
-            *writer = Some(new);
+            *writer = Some(self.writer()?);
         }
         self.report.out.add(feature.geometry.as_ref());
         match writer {
@@ -355,10 +334,83 @@ impl Job<'_> {
     fn end(&mut self, writer: Option<Writer<Sink>>) -> Result<(), Failure> {
         let writer = match writer {
             Some(writer) => writer,
-            None => Writer::new(self.to, place(&self.args.output, self.to)?),
+            None => self.writer()?,
         };
-        let done = writer.finish(self.reader.members());
-        done.map_err(|e| failure(&self.args.output, &e))?.commit()
+        let told = layer::finish(writer, &self.args.output, &self.members(), self.messages)?;
+        self.report.warnings.extend(told);
+        Ok(())
+    }
+
+    /// A writer that knows what stands before the features.
+    fn writer(&self) -> Result<Writer<Sink>, Failure> {
+        layer::writer(&self.args.output, self.to, &self.members(), self.system())
+    }
+
+    /// The coordinate system of what is written.
+    fn system(&self) -> System {
+        match (&self.shift, &self.args.systems.from_crs) {
+            (Some(shift), _) => shift.system.clone(),
+            (None, Some(from)) => from.system(),
+            (None, None) => {
+                let told = self.reader.system();
+                let common = self.report.srids.common().filter(|_| told.is_unknown());
+                common.map_or(told, System::of_code)
+            }
+        }
+    }
+
+    /// Members of the collection, with the one that tells the coordinate system where GeoJSON must be told.
+    fn members(&self) -> Vec<Member> {
+        let mut members = self.reader.members().to_vec();
+        if !matches!(self.to, GeoFormat::GeoJson | GeoFormat::TopoJson) {
+            return members;
+        }
+        let is_new = self.shift.is_some() || self.args.systems.from_crs.is_some();
+        members.retain(|member| !is_new || member.name != CRS);
+        let told = members.iter().any(|member| member.name == CRS);
+        let told_by_file = is_new || !self.reader.system().is_unknown();
+        members.extend(self.system().member().filter(|_| !told && told_by_file));
+        members
+    }
+
+    /// What is to be told where GeoJSON has other coordinates than it should.
+    fn unfit(&self) -> Option<String> {
+        let code = self.system().code.filter(|code| *code != 4326 && self.to.is_lonlat())?;
+        let told = self.members().iter().any(|member| member.name == CRS);
+        let own = self.reader.members().iter().any(|member| member.name == CRS);
+        (told && (self.shift.is_some() || !own)).then(|| {
+            format!(
+                "{} stands for longitude and latitude (RFC 7946); that coordinates are EPSG:{code} is told by \
+                 its older member crs, which not all programs heed",
+                self.to
+            )
+        })
+    }
+
+    /// Whether a feature has a place in the system that is asked for, to which it is brought.
+    fn shifted(&mut self, feature: &mut Feature) -> bool {
+        match &mut self.shift {
+            Some(shift) => shift.apply(feature),
+            None => {
+                let from = self.args.systems.from_crs.as_ref();
+                feature.srid = from.map_or(feature.srid, |from| from.code());
+                true
+            }
+        }
+    }
+
+    /// All features as they are.
+    fn convert(&mut self) -> Result<(), Failure> {
+        let mut writer = None;
+        loop {
+            let features = self.batch()?;
+            if features.is_empty() {
+                return self.end(writer);
+            }
+            for mut feature in features {
+                self.put(&mut writer, &mut feature)?;
+            }
+        }
     }
 
     /// Each feature for itself.
@@ -393,7 +445,7 @@ impl Job<'_> {
                 if cut.geometry.is_some() {
                     feature.geometry = cut.geometry;
                     feature.fill_rule = FillRule::EvenOdd;
-                    self.put(&mut writer, &feature)?;
+                    self.put(&mut writer, &mut feature)?;
                 }
             }
         }
@@ -440,7 +492,8 @@ impl Job<'_> {
         let mut writer = None;
         if let Some(geometry) = joined.area.into_geometry() {
             let srid = self.report.srids.common();
-            self.put(&mut writer, &Feature { srid, ..Feature::of_geometry(geometry) })?;
+            let mut joined = Feature { srid, ..Feature::of_geometry(geometry) };
+            self.put(&mut writer, &mut joined)?;
         }
         self.end(writer)
     }
@@ -489,7 +542,7 @@ impl Job<'_> {
                 for (tile, geometry) in pieces {
                     seen.insert(tile);
                     crate::tiles::too_many(seen.len() as u64, limit)?;
-                    self.put(&mut writer, &with_tile(feature, geometry, tile))?;
+                    self.put(&mut writer, &mut with_tile(feature, geometry, tile))?;
                 }
             }
             first += features.len();
@@ -567,6 +620,9 @@ impl Job<'_> {
         }
     }
 }
+
+/// The member of GeoJSON's older version that tells the coordinate system, as JSON writes it.
+const CRS: &str = "\"crs\"";
 
 /// The member that names a feature's tile, as JSON writes it.
 const TILE: &str = "\"tile\"";

@@ -21,6 +21,9 @@ pub struct Report {
     /// What was read.
     #[serde(rename = "in")]
     pub given: Counts,
+    /// Features that --where left out.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub unchosen: u64,
     /// What was written.
     pub out: Counts,
     /// Features whose polygons crossed themselves or one another and were made valid.
@@ -60,6 +63,10 @@ pub struct Report {
     pub total_seconds: f64,
     /// The most memory that the process held, where the system tells.
     pub peak_memory_bytes: Option<u64>,
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Counts and sizes of geometries.

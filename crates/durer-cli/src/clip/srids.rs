@@ -1,4 +1,4 @@
-//! The numbers of coordinate systems that EWKT and EWKB tell; coordinates are never converted.
+//! The numbers of coordinate systems that features tell.
 
 use durer_formats::geo::GeoFormat;
 
@@ -39,8 +39,8 @@ impl Srids {
         format!("{name} {}{}", numbers.join(", "), if more { " and others" } else { "" })
     }
 
-    /// What gets lost or does not fit.
-    pub fn told(&self, mask: &Self, joined: bool, to: GeoFormat) -> Vec<String> {
+    /// What gets lost or does not fit; `is_told` where the result tells the system of all features.
+    pub fn told(&self, mask: &Self, joined: bool, to: GeoFormat, is_told: bool) -> Vec<String> {
         let mut told = Vec::new();
         if self.first.is_empty() {
             return told;
@@ -52,7 +52,8 @@ impl Srids {
             let message = format!("the mask has another SRID, {its} and not {own}");
             told.push(format!("{message}; coordinates are taken as they are"));
         }
-        if !matches!(to, GeoFormat::Wkt | GeoFormat::Wkb | GeoFormat::WkbHex) {
+        let is_meant = to.is_lonlat() && self.first == [4326];
+        if !to.tells_system() && !is_meant && !is_told {
             let are = if several { "are" } else { "is" };
             told.push(format!(
                 "{} {are} left out: {} has no place for it",

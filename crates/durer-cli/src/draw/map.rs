@@ -14,7 +14,7 @@ use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
 use durer::raster::paint::{Canvas, Paint};
 use durer::view::window::{Aspect, Viewport, Window, WindowToViewport, YAxis};
-use durer_formats::geo::{Feature, Geometry, Points, Reader};
+use durer_formats::geo::{Feature, Geometry, Points};
 use durer_formats::svg::no_glyphs;
 use std::time::Instant;
 
@@ -115,7 +115,8 @@ impl Job<'_> {
         let name = display_name(&given.layer.input);
         let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
         self.messages.progress.stage(|| format!("reading {name}"));
-        let mut reader = Reader::new(given.format, &given.bytes[..]).map_err(fail)?;
+        let reader = crate::layer::reader(&given.layer.input, given.format, &given.bytes[..], None);
+        let mut reader = reader.map_err(fail)?;
         let mut features = Vec::new();
         while let Some(feature) = reader.next_feature().map_err(fail)? {
             features.push(feature);

@@ -14,7 +14,7 @@ pub use args::{DrawArgs, EXAMPLES};
 pub use layers::is_style;
 
 use crate::encoding;
-use crate::failure::Failure;
+use crate::failure::{Failure, in_words};
 use crate::input::{self, display_name, is_stream};
 use crate::kind::Wanted;
 use crate::messages::Messages;
@@ -30,6 +30,7 @@ use durer_formats::Warning;
 use durer_formats::geo::GeoFormat;
 use layers::Layer;
 use report::{LayerReport, Report};
+use std::io::Read;
 use std::time::Instant;
 
 /// The longer side of a map in pixels, where no size is given.
@@ -136,15 +137,15 @@ impl Job<'_> {
         let name = display_name(&layer.input);
         self.messages.progress.stage(|| format!("reading {name}"));
         let start = Instant::now();
-        let bytes = input::bytes(&layer.input, self.args.max_bytes)?;
+        let bytes = unzipped(input::bytes(&layer.input, self.args.max_bytes)?, self.args.max_bytes);
+        let bytes = bytes.map_err(|e| Failure::Data(format!("{name}: {e}")))?;
         self.report.read_seconds += start.elapsed().as_secs_f64();
-        let by_name = || GeoFormat::of_name(&layer.input.to_string_lossy());
         let svg = GeoFormat::of_content(&bytes) == Some(GeoFormat::Svg);
         let told = self.args.from.filter(|_| !svg);
-        let format = told.or_else(|| GeoFormat::of_content(&bytes)).or_else(by_name);
+        let format = told.or_else(|| crate::layer::format_of(&layer.input, &bytes));
         let Some(format) = format else {
-            let what = if bytes.is_empty() { "the file is empty" } else { "not a known format" };
-            let message = format!("{name}: {what}; drawn are SVG, GeoJSON, WKT and WKB");
+            let (what, read) = (GeoFormat::foreign(&bytes), GeoFormat::READ);
+            let message = format!("{name}: {what}; drawn are SVG, and map data from {read}");
             return Err(Failure::Data(message));
         };
         let (input, map) = (name, None);
@@ -183,6 +184,22 @@ impl Job<'_> {
         }
         Viewport::new(pixels).map_err(usage)
     }
+}
+
+/// The bytes of a file, decompressed where they are compressed by gzip, of which there may be no more than a limit. (An
+/// SVG is decompressed by its reader.)
+fn unzipped(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok(bytes);
+    }
+    let source = durer_formats::geo::unzipped(Box::new(&bytes[..]), 1 << 16);
+    let mut all = Vec::new();
+    let read = source.and_then(|s| s.take(limit.saturating_add(1)).read_to_end(&mut all));
+    read.map_err(|e| in_words(&e))?;
+    let fits = all.len() as u64 <= limit;
+    fits.then_some(all).ok_or_else(|| {
+        format!("it has more bytes than the limit of {limit}; --max-bytes raises it")
+    })
 }
 
 /// Whole sides for something of a given shape, which by itself would have the size `natural`.

@@ -1,9 +1,10 @@
 //! What the files have, projected and with numbered properties.
 
 use super::args::TilesArgs;
-use crate::clip::{TileCoordinates, open, words};
+use crate::clip::TileCoordinates;
 use crate::failure::Failure;
 use crate::input::display_name;
+use crate::layer::{open, words};
 use crate::messages::Messages;
 use crate::output;
 use durer::clip::polygon::Shapes;
@@ -103,7 +104,7 @@ pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
         });
         let shown = display_name(path);
         let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
-        let (from, mut reader) = open(path, args.from)?;
+        let (from, mut reader) = open(path, args.from, None)?;
         if from == GeoFormat::Svg {
             return Err(Failure::Data(format!("{shown}: an SVG has no places on the earth")));
         }

@@ -90,7 +90,7 @@ impl Out {
 
     /// Adds a tile.
     pub fn add(&mut self, tile: Tile, bytes: &[u8]) -> Result<(), Failure> {
-        let fail = |path: &Path, done: Made<()>| done.map_err(|e| crate::clip::failure(path, &e));
+        let fail = |path: &Path, done: Made<()>| done.map_err(|e| crate::layer::failure(path, &e));
         match self {
             Self::PmTiles(out, path) => fail(path, out.add(tile.id(), bytes)),
             Self::MbTiles(out, path) => fail(path, out.add(tile, bytes)),
@@ -101,7 +101,7 @@ impl Out {
     /// Puts everything in its place.
     pub fn finish(self, metadata: &Metadata) -> Result<(), Failure> {
         let commit = |path: &Path, done: Made<File>| {
-            let file = done.map_err(|e| crate::clip::failure(path, &e))?;
+            let file = done.map_err(|e| crate::layer::failure(path, &e))?;
             let moved = file.into_inner().map_err(std::io::IntoInnerError::into_error);
             moved.and_then(Beside::commit).map_err(|e| Failure::of_file(path, in_words(&e)))
         };

@@ -13,7 +13,7 @@ const DEPTH: usize = 10_000;
 
 /// The elements, by number, each after the one that it is in.
 #[derive(Debug, Default)]
-pub(super) struct Document<'a> {
+pub(crate) struct Document<'a> {
     text: &'a str,
     elements: Vec<Element>,
     /// Names of elements and attributes, each once.

@@ -8,7 +8,7 @@
 //! and physics. Lengths become metres through the matrices of the instances. Colours are sRGB
 //! values, those of materials from Blender since 2.80 linear. An x axis that is up becomes y.
 
-mod document;
+pub(crate) mod document;
 mod eye;
 mod faults;
 mod geometry;

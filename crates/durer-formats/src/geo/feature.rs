@@ -223,7 +223,9 @@ pub struct Feature {
     /// Members that the format does not define, in the file's order. `bbox` is never kept: it would
     /// be wrong once the geometry is cut.
     pub members: Vec<Member>,
-    /// The number of the coordinate system, of EWKT and EWKB.
+    /// Members of its geometry that the format does not define.
+    pub geometry_members: Vec<Member>,
+    /// The number of the coordinate system, of EWKT, EWKB and files that tell it for all features.
     pub srid: Option<i32>,
     /// Which points its polygons enclose: even-odd, but for paths of an SVG.
     pub fill_rule: FillRule,
@@ -233,5 +235,15 @@ impl Feature {
     /// A feature that is nothing but a geometry.
     pub fn of_geometry(geometry: Geometry) -> Self {
         Self { geometry: Some(geometry), ..Self::default() }
+    }
+
+    /// The properties one by one, in their order; none where there are none.
+    pub fn fields(&self) -> Vec<Member> {
+        super::members::members(self.properties.as_deref().unwrap_or_default())
+    }
+
+    /// Sets all properties.
+    pub fn set_fields(&mut self, fields: &[Member]) {
+        self.properties = Some(super::members::object(fields));
     }
 }

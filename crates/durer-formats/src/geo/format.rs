@@ -1,6 +1,6 @@
 //! The formats of geodata, and how they are told apart.
 
-use super::{wkb, wkt};
+use super::{csv, flatgeobuf, foreign, markup, shapefile, topojson, wkb, wkt};
 
 /// A format of geodata.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -19,11 +19,23 @@ pub enum GeoFormat {
     WkbHex,
     /// SVG.
     Svg,
+    /// Shapefile: the .shp, with what is beside it.
+    Shapefile,
+    /// FlatGeobuf.
+    FlatGeobuf,
+    /// TopoJSON.
+    TopoJson,
+    /// A table as text, with geometries as WKT, or as longitude and latitude.
+    Csv,
+    /// KML; only read.
+    Kml,
+    /// GPX; only read.
+    Gpx,
 }
 
 impl GeoFormat {
     /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 13] = [
         Self::GeoJson,
         Self::GeoJsonSeq,
         Self::GeoJsonRs,
@@ -31,7 +43,16 @@ impl GeoFormat {
         Self::Wkb,
         Self::WkbHex,
         Self::Svg,
+        Self::Shapefile,
+        Self::FlatGeobuf,
+        Self::TopoJson,
+        Self::Csv,
+        Self::Kml,
+        Self::Gpx,
     ];
+
+    /// What is read, for messages.
+    pub const READ: &'static str = "GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB and SVG, also compressed by gzip";
 
     /// The name used on the command line.
     pub fn name(self) -> &'static str {
@@ -43,6 +64,12 @@ impl GeoFormat {
             Self::Wkb => "wkb",
             Self::WkbHex => "wkb-hex",
             Self::Svg => "svg",
+            Self::Shapefile => "shapefile",
+            Self::FlatGeobuf => "flatgeobuf",
+            Self::TopoJson => "topojson",
+            Self::Csv => "csv",
+            Self::Kml => "kml",
+            Self::Gpx => "gpx",
         }
     }
 
@@ -56,6 +83,12 @@ impl GeoFormat {
             Self::Wkb => &["wkb", "ewkb"],
             Self::WkbHex => &["hex", "wkbhex"],
             Self::Svg => &["svg"],
+            Self::Shapefile => &["shp"],
+            Self::FlatGeobuf => &["fgb"],
+            Self::TopoJson => &["topojson"],
+            Self::Csv => &["csv", "tsv"],
+            Self::Kml => &["kml"],
+            Self::Gpx => &["gpx"],
         }
     }
 
@@ -66,27 +99,73 @@ impl GeoFormat {
 
     /// Whether features can be written one after the other, without holding them.
     pub fn streams(self) -> bool {
-        self != Self::Svg
+        self.is_geojson() || matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
+    }
+
+    /// Whether it is written, and not only read.
+    pub fn is_written(self) -> bool {
+        !matches!(self, Self::Kml | Self::Gpx)
+    }
+
+    /// Whether features keep their properties in it.
+    pub fn has_fields(self) -> bool {
+        !matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Svg)
+    }
+
+    /// Whether its files are bytes that are no text.
+    pub fn is_binary(self) -> bool {
+        matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf)
+    }
+
+    /// Whether its coordinates are longitude and latitude on WGS 84 where nothing else is said.
+    pub fn is_lonlat(self) -> bool {
+        self.is_geojson() || matches!(self, Self::TopoJson | Self::Kml | Self::Gpx)
+    }
+
+    /// Whether it has a place for the number of the coordinate system.
+    pub fn tells_system(self) -> bool {
+        matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Shapefile | Self::FlatGeobuf)
     }
 
     /// The format that the first bytes of a file speak for, if they do.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
+            _ if foreign::of_content(bytes).is_some() => None,
+            _ if shapefile::sniff(bytes) => Some(Self::Shapefile),
+            _ if flatgeobuf::sniff(bytes) => Some(Self::FlatGeobuf),
+            Some(b'{') if topojson::sniff(text) => Some(Self::TopoJson),
             Some(0x1e) => Some(Self::GeoJsonRs),
             Some(b'{') if has_another_object(text) => Some(Self::GeoJsonSeq),
             Some(b'{') => Some(Self::GeoJson),
-            Some(b'<') => Some(Self::Svg),
+            Some(b'<') => Some(match markup::root(text) {
+                Some("kml") => Self::Kml,
+                Some("gpx") => Self::Gpx,
+                _ => Self::Svg,
+            }),
             _ if wkb::sniff(bytes) => Some(Self::Wkb),
             _ if wkb::sniff_hex(text) => Some(Self::WkbHex),
-            _ => wkt::sniff(text).then_some(Self::Wkt),
+            _ if wkt::sniff(text) => Some(Self::Wkt),
+            _ => csv::sniff(text).then_some(Self::Csv),
+        }
+    }
+
+    /// What the first bytes of a file are, where they are of no format that is read: a sentence for messages.
+    pub fn foreign(bytes: &[u8]) -> String {
+        match foreign::of_content(bytes) {
+            Some((what, hint)) => format!("this is {what}; {hint}"),
+            None if bytes.is_empty() => "the file is empty".to_owned(),
+            None => "not a known format".to_owned(),
         }
     }
 
     /// The format that a file's name speaks for, if it does.
     pub fn of_name(name: &str) -> Option<Self> {
-        let (_, suffix) = name.rsplit_once('.')?;
+        let (stem, suffix) = name.rsplit_once('.')?;
         let suffix = suffix.to_ascii_lowercase();
+        if suffix == "gz" {
+            return Self::of_name(stem);
+        }
         Self::ALL.into_iter().find(|f| f.suffixes().contains(&suffix.as_str()))
     }
 }
@@ -135,11 +214,28 @@ mod tests {
             (b"\x01\x01\0\0\0", Some(GeoFormat::Wkb)),
             (b"0101000000", Some(GeoFormat::WkbHex)),
             (b"pointless", None),
+            (
+                b"\0\0\x27\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x32\xe8\x03\0\0\x05",
+                Some(GeoFormat::Shapefile),
+            ),
+            (b"fgb\x03fgb\x01", Some(GeoFormat::FlatGeobuf)),
+            (b"{ \"type\" : \"Topology\"", Some(GeoFormat::TopoJson)),
+            (b"{\"a\":\"Topology\"", Some(GeoFormat::GeoJson)),
+            (b"name;Lon;Lat\nx;1;2", Some(GeoFormat::Csv)),
+            (b"WKT,name\n", Some(GeoFormat::Csv)),
+            (b"name,place\n", None),
+            (b"<?xml version='1.0'?>\n<!-- <svg> -->\n<kml:kml>", Some(GeoFormat::Kml)),
+            (b"<gpx version='1.1'>", Some(GeoFormat::Gpx)),
+            (b"<osm version='0.6'>", None),
+            (b"SQLite format 3\0", None),
+            (b"II*\0", None),
             (b"", None),
         ] {
             assert_eq!(GeoFormat::of_content(content), expected, "{content:?}");
         }
         assert_eq!(GeoFormat::of_name("a/b.NDJSON"), Some(GeoFormat::GeoJsonSeq));
         assert_eq!(GeoFormat::of_name("geojson"), None);
+        assert_eq!(GeoFormat::of_name("a.csv.GZ"), Some(GeoFormat::Csv));
+        assert!(GeoFormat::foreign(b"PAR1").contains("GeoParquet"));
     }
 }

@@ -1,8 +1,10 @@
-//! Geodata: features in GeoJSON, WKT, WKB and SVG, read and written one at a time.
+//! Geodata: features in GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, WKT, WKB and SVG, read and written one at
+//! a time; and in KML and GPX, read.
 //!
 //! [`Reader`] takes bytes and gives features; [`Writer`] takes features and gives bytes. GeoJSON is
 //! read and written as a stream, a feature at a time, whichever way it is laid out (a
 //! FeatureCollection, one feature per line, RFC 8142 sequences); the other formats are held whole.
+//! [`unzipped`] lets any of them be compressed by gzip. [`crs`] brings coordinates from one system to another.
 //!
 //! ```
 //! use durer_formats::geo::{GeoFormat, Reader, Writer};
@@ -17,21 +19,38 @@
 //! # Ok::<(), durer_formats::Error>(())
 //! ```
 
+pub mod crs;
+mod csv;
+mod curve;
 mod feature;
+mod flatgeobuf;
+mod foreign;
 mod format;
 mod geojson;
+mod gpx;
+mod gzip;
+mod kml;
+mod markup;
+mod members;
 pub(crate) mod number;
 mod reader;
+mod schema;
+mod shapefile;
 mod svg;
 mod svg_shapes;
+mod system;
+mod topojson;
 mod wkb;
 mod wkt;
 mod writer;
 
 pub use feature::{Dimensions, Feature, Geometry, Member, Points};
 pub use format::GeoFormat;
-pub use reader::{Reader, read_all};
-pub use writer::Writer;
+pub use gzip::unzipped;
+pub use reader::{Beside, Reader, read_all};
+pub use schema::{Field, FieldKind, Schema};
+pub use system::System;
+pub use writer::{Finished, Writer};
 
 /// Geometries and values may be nested so deep, at most.
 const MAX_DEPTH: usize = 128;
@@ -44,12 +63,51 @@ const MAX_WARNINGS: usize = 1000;
 struct Warnings {
     kept: Vec<crate::Warning>,
     more: u64,
+    /// Curves that became lines; told at the end.
+    curves: crate::text::Tally,
+    /// Members of geometries within others, which have no place; told at the end.
+    members: crate::text::Tally,
 }
 
 impl Warnings {
     /// Whether no more are kept.
     fn are_many(&self) -> bool {
         self.kept.len() >= MAX_WARNINGS
+    }
+
+    /// Takes over what another reader has found.
+    fn append(&mut self, other: &mut Self) {
+        for warning in other.kept.drain(..) {
+            self.push(warning.place, warning.message);
+        }
+        self.more += std::mem::take(&mut other.more);
+        self.curves.append(std::mem::take(&mut other.curves));
+        self.members.append(std::mem::take(&mut other.members));
+    }
+
+    /// Lets all places be others, made of them.
+    fn relocate(&mut self, place_of: impl Fn(crate::Place) -> crate::Place) {
+        let tallies = [&mut self.curves, &mut self.members].map(|tally| &mut tally.first);
+        let places = self.kept.iter_mut().map(|warning| &mut warning.place).chain(tallies);
+        places.for_each(|place| *place = place_of(std::mem::take(place)));
+    }
+
+    /// Tells what was counted.
+    fn tell(&mut self) {
+        for (tally, what) in [
+            (
+                std::mem::take(&mut self.curves),
+                "curves are flattened to lines of 32 edges per quarter turn",
+            ),
+            (
+                std::mem::take(&mut self.members),
+                "members of geometries within collections, which GeoJSON does not define, are left out",
+            ),
+        ] {
+            if tally.count > 0 {
+                self.push(tally.first, format!("{} {what}", tally.count));
+            }
+        }
     }
 
     fn push(&mut self, place: crate::Place, message: impl Into<String>) {

@@ -1,11 +1,38 @@
 //! Features from bytes in any format.
 
-use super::{Feature, GeoFormat, Member, Warnings, geojson, svg_shapes, wkb, wkt};
-use crate::{Error, Place, Result, Warning};
+use super::{
+    Feature, GeoFormat, Member, System, Warnings, csv, flatgeobuf, geojson, gpx, kml, shapefile,
+    svg_shapes, topojson, wkb, wkt,
+};
+use crate::{Error, NoResources, Place, Resources, Result, Warning};
 use std::io::Read;
 
 /// Files that are held whole may have so many bytes.
 const MAX_BYTES: u64 = 4 << 30;
+
+/// What is known of a file beside its bytes.
+#[derive(Clone, Copy)]
+pub struct Beside<'a> {
+    /// The file's name, without a folder.
+    pub name: &'a str,
+    /// Finds the other files of a format that has several, by the file's name with another ending.
+    pub resources: &'a dyn Resources,
+    /// The layer that is read of a file with several; all, where none is named.
+    pub layer: Option<&'a str>,
+}
+
+impl Beside<'_> {
+    /// Nothing.
+    pub const NOTHING: Beside<'static> = Beside { name: "", resources: &NoResources, layer: None };
+
+    /// The file of the same name with another ending; `None` where there is none.
+    pub(super) fn find(&self, suffix: &str) -> Option<Vec<u8>> {
+        let stem = self.name.strip_suffix(".gz").unwrap_or(self.name);
+        let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+        let found = self.resources.find(&format!("{stem}.{suffix}"), MAX_BYTES);
+        found.ok().map(|found| found.bytes).filter(|_| !stem.is_empty())
+    }
+}
 
 /// Gives the features of a file, one after the other.
 ///
@@ -13,6 +40,10 @@ const MAX_BYTES: u64 = 4 << 30;
 pub struct Reader<R> {
     source: Source<R>,
     warnings: Warnings,
+    /// What a file says of all its coordinates.
+    system: System,
+    /// Members of the file that are known at once.
+    members: Vec<Member>,
 }
 
 enum Source<R> {
@@ -23,6 +54,11 @@ enum Source<R> {
     /// Text, bytes read, lines read.
     WkbHex(Vec<u8>, usize, u64),
     Svg(svg_shapes::Reader),
+    Shapefile(shapefile::Reader),
+    FlatGeobuf(flatgeobuf::Reader),
+    Csv(csv::Reader),
+    /// Features that have been read.
+    Held(std::vec::IntoIter<Feature>),
 }
 
 impl<R: Read> Reader<R> {
@@ -32,6 +68,17 @@ impl<R: Read> Reader<R> {
     /// [`Error::Io`] where the source cannot be read, [`Error::Limit`] where a format that is held
     /// whole is longer than 4 GiB.
     pub fn new(format: GeoFormat, source: R) -> Result<Self> {
+        Self::with(format, source, &Beside::NOTHING)
+    }
+
+    /// A reader of a format that may have further files beside it, or layers.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; and those of [`Self::next_feature`] where a format is read before its first feature is given.
+    pub fn with(format: GeoFormat, source: R, beside: &Beside<'_>) -> Result<Self> {
+        let mut warnings = Warnings::default();
+        let mut members = Vec::new();
+        let mut system = if format.is_lonlat() { System::LONLAT } else { System::default() };
         let source = match format {
             GeoFormat::GeoJson | GeoFormat::GeoJsonSeq | GeoFormat::GeoJsonRs => {
                 Source::GeoJson(geojson::Reader::new(source))
@@ -40,8 +87,38 @@ impl<R: Read> Reader<R> {
             GeoFormat::Wkb => Source::Wkb(whole(source)?, 0),
             GeoFormat::WkbHex => Source::WkbHex(text(source)?, 0, 0),
             GeoFormat::Svg => Source::Svg(svg_shapes::Reader::new(text(source)?)),
+            GeoFormat::Shapefile => {
+                let reader = shapefile::Reader::new(whole(source)?, beside, &mut warnings)?;
+                system = reader.system.clone();
+                Source::Shapefile(reader)
+            }
+            GeoFormat::FlatGeobuf => {
+                let reader = flatgeobuf::Reader::new(whole(source)?)?;
+                system = reader.system.clone();
+                Source::FlatGeobuf(reader)
+            }
+            GeoFormat::Csv => Source::Csv(csv::Reader::new(text(source)?)?),
+            GeoFormat::TopoJson => {
+                let (features, further) =
+                    topojson::read(&text(source)?, beside.layer, &mut warnings)?;
+                members = further;
+                Source::Held(features.into_iter())
+            }
+            GeoFormat::Kml => Source::Held(kml::read(&markup(source)?, &mut warnings)?.into_iter()),
+            GeoFormat::Gpx => Source::Held(gpx::read(&markup(source)?, &mut warnings)?.into_iter()),
         };
-        Ok(Self { source, warnings: Warnings::default() })
+        if beside.layer.is_some() && format != GeoFormat::TopoJson {
+            let message = format!("{format} has one layer; --layer does nothing");
+            warnings.push(Place::Whole, message);
+        }
+        Ok(Self { source, warnings, system, members })
+    }
+
+    /// The coordinate system that the file says all its coordinates are in, as far as it has been read: what GeoJSON
+    /// says after its features is known at the end.
+    pub fn system(&self) -> System {
+        let told = super::system::of_members(self.members());
+        told.unwrap_or_else(|| self.system.clone())
     }
 
     /// The next feature; `None` at the end. After an error there is nothing more to be had.
@@ -50,17 +127,25 @@ impl<R: Read> Reader<R> {
     /// [`Error::Decode`] with line and column, or the byte; [`Error::Unsupported`] for geometries
     /// that durer does not know; [`Error::Io`].
     pub fn next_feature(&mut self) -> Result<Option<Feature>> {
+        let feature = self.next_of_source()?;
+        if feature.is_none() {
+            self.warnings.tell();
+        }
+        Ok(feature)
+    }
+
+    fn next_of_source(&mut self) -> Result<Option<Feature>> {
         match &mut self.source {
             Source::GeoJson(reader) => {
                 let feature = reader.next_feature();
-                move_warnings(reader.warnings(), &mut self.warnings);
+                self.warnings.append(reader.warnings());
                 feature
             }
             Source::Wkt(text, mark) => {
                 let mut reader = wkt::Reader::new(text, *mark);
                 let feature = reader.next_feature();
                 *mark = reader.mark();
-                move_warnings(&mut reader.warnings, &mut self.warnings);
+                self.warnings.append(&mut reader.warnings);
                 feature
             }
             Source::Wkb(bytes, at) => {
@@ -68,11 +153,15 @@ impl<R: Read> Reader<R> {
                 reader.resume(*at);
                 let feature = reader.next_feature();
                 *at = reader.offset();
-                move_warnings(&mut reader.warnings, &mut self.warnings);
+                self.warnings.append(&mut reader.warnings);
                 feature
             }
             Source::WkbHex(text, at, line) => next_hex(text, at, line, &mut self.warnings),
             Source::Svg(reader) => reader.next_feature(&mut self.warnings),
+            Source::Shapefile(reader) => reader.next_feature(&mut self.warnings),
+            Source::FlatGeobuf(reader) => reader.next_feature(&mut self.warnings),
+            Source::Csv(reader) => reader.next_feature(&mut self.warnings),
+            Source::Held(features) => Ok(features.next()),
         }
     }
 
@@ -81,7 +170,7 @@ impl<R: Read> Reader<R> {
     pub fn members(&self) -> &[Member] {
         match &self.source {
             Source::GeoJson(reader) => reader.members(),
-            _ => &[],
+            _ => &self.members,
         }
     }
 
@@ -94,13 +183,6 @@ impl<R: Read> Reader<R> {
     pub fn further_warnings(&self) -> u64 {
         self.warnings.more
     }
-}
-
-fn move_warnings(from: &mut Warnings, to: &mut Warnings) {
-    for warning in from.kept.drain(..) {
-        to.push(warning.place, warning.message);
-    }
-    to.more += std::mem::take(&mut from.more);
 }
 
 /// The geometry of the next line that is not empty.
@@ -137,16 +219,9 @@ fn next_hex(
                 Err(Error::byte(end, format!("{rest} bytes after the geometry")))
             }
         });
-        for warning in reader.warnings.kept {
-            warnings.push(in_line(warning.place), warning.message);
-        }
-        return feature.map_err(|e| match e {
-            Error::Decode { place, message } => Error::Decode { place: in_line(place), message },
-            Error::Unsupported { place, what, hint } => {
-                Error::Unsupported { place: in_line(place), what, hint }
-            }
-            other => other,
-        });
+        reader.warnings.relocate(in_line);
+        warnings.append(&mut reader.warnings);
+        return feature.map_err(|e| e.at(in_line));
     }
 }
 
@@ -164,13 +239,21 @@ fn text(source: impl Read) -> Result<Vec<u8>> {
     Ok(crate::text::utf8(&whole(source)?).into_owned())
 }
 
+/// A document of XML as text.
+fn markup(source: impl Read) -> Result<String> {
+    let text = crate::xml::utf8(&whole(source)?).into_owned();
+    Ok(String::from_utf8(text)
+        .unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
+}
+
 /// All features of a file in the format that its content, or else its name, speaks for.
 ///
 /// # Errors
 /// [`Error::Unknown`] where neither does; else as [`Reader::next_feature`].
 pub fn read_all(bytes: &[u8], name: &str) -> Result<(Vec<Feature>, Vec<Warning>)> {
     let format = GeoFormat::of_content(bytes).or_else(|| GeoFormat::of_name(name));
-    let unknown = "geodata are read from GeoJSON, WKT, WKB and SVG".to_owned();
+    let unknown =
+        format!("{}; map data are read from {}", GeoFormat::foreign(bytes), GeoFormat::READ);
     let mut reader = Reader::new(format.ok_or(Error::Unknown(unknown))?, bytes)?;
     let mut features = Vec::new();
     while let Some(feature) = reader.next_feature()? {

@@ -2,6 +2,7 @@
 //!
 //! A file holds any number of geometries, one after the other.
 
+use super::curve;
 use super::geojson::{finish_line, finish_ring};
 use super::{Dimensions, Feature, Geometry, MAX_DEPTH, Points, Warnings};
 use crate::{Error, Place, Result};
@@ -25,6 +26,9 @@ pub fn kind(geometry: &Geometry) -> u32 {
         Geometry::Collection(_) => 7,
     }
 }
+
+/// The numbers of lines, arcs and chains of both.
+const CURVES: [u32; 3] = [2, 8, 9];
 
 /// Whether the bytes begin like a geometry.
 pub fn sniff(bytes: &[u8]) -> bool {
@@ -58,7 +62,7 @@ fn kind_of(code: u32) -> Option<(u32, Dimensions)> {
     let (kind, thousands) = (plain % 1000, plain / 1000);
     let z = code & HAS_Z != 0 || matches!(thousands, 1 | 3);
     let m = code & HAS_M != 0 || matches!(thousands, 2 | 3);
-    ((1..=7).contains(&kind) && thousands <= 3).then(|| (kind, Dimensions::new(z, m)))
+    (matches!(kind, 1..=12 | 15..=17) && thousands <= 3).then(|| (kind, Dimensions::new(z, m)))
 }
 
 /// The bytes of a line of hexadecimal digits.
@@ -150,7 +154,7 @@ impl<'a> Reader<'a> {
         let code = self.word(big)?;
         let Some((kind, dimensions)) = kind_of(code) else {
             let what = format!("well-known binary of type {code}");
-            let hint = "types 1 to 7 are: points, lines, polygons and their collections".to_owned();
+            let hint = "types 1 to 12 and 15 to 17 are: points, lines, polygons, curves, surfaces and collections".to_owned();
             return Err(Error::Unsupported { place: Place::Byte(at as u64 + 1), what, hint });
         };
         let srid = if code & HAS_SRID != 0 { Some(self.word(big)? as i32) } else { None };
@@ -173,13 +177,21 @@ impl<'a> Reader<'a> {
         if depth > MAX_DEPTH {
             return Err(self.error_at(self.at, "geometries are nested too deep"));
         }
+        let place = Place::Byte(self.at as u64);
         Ok(match header.kind {
             1 => Geometry::Point(self.point(header)?),
             2 => Geometry::LineString(self.line(header)?),
-            3 => Geometry::Polygon(self.polygon(header)?),
+            8 | 9 => {
+                let mut line = self.curve(header, depth)?;
+                self.warnings.curves.add(|| place.clone());
+                finish_line(&mut line, || place.clone(), &mut self.warnings);
+                Geometry::LineString(line)
+            }
+            3 | 17 => Geometry::Polygon(self.polygon(header)?),
+            10 => Geometry::Polygon(self.surface(header, depth)?),
             4 => {
                 let mut all = Points::new(header.dimensions);
-                self.parts(header, 1, |s, part| {
+                self.parts(header, &[1], |s, part| {
                     let point = s.point(part)?;
                     all.dimensions = if all.is_empty() { part.dimensions } else { all.dimensions };
                     (0..point.len()).for_each(|i| all.push(point.xy[i], point.zm(i)));
@@ -189,19 +201,48 @@ impl<'a> Reader<'a> {
             }
             5 => {
                 let mut lines = Vec::new();
-                self.parts(header, 2, |s, part| s.line(part).map(|line| lines.push(line)))?;
+                self.parts(header, &[2], |s, part| s.line(part).map(|line| lines.push(line)))?;
                 lines.retain(|line| !line.is_empty());
                 Geometry::MultiLineString(lines)
             }
-            6 => {
+            11 => {
+                let mut lines = Vec::new();
+                self.warnings.curves.add(|| place.clone());
+                self.parts(header, &CURVES, |s, part| {
+                    let mut line = s.curve(part, depth + 1)?;
+                    finish_line(&mut line, || place.clone(), &mut s.warnings);
+                    lines.push(line);
+                    Ok(())
+                })?;
+                lines.retain(|line| !line.is_empty());
+                Geometry::MultiLineString(lines)
+            }
+            12 => {
                 let mut polygons = Vec::new();
-                self.parts(header, 3, |s, part| s.polygon(part).map(|rings| polygons.push(rings)))?;
+                self.parts(header, &[3, 10], |s, part| {
+                    let is_flat = part.kind == 3;
+                    polygons.push(if is_flat {
+                        s.polygon(part)?
+                    } else {
+                        s.surface(part, depth + 1)?
+                    });
+                    Ok(())
+                })?;
+                polygons.retain(|rings| !rings.is_empty());
+                Geometry::MultiPolygon(polygons)
+            }
+            6 | 15 | 16 => {
+                let kinds: &[u32] = if header.kind == 6 { &[3] } else { &[3, 17] };
+                let mut polygons = Vec::new();
+                self.parts(header, kinds, |s, part| {
+                    s.polygon(part).map(|rings| polygons.push(rings))
+                })?;
                 polygons.retain(|rings| !rings.is_empty());
                 Geometry::MultiPolygon(polygons)
             }
             _ => {
                 let mut parts = Vec::new();
-                self.parts(header, 0, |s, part| {
+                self.parts(header, &[], |s, part| {
                     s.geometry(part, depth + 1).map(|geometry| parts.push(geometry))
                 })?;
                 Geometry::Collection(parts)
@@ -209,11 +250,11 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The parts of a collection, each with its own header; `kind` is theirs, 0 for any.
+    /// The parts of a collection, each with its own header, of one of these kinds; of any where there is none.
     fn parts(
         &mut self,
         header: &Header,
-        kind: u32,
+        kinds: &[u32],
         mut read: impl FnMut(&mut Self, &Header) -> Result<()>,
     ) -> Result<()> {
         // Byte order, type and a count.
@@ -221,8 +262,10 @@ impl<'a> Reader<'a> {
         for _ in 0..count {
             let at = self.at;
             let part = self.header()?;
-            if kind != 0 && part.kind != kind {
-                let message = format!("a part of type {}; {kind} is expected", part.kind);
+            if !kinds.is_empty() && !kinds.contains(&part.kind) {
+                let kinds: Vec<String> = kinds.iter().map(u32::to_string).collect();
+                let message =
+                    format!("a part of type {}; {} is expected", part.kind, kinds.join(" or "));
                 return Err(self.error_at(at + 1, message));
             }
             read(self, &part)?;
@@ -276,6 +319,44 @@ impl<'a> Reader<'a> {
         let mut points = self.run(header)?;
         finish_line(&mut points, || place.clone(), &mut self.warnings);
         Ok(points)
+    }
+
+    /// A line, an arc or a chain of both, as a line.
+    fn curve(&mut self, header: &Header, depth: usize) -> Result<Points> {
+        if depth > MAX_DEPTH {
+            return Err(self.error_at(self.at, "geometries are nested too deep"));
+        }
+        let at = self.at;
+        match header.kind {
+            8 => {
+                let control = self.run(header)?;
+                curve::flatten(&control).map_err(|message| self.error_at(at, message))
+            }
+            9 => {
+                let mut joined = Points::new(header.dimensions);
+                self.parts(header, &CURVES, |s, part| {
+                    curve::join(&mut joined, &s.curve(part, depth + 1)?);
+                    Ok(())
+                })?;
+                Ok(joined)
+            }
+            _ => self.run(header),
+        }
+    }
+
+    /// A polygon whose rings are curves.
+    fn surface(&mut self, header: &Header, depth: usize) -> Result<Vec<Points>> {
+        let place = Place::Byte(self.at as u64);
+        self.warnings.curves.add(|| place.clone());
+        let mut rings = Vec::new();
+        self.parts(header, &CURVES, |s, part| {
+            let mut ring = s.curve(part, depth + 1)?;
+            finish_ring(&mut ring, || place.clone(), &mut s.warnings);
+            rings.push(ring);
+            Ok(())
+        })?;
+        curve::keep_polygon(&mut rings);
+        Ok(rings)
     }
 
     fn polygon(&mut self, header: &Header) -> Result<Vec<Points>> {

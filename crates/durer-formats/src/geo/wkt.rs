@@ -1,14 +1,17 @@
-//! Well-known text of OGC Simple Features, with Z, M and ZM, and PostGIS's EWKT.
+//! Well-known text of OGC Simple Features, with Z, M and ZM, and PostGIS's EWKT. Curves
+//! become lines, surfaces of several polygons groups of them.
 //!
 //! A file holds any number of geometries, each over any number of lines, parted by blanks or `;`.
 
+use super::curve;
 use super::geojson::{finish_line, finish_ring};
 use super::{Dimensions, Feature, Geometry, MAX_DEPTH, Points, Warnings, number};
 use crate::{Error, Place, Result};
 use durer::math::DVec2;
 use std::io::{self, Write};
 
-const NAMES: [&str; 7] = [
+/// Names of types, each at the place of its number in well-known binary, from 1 on.
+const NAMES: [&str; 17] = [
     "POINT",
     "LINESTRING",
     "POLYGON",
@@ -16,20 +19,20 @@ const NAMES: [&str; 7] = [
     "MULTILINESTRING",
     "MULTIPOLYGON",
     "GEOMETRYCOLLECTION",
-];
-
-/// Types of later standards, which have curves or surfaces.
-const UNSUPPORTED: [&str; 9] = [
     "CIRCULARSTRING",
     "COMPOUNDCURVE",
     "CURVEPOLYGON",
     "MULTICURVE",
     "MULTISURFACE",
     "CURVE",
+    "SURFACE",
     "POLYHEDRALSURFACE",
     "TIN",
     "TRIANGLE",
 ];
+
+/// The places of names that stand for others only.
+const ABSTRACT: [usize; 2] = [12, 13];
 
 /// Whether a text begins with the name of a geometry and what may follow it.
 pub fn sniff(text: &[u8]) -> bool {
@@ -48,7 +51,9 @@ pub fn sniff(text: &[u8]) -> bool {
 
 /// Splits `POINTZM` and the like into the name's index and the dimensions, if they are told.
 fn tag(word: &str) -> Option<(usize, Option<Dimensions>)> {
-    let index = |name: &str| NAMES.iter().position(|n| *n == name);
+    let index = |name: &str| {
+        NAMES.iter().position(|n| *n == name).filter(|found| !ABSTRACT.contains(found))
+    };
     if let Some(found) = index(word) {
         return Some((found, None));
     }
@@ -197,14 +202,10 @@ impl<'a> Reader<'a> {
         let word = self.word();
         let Some((kind, glued)) = tag(&word) else {
             self.at = start;
-            let known = UNSUPPORTED.iter().any(|name| word.starts_with(name));
-            return Err(match (known, word.is_empty()) {
-                (true, _) => {
-                    let hint = "write it as polygons or line strings".to_owned();
-                    Error::Unsupported { place, what: word, hint }
-                }
-                (_, true) => self.expected("the name of a geometry"),
-                (_, false) => self.error(format!("`{word}` is no type of geometry")),
+            return Err(if word.is_empty() {
+                self.expected("the name of a geometry")
+            } else {
+                self.error(format!("`{word}` is no type of geometry"))
             });
         };
         let apart = self
@@ -225,7 +226,33 @@ impl<'a> Reader<'a> {
                 Geometry::Point(point)
             }
             1 => Geometry::LineString(self.line(d)?),
-            2 => Geometry::Polygon(self.polygon(d)?),
+            2 | 16 => Geometry::Polygon(self.polygon(d)?),
+            7 | 8 => {
+                self.at = start;
+                let mut line = self.curve(d, depth)?;
+                self.warnings.curves.add(|| place.clone());
+                finish_line(&mut line, || place.clone(), &mut self.warnings);
+                Geometry::LineString(line)
+            }
+            9 => Geometry::Polygon(self.surface(d, depth)?),
+            10 => {
+                let mut lines = Vec::new();
+                self.warnings.curves.add(|| place.clone());
+                self.list(|s| {
+                    let mut line = s.curve(d, depth + 1)?;
+                    finish_line(&mut line, || place.clone(), &mut s.warnings);
+                    lines.push(line);
+                    Ok(())
+                })?;
+                lines.retain(|line| !line.is_empty());
+                Geometry::MultiLineString(lines)
+            }
+            11 => {
+                let mut polygons = Vec::new();
+                self.list(|s| s.patch(d, depth + 1).map(|rings| polygons.push(rings)))?;
+                polygons.retain(|rings: &Vec<Points>| !rings.is_empty());
+                Geometry::MultiPolygon(polygons)
+            }
             3 => Geometry::MultiPoint(self.multi_point(d)?),
             4 => {
                 let mut lines = Vec::new();
@@ -233,7 +260,7 @@ impl<'a> Reader<'a> {
                 lines.retain(|line: &Points| !line.is_empty());
                 Geometry::MultiLineString(lines)
             }
-            5 => {
+            5 | 14 | 15 => {
                 let mut polygons = Vec::new();
                 self.list(|s| s.or_empty(|s| s.polygon(d)).map(|p| polygons.extend(p)))?;
                 polygons.retain(|rings: &Vec<Points>| !rings.is_empty());
@@ -273,6 +300,75 @@ impl<'a> Reader<'a> {
         self.list(|s| s.position(&mut points, dimensions))?;
         finish_line(&mut points, || place.clone(), &mut self.warnings);
         Ok(points)
+    }
+
+    /// The name that comes next, as far as it is one of these, with the dimensions that follow it.
+    fn name(&mut self, kinds: &[usize], dimensions: &mut Option<Dimensions>) -> Option<usize> {
+        let start = self.at;
+        let found = tag(&self.word()).filter(|(kind, _)| kinds.contains(kind));
+        let Some((kind, glued)) = found else {
+            self.at = start;
+            return None;
+        };
+        let apart = self.keyword(&["ZM", "Z", "M"]);
+        let apart = apart.map(|w| Dimensions::new(w.contains('Z'), w.contains('M')));
+        *dimensions = glued.or(apart).or(*dimensions);
+        Some(kind)
+    }
+
+    /// A line, with its name or without, an arc, or a chain of both, as a line.
+    fn curve(&mut self, dimensions: &mut Option<Dimensions>, depth: usize) -> Result<Points> {
+        if depth > MAX_DEPTH {
+            return Err(self.error("geometries are nested too deep"));
+        }
+        let kind = self.name(&[1, 7, 8], dimensions);
+        let mut points = Points::default();
+        if self.keyword(&["EMPTY"]).is_some() {
+            return Ok(points);
+        }
+        if kind == Some(8) {
+            self.list(|s| {
+                curve::join(&mut points, &s.curve(dimensions, depth + 1)?);
+                Ok(())
+            })?;
+            return Ok(points);
+        }
+        let start = self.place();
+        self.list(|s| s.position(&mut points, dimensions))?;
+        if kind == Some(7) {
+            let error = |message: &str| Error::Decode { place: start, message: message.to_owned() };
+            return curve::flatten(&points).map_err(error);
+        }
+        Ok(points)
+    }
+
+    /// The rings of a polygon whose name has been read, which may be curves.
+    fn surface(
+        &mut self,
+        dimensions: &mut Option<Dimensions>,
+        depth: usize,
+    ) -> Result<Vec<Points>> {
+        let mut rings = Vec::new();
+        let place = self.place();
+        self.warnings.curves.add(|| place);
+        self.list(|s| {
+            let place = s.place();
+            let mut ring = s.curve(dimensions, depth + 1)?;
+            finish_ring(&mut ring, || place.clone(), &mut s.warnings);
+            rings.push(ring);
+            Ok(())
+        })?;
+        curve::keep_polygon(&mut rings);
+        Ok(rings)
+    }
+
+    /// A part of a group of surfaces: a polygon, with its name or without, or one of curves.
+    fn patch(&mut self, dimensions: &mut Option<Dimensions>, depth: usize) -> Result<Vec<Points>> {
+        let kind = self.name(&[2, 9], dimensions);
+        if self.keyword(&["EMPTY"]).is_some() {
+            return Ok(Vec::new());
+        }
+        if kind == Some(9) { self.surface(dimensions, depth) } else { self.polygon(dimensions) }
     }
 
     fn polygon(&mut self, dimensions: &mut Option<Dimensions>) -> Result<Vec<Points>> {
@@ -351,8 +447,10 @@ fn empty(kind: usize) -> Geometry {
         1 => Geometry::LineString(Points::default()),
         2 => Geometry::Polygon(Vec::new()),
         3 => Geometry::MultiPoint(Points::default()),
-        4 => Geometry::MultiLineString(Vec::new()),
-        5 => Geometry::MultiPolygon(Vec::new()),
+        4 | 10 => Geometry::MultiLineString(Vec::new()),
+        5 | 11 | 14 | 15 => Geometry::MultiPolygon(Vec::new()),
+        7 | 8 => Geometry::LineString(Points::default()),
+        9 | 16 => Geometry::Polygon(Vec::new()),
         _ => Geometry::Collection(Vec::new()),
     }
 }

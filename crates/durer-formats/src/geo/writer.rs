@@ -1,13 +1,17 @@
 //! Features to bytes in any format.
 
-use super::{Feature, GeoFormat, Member, geojson, svg, wkb, wkt};
-use crate::Result;
+use super::members::object;
+use super::{
+    Feature, GeoFormat, Member, System, csv, flatgeobuf, geojson, shapefile, svg, topojson, wkb,
+    wkt,
+};
+use crate::{Error, Place, Result, Warning};
 use std::io::Write;
 
 /// Writes features one after the other.
 ///
-/// All formats but SVG are written as features come. WKT and WKB keep geometry and SRID only; SVG
-/// keeps ids too.
+/// GeoJSON, WKT and WKB are written as features come, the others at the end. WKT and WKB keep geometry and SRID only;
+/// SVG keeps ids too. CSV, FlatGeobuf and Shapefile keep an id as the field `id`, where there is no other of that name.
 pub struct Writer<W> {
     format: GeoFormat,
     out: W,
@@ -16,12 +20,30 @@ pub struct Writer<W> {
     /// What has to wait for the end.
     held: Vec<Feature>,
     line: Vec<u8>,
+    system: System,
+}
+
+/// What a writer gives back at its end.
+#[derive(Debug)]
+pub struct Finished<W> {
+    /// Where the file was written to.
+    pub out: W,
+    /// Further files that belong beside it: the endings of their names, and their bytes.
+    pub beside: Vec<(&'static str, Vec<u8>)>,
+    /// What the format could not keep.
+    pub warnings: Vec<Warning>,
 }
 
 impl<W: Write> Writer<W> {
     /// A writer of a format. Nothing is written yet.
     pub fn new(format: GeoFormat, out: W) -> Self {
-        Self { format, out, members: Vec::new(), count: 0, held: Vec::new(), line: Vec::new() }
+        let (members, held, line, system) = Default::default();
+        Self { format, out, members, count: 0, held, line, system }
+    }
+
+    /// Says which coordinate system all coordinates are in, for formats that tell it; before the first feature.
+    pub fn set_system(&mut self, system: System) {
+        self.system = system;
     }
 
     /// Members for the head of a GeoJSON collection; taken until the first feature is written.
@@ -60,7 +82,11 @@ impl<W: Write> Writer<W> {
                 bytes.iter().try_for_each(|b| write!(self.line, "{b:02X}"))?;
                 self.line.extend((!bytes.is_empty()).then_some(b'\n'));
             }
-            GeoFormat::Svg => self.held.push(feature.clone()),
+            GeoFormat::Svg | GeoFormat::TopoJson => self.held.push(feature.clone()),
+            GeoFormat::Shapefile | GeoFormat::FlatGeobuf | GeoFormat::Csv => {
+                self.held.push(with_id(feature));
+            }
+            GeoFormat::Kml | GeoFormat::Gpx => return Err(unwritten(self.format)),
         }
         self.count += 1;
         Ok(self.out.write_all(&self.line)?)
@@ -80,7 +106,16 @@ impl<W: Write> Writer<W> {
     ///
     /// # Errors
     /// [`crate::Error::Io`].
-    pub fn finish(mut self, members: &[Member]) -> Result<W> {
+    pub fn finish(self, members: &[Member]) -> Result<W> {
+        self.finish_all(members).map(|finished| finished.out)
+    }
+
+    /// Ends the document as [`Self::finish`], and gives further files and warnings too.
+    ///
+    /// # Errors
+    /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] where the format cannot hold the features.
+    pub fn finish_all(mut self, members: &[Member]) -> Result<Finished<W>> {
+        let (mut beside, mut warnings) = Default::default();
         match self.format {
             GeoFormat::GeoJson => {
                 self.head(members);
@@ -92,9 +127,36 @@ impl<W: Write> Writer<W> {
                 self.out.write_all(b"}\n")?;
             }
             GeoFormat::Svg => svg::write(&mut self.out, &self.held)?,
+            GeoFormat::TopoJson => topojson::write(&mut self.out, &self.held, members)?,
+            GeoFormat::Csv => csv::write(&mut self.out, &self.held)?,
+            GeoFormat::FlatGeobuf => flatgeobuf::write(&mut self.out, &self.held, &self.system)?,
+            GeoFormat::Shapefile => {
+                let whole = shapefile::write(&self.held, &self.system)?;
+                self.out.write_all(&whole.0)?;
+                (_, beside, warnings) = whole;
+            }
+            GeoFormat::Kml | GeoFormat::Gpx => return Err(unwritten(self.format)),
             _ => {}
         }
         self.out.flush()?;
-        Ok(self.out)
+        Ok(Finished { out: self.out, beside, warnings })
     }
+}
+
+/// The feature with its id among its fields.
+fn with_id(feature: &Feature) -> Feature {
+    let mut feature = feature.clone();
+    let mut fields = feature.fields();
+    if let Some(id) = feature.id.take()
+        && !fields.iter().any(|field| field.key() == "id")
+    {
+        fields.insert(0, Member::new("id", id));
+        feature.properties = Some(object(&fields));
+    }
+    feature
+}
+
+fn unwritten(format: GeoFormat) -> Error {
+    let (what, hint) = (format!("writing {format}"), "it is only read".to_owned());
+    Error::Unsupported { place: Place::Whole, what, hint }
 }

@@ -50,7 +50,7 @@ fn natural_earth_goes_through_every_format() {
     let (features, warnings) = read_all(&bytes, "").expect("read");
     assert_eq!((features.len(), warnings.len()), (177, 0));
     let count: usize = features.iter().filter_map(|f| f.geometry.as_ref()).map(|g| g.len()).sum();
-    for format in GeoFormat::ALL {
+    for format in GeoFormat::ALL.into_iter().filter(|f| f.is_written()) {
         let mut writer = Writer::new(format, Vec::new());
         features.iter().for_each(|f| writer.write(f).expect("memory"));
         let out = writer.finish(&[]).expect("memory");

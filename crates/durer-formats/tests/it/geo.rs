@@ -147,7 +147,7 @@ fn errors_of_geojson_say_where() {
         ),
         ("{\"type\":\"LineString\",\"coordinates\":[1,2]}", "line 1, column 37: a position"),
         ("{\"type\":\"Blob\",\"coordinates\":[1,2]}", "line 1, column 1: `Blob`"),
-        ("{\"type\":\"Topology\"}", "TopoJSON is not supported"),
+        ("{\"type\":\"Topology\"}", "TopoJSON within GeoJSON is not supported"),
         (
             "{\"type\":\"Feature\",\"properties\":[],\"geometry\":null}",
             "line 1, column 32: properties",
@@ -214,7 +214,8 @@ GEOMETRYCOLLECTION(POINT(1 2),LINESTRING(0 0,1 1))\nPOLYGON((0 0,4 0,4 4,0 0),(1
         ("POINT (1 nan)", "line 1, column 10: coordinates must be finite"),
         ("POLYGON ((0 0, 1 1", "the end of the file"),
         ("LINESTRING (0 0, 1 1 2)", "this one has 3"),
-        ("CIRCULARSTRING (0 0, 1 1, 2 0)", "line 1, column 1: CIRCULARSTRING is not supported"),
+        ("CIRCULARSTRING (0 0, 1 1)", "line 1, column 16: arcs need an odd number of positions"),
+        ("CURVE (0 0, 1 1, 2 0)", "line 1, column 1: `CURVE` is no type"),
         ("BLOB (1 2)", "line 1, column 1: `BLOB` is no type"),
         ("POINT (1 2))", "line 1, column 12: the end of the geometry"),
     ] {

@@ -86,6 +86,9 @@ impl Geometries {
         let unknown = || {
             text.error(format!("`{}` is no type of geometry", crate::text::quote(kind.as_bytes())))
         };
+        if depth > 0 && members.iter().any(|(name, _)| !is_of_geometry(name)) {
+            self.warnings.members.add(|| text.place());
+        }
         self.nested(&kind, text, &members, depth)?.ok_or_else(unknown)
     }
 
@@ -172,6 +175,11 @@ impl Geometries {
         points.push(DVec2::new(numbers[0], numbers[1]), [numbers[2], numbers[3]]);
         Ok(())
     }
+}
+
+/// Whether the format defines a member of geometries.
+pub fn is_of_geometry(name: &Text<'_>) -> bool {
+    matches!(name.as_bytes(), b"\"type\"" | b"\"coordinates\"" | b"\"geometries\"" | b"\"bbox\"")
 }
 
 /// Leaves out a line of a single position.

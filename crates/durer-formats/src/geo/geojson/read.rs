@@ -1,6 +1,6 @@
 //! Features from a stream, one at a time; only the feature at hand is held.
 
-use super::coordinates::Geometries;
+use super::coordinates::{Geometries, is_of_geometry};
 use super::object::{RawMember, Text};
 use super::scan::{Progress, Scan};
 use crate::geo::{Feature, Member, Warnings};
@@ -311,7 +311,10 @@ impl<R: Read> Reader<R> {
         };
         match &kind[..] {
             "Feature" => self.members_of_feature(whole, members),
-            "Topology" => Err(unsupported(whole.place(), "TopoJSON", "convert it to GeoJSON")),
+            "Topology" => {
+                let hint = "a file of it is read as such; --from topojson says so";
+                Err(unsupported(whole.place(), "TopoJSON within GeoJSON", hint))
+            }
             "FeatureCollection" => {
                 Err(whole.error("a FeatureCollection needs features, and cannot be a feature"))
             }
@@ -321,7 +324,8 @@ impl<R: Read> Reader<R> {
                     let kind = crate::text::quote(kind.as_bytes());
                     whole.error(format!("`{kind}` is no type of GeoJSON"))
                 })?;
-                Ok(Feature::of_geometry(geometry))
+                let geometry_members = further_members(members)?;
+                Ok(Feature { geometry_members, ..Feature::of_geometry(geometry) })
             }
         }
     }
@@ -338,8 +342,10 @@ impl<R: Read> Reader<R> {
                 b"\"type\"" | b"\"bbox\"" => {}
                 b"\"geometry\"" => {
                     has_geometry = true;
-                    let object = (!value.is_null()).then(|| self.geometries.object(*value, 0));
-                    feature.geometry = object.transpose()?;
+                    if !value.is_null() {
+                        feature.geometry = Some(self.geometries.object(*value, 0)?);
+                        feature.geometry_members = further_members(&value.members()?)?;
+                    }
                 }
                 b"\"properties\"" if value.is_null() => feature.properties = None,
                 b"\"properties\"" if value.as_bytes().first() == Some(&b'{') => {
@@ -362,6 +368,14 @@ impl<R: Read> Reader<R> {
             Err(whole.error("a Feature needs the member \"geometry\""))
         }
     }
+}
+
+/// Members of a geometry that the format does not define. Like those of features, they are kept without `bbox`.
+fn further_members(members: &[RawMember<'_>]) -> Result<Vec<Member>> {
+    let further = members.iter().filter(|(name, _)| !is_of_geometry(name));
+    further
+        .map(|(name, value)| Ok(Member { name: name.checked()?, value: value.checked()? }))
+        .collect()
 }
 
 /// The value of the member `type`, if it is a string.

@@ -13,7 +13,11 @@ pub fn write_feature(out: &mut impl Write, feature: &Feature) -> io::Result<()> 
     let properties = feature.properties.as_deref().unwrap_or("null");
     write!(out, r#","properties":{},"geometry":"#, Flat(properties))?;
     match &feature.geometry {
-        Some(geometry) => write_geometry(out, geometry)?,
+        Some(geometry) => {
+            open_geometry(out, geometry)?;
+            write_members(out, &feature.geometry_members)?;
+            out.write_all(b"}")?;
+        }
         None => out.write_all(b"null")?,
     }
     out.write_all(b"}")
@@ -31,7 +35,7 @@ pub fn write_member(out: &mut impl Write, member: &Member) -> io::Result<()> {
 
 /// JSON as it stands, but on one line: line ends between its parts become blanks. (Within strings
 /// JSON has none.)
-struct Flat<'a>(&'a str);
+pub struct Flat<'a>(pub &'a str);
 
 impl std::fmt::Display for Flat<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -45,26 +49,30 @@ impl std::fmt::Display for Flat<'_> {
     }
 }
 
-fn write_geometry(out: &mut impl Write, geometry: &Geometry) -> io::Result<()> {
+fn write_geometry<W: Write>(out: &mut W, geometry: &Geometry) -> io::Result<()> {
+    open_geometry(out, geometry)?;
+    out.write_all(b"}")
+}
+
+/// Writes a geometry but for its last bracket.
+fn open_geometry<W: Write>(out: &mut W, geometry: &Geometry) -> io::Result<()> {
     write!(out, r#"{{"type":"{}","#, geometry.name())?;
     if let Geometry::Collection(parts) = geometry {
         out.write_all(br#""geometries":"#)?;
-        list(out, parts, |out, part| write_geometry(out, part))?;
-        return out.write_all(b"}");
+        return list(out, parts, |out, part| write_geometry(out, part));
     }
     out.write_all(br#""coordinates":"#)?;
     match geometry {
-        Geometry::Point(points) if points.is_empty() => out.write_all(b"[]")?,
-        Geometry::Point(points) => position(out, points, 0)?,
-        Geometry::LineString(points) | Geometry::MultiPoint(points) => run(out, points, false)?,
-        Geometry::MultiLineString(lines) => list(out, lines, |out, line| run(out, line, false))?,
-        Geometry::Polygon(rings) => list(out, rings, |out, ring| run(out, ring, true))?,
+        Geometry::Point(points) if points.is_empty() => out.write_all(b"[]"),
+        Geometry::Point(points) => position(out, points, 0),
+        Geometry::LineString(points) | Geometry::MultiPoint(points) => run(out, points, false),
+        Geometry::MultiLineString(lines) => list(out, lines, |out, line| run(out, line, false)),
+        Geometry::Polygon(rings) => list(out, rings, |out, ring| run(out, ring, true)),
         Geometry::MultiPolygon(polygons) => {
-            list(out, polygons, |out, rings| list(out, rings, |out, ring| run(out, ring, true)))?
+            list(out, polygons, |out, rings| list(out, rings, |out, ring| run(out, ring, true)))
         }
-        Geometry::Collection(_) => {}
+        Geometry::Collection(_) => Ok(()),
     }
-    out.write_all(b"}")
 }
 
 /// An array; `write` writes each item.
@@ -89,8 +97,8 @@ fn run(out: &mut impl Write, points: &Points, closed: bool) -> io::Result<()> {
     list(out, &order, |out, &i| position(out, points, i))
 }
 
-/// GeoJSON knows no measure without a height: then the height is 0.
-fn position(out: &mut impl Write, points: &Points, index: usize) -> io::Result<()> {
+/// Writes a position. GeoJSON knows no measure without a height: then the height is 0.
+pub fn position(out: &mut impl Write, points: &Points, index: usize) -> io::Result<()> {
     let (p, [z, m]) = (points.xy[index], points.zm(index));
     let further = [z, m];
     let count = points.dimensions.count().max(if points.dimensions.has_m() { 4 } else { 2 });

@@ -677,7 +677,9 @@ mod tests {
         let bowtie: &[(f64, f64)] = &[(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)];
         assert_eq!(faults(&[&[bowtie]]), [(Fault::Crossing, (2.0, 2.0))]);
         let spike: &[(f64, f64)] = &[(0.0, 0.0), (2.0, 0.0), (2.0, 5.0), (2.0, 2.0), (0.0, 2.0)];
-        assert_eq!(faults(&[&[spike]]), [(Fault::Overlap, (2.0, 2.0))]);
+        // The way back along itself, and then away from it.
+        let both = [Fault::Overlap, Fault::SelfTouch].map(|fault| (fault, (2.0, 2.0)));
+        assert_eq!(faults(&[&[spike]]), both);
         let flat: &[(f64, f64)] = &[(1.0, 1.0), (2.0, 2.0), (1.0, 1.0), (1.0, 1.0)];
         assert_eq!(faults(&[&[flat]]), [(Fault::FewPoints, (1.0, 1.0))]);
         let pinched: &[(f64, f64)] =

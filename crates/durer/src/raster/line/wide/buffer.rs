@@ -172,7 +172,9 @@ mod tests {
         about(area(&frame, &round(1.0)), 100.0 + 40.0 + PI - 4.0);
         about(area(&frame, &round(2.5)), 100.0 + 100.0 + 6.25 * PI);
         about(area(&frame, &round(-1.0)), 64.0 - (16.0 + 16.0 + PI));
-        about(area(&frame, &round(-1.5)), 0.0);
+        // Nothing is left between the grown hole and the border but at its rounded corners.
+        about(area(&frame, &round(-1.5)), 2.25 * (4.0 - PI));
+        about(area(&frame, &round(-2.5)), 0.0);
     }
 
     #[test]

@@ -1,0 +1,90 @@
+//! Map data as all commands read them: files, choices of features and fields, and coordinate systems.
+
+mod fields;
+mod info;
+mod out;
+mod sink;
+mod systems;
+
+pub use fields::{FieldArgs, Fields};
+pub use info::{LayerInfo, of_layer};
+pub use out::{finish, named_format, writer};
+pub use sink::{Sink, failure};
+pub use systems::{Shift, SystemArgs};
+
+use crate::failure::{Failure, in_words};
+use crate::input::{self, display_name, is_stream};
+use durer_formats::geo::{Beside, GeoFormat, Reader, unzipped};
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+/// Bytes that are looked at to find the format.
+const PROBE: usize = 64 << 10;
+
+/// A reader of a file or of standard input.
+pub type Source = Reader<Box<dyn BufRead>>;
+
+/// The bytes of a file, or of standard input, as they come; decompressed where they are compressed by gzip.
+pub fn bytes(path: &Path) -> Result<Box<dyn BufRead>, Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    let source: Box<dyn BufRead> = if is_stream(path) {
+        Box::new(BufReader::with_capacity(PROBE, std::io::stdin()))
+    } else {
+        let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
+        if file.metadata().is_ok_and(|m| m.is_dir()) {
+            return Err(fail("it is a folder; name the file in it".to_owned()));
+        }
+        Box::new(BufReader::with_capacity(PROBE, file))
+    };
+    unzipped(source, PROBE).map_err(|e| fail(in_words(&e)))
+}
+
+/// The format that a name speaks for, or that its first bytes do.
+pub fn format_of(path: &Path, head: &[u8]) -> Option<GeoFormat> {
+    GeoFormat::of_content(head).or_else(|| {
+        // What is known to be something else is not what its name says.
+        let by_name = GeoFormat::of_name(&path.to_string_lossy());
+        by_name.filter(|_| !GeoFormat::foreign(head).starts_with("this is"))
+    })
+}
+
+/// Opens a file, or standard input, and finds its format.
+pub fn open(
+    path: &Path,
+    format: Option<GeoFormat>,
+    layer: Option<&str>,
+) -> Result<(GeoFormat, Source), Failure> {
+    let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
+    let mut source = bytes(path)?;
+    let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
+    let Some(format) = format.or_else(|| format_of(path, head)) else {
+        let what = GeoFormat::foreign(head);
+        return Err(fail(format!("{what}; map data are read from {}", GeoFormat::READ)));
+    };
+    // The layouts of GeoJSON are read alike; the suffix tells the one to write to a stream.
+    let named = GeoFormat::of_name(&path.to_string_lossy());
+    let named = named.filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
+    let reader = reader(path, format, source, layer);
+    Ok((named.unwrap_or(format), reader.map_err(|e| fail(words(&e)))?))
+}
+
+/// A reader of bytes of a file, which finds what is beside it.
+pub fn reader<R: std::io::Read>(
+    path: &Path,
+    format: GeoFormat,
+    source: R,
+    layer: Option<&str>,
+) -> durer_formats::Result<Reader<R>> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let folder = input::folder(path);
+    Reader::with(format, source, &Beside { name: &name, resources: &*folder, layer })
+}
+
+/// What an error says, in the command's words.
+pub fn words(error: &durer_formats::Error) -> String {
+    match error {
+        durer_formats::Error::Io(e) => in_words(e),
+        other => other.to_string(),
+    }
+}

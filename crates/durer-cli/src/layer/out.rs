@@ -1,0 +1,79 @@
+//! Where features go: one file, or several beside each other, or standard output.
+
+use super::sink::{Sink, failure};
+use crate::failure::Failure;
+use crate::input::is_stream;
+use crate::messages::Messages;
+use crate::output::{self, Target};
+use durer_formats::geo::{GeoFormat, Member, System, Writer};
+use std::io::IsTerminal;
+use std::path::Path;
+
+/// The format of the result: as told, by the suffix, or on a stream that of the input.
+pub fn named_format(
+    output: &Path,
+    to: Option<GeoFormat>,
+    from: Option<GeoFormat>,
+) -> Result<GeoFormat, Failure> {
+    let fail = |message| Err(Failure::Usage(format!("--output {}: {message}", output.display())));
+    let named = GeoFormat::of_name(&output.to_string_lossy());
+    let stream = is_stream(output) || output::is_special(output);
+    let from = from.filter(|from| stream && from.is_written());
+    let Some(format) = to.or(named).or(from) else {
+        let written = GeoFormat::ALL.into_iter().filter(|f| f.is_written());
+        let suffixes = written.map(|f| f.suffixes()[0]).collect::<Vec<_>>().join(", .");
+        return fail(format!("the suffix tells no format; use one of .{suffixes}, or --to"));
+    };
+    if !format.is_written() {
+        return fail(format!("{format} is only read; write .geojson, .fgb or another format"));
+    }
+    if format == GeoFormat::Shapefile && stream {
+        return fail("a Shapefile is several files; name the .shp among them".to_owned());
+    }
+    Ok(format)
+}
+
+/// A writer of features with what comes before them.
+pub fn writer(
+    output: &Path,
+    to: GeoFormat,
+    members: &[Member],
+    system: System,
+) -> Result<Writer<Sink>, Failure> {
+    let mut writer = Writer::new(to, place(output, to)?);
+    writer.head(members);
+    writer.set_system(system);
+    Ok(writer)
+}
+
+/// A place for one file.
+fn place(output: &Path, to: GeoFormat) -> Result<Sink, Failure> {
+    if !is_stream(output) {
+        return Sink::file(output);
+    }
+    if to.is_binary() && std::io::stdout().is_terminal() {
+        let message = format!("--output -: {to} is no text for a terminal; use a pipe or a file");
+        return Err(Failure::Usage(message));
+    }
+    Ok(Sink::stdout())
+}
+
+/// Writes what comes after the features, and the files beside; returns what was warned about.
+pub fn finish(
+    writer: Writer<Sink>,
+    output: &Path,
+    members: &[Member],
+    messages: &Messages,
+) -> Result<Vec<String>, Failure> {
+    let done = writer.finish_all(members).map_err(|e| failure(output, &e))?;
+    for (suffix, bytes) in done.beside {
+        let target = Target::File(output.with_extension(suffix));
+        output::deliver(&target, |out| {
+            out.extend_from_slice(&bytes);
+            Ok(())
+        })?;
+    }
+    messages.warnings(&output.display().to_string(), &done.warnings);
+    done.out.commit()?;
+    Ok(done.warnings.iter().map(ToString::to_string).collect())
+}

@@ -1,0 +1,62 @@
+//! What a file is that is no map data that can be read, for messages.
+
+/// Beginnings of formats, what they are, and what to do.
+const MAGIC: [(&[u8], &str, &str); 18] = [
+    (b"SQLite format 3\0", "an SQLite database, such as GeoPackage or MBTiles", EXPORT),
+    (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile, KMZ or XLSX", "unpack it first"),
+    (b"PAR1", "Parquet, such as GeoParquet", EXPORT),
+    (b"II*\0", "a TIFF picture, such as GeoTIFF", PIXELS),
+    (b"MM\0*", "a TIFF picture, such as GeoTIFF", PIXELS),
+    (b"II+\0", "a TIFF picture, such as GeoTIFF", PIXELS),
+    (b"MM\0+", "a TIFF picture, such as GeoTIFF", PIXELS),
+    (b"\x89PNG", "a PNG picture", PIXELS),
+    (b"\xff\xd8\xff", "a JPEG picture", PIXELS),
+    (b"%PDF", "a PDF document", EXPORT),
+    (b"\x89HDF", "HDF5, such as NetCDF", EXPORT),
+    (b"CDF\x01", "NetCDF", EXPORT),
+    (b"\xd0\xcf\x11\xe0", "an old Office document, such as XLS", "save it as CSV"),
+    (b"PMTiles", "a PMTiles archive of tiles", "take the data that it was made of"),
+    (b"BZh", "a file compressed by bzip2", "decompress it; gzip is read as it is"),
+    (b"\x28\xb5\x2f\xfd", "a file compressed by Zstandard", "decompress it; gzip is read as it is"),
+    (b"\xfd7zXZ", "a file compressed by XZ", "decompress it; gzip is read as it is"),
+    (b"ARROW1", "an Arrow file, such as GeoArrow", EXPORT),
+];
+
+const EXPORT: &str = "export it as GeoJSON or FlatGeobuf";
+const PIXELS: &str = "it holds pixels and no features";
+
+/// Roots of XML documents that hold something else.
+const ROOTS: [(&str, &str, &str); 4] = [
+    ("osm", "OpenStreetMap XML", EXPORT),
+    ("FeatureCollection", "GML", EXPORT),
+    ("html", "a web page", "download the data that it shows"),
+    ("HTML", "a web page", "download the data that it shows"),
+];
+
+/// What the bytes begin like, where it is a format that is known but not read as map data: what it
+/// is, and what to do.
+pub fn of_content(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let magic = MAGIC.iter().find(|(magic, ..)| bytes.starts_with(magic));
+    let root = || ROOTS.iter().find(|(name, ..)| Some(*name) == super::markup::root(bytes));
+    magic
+        .map(|(_, what, hint)| (*what, *hint))
+        .or_else(|| root().map(|(_, what, hint)| (*what, *hint)))
+        .or_else(|| is_pbf(bytes).then_some(("OpenStreetMap PBF", EXPORT)))
+        .or_else(|| is_dbf(bytes).then_some(("a table of a Shapefile", "open the .shp beside it")))
+}
+
+/// Whether a block of OpenStreetMap's format begins.
+fn is_pbf(bytes: &[u8]) -> bool {
+    bytes.get(4..15) == Some(b"\x0a\x09OSMHeader")
+}
+
+/// Whether it looks like the table beside a Shapefile: version, a date, and lengths that fit each other.
+fn is_dbf(bytes: &[u8]) -> bool {
+    let fields = |low: u8, high: u8| u16::from_le_bytes([low, high]).checked_sub(33);
+    match bytes {
+        [3, _, 1..=12, 1..=31, _, _, _, _, low, high, ..] => {
+            fields(*low, *high).is_some_and(|length| length % 32 == 0 && bytes.len() > 32)
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,33 @@
+//! The root of an XML document, by which its format is told.
+
+/// How much of a document is looked at for its root.
+const PROBE: usize = 16 << 10;
+
+/// The local name of a document's root, where it stands near the beginning.
+pub fn root(bytes: &[u8]) -> Option<&str> {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let text = text.get(..PROBE).unwrap_or(text);
+    if text.first() != Some(&b'<') {
+        return None;
+    }
+    let mut at = 0;
+    loop {
+        let rest = text.get(at..)?;
+        let open = rest.iter().position(|&b| b == b'<')?;
+        let rest = rest.get(open + 1..)?;
+        at += open + 1;
+        let end = |mark: &[u8]| rest.windows(mark.len()).position(|w| w == mark);
+        at += match rest.first()? {
+            b'?' => end(b"?>")?,
+            b'!' if rest.starts_with(b"!--") => end(b"-->")?,
+            b'!' => end(b">")?,
+            _ => return name(rest),
+        };
+    }
+}
+
+fn name(tag: &[u8]) -> Option<&str> {
+    let length = tag.iter().take_while(|b| !b.is_ascii_whitespace() && !b"/>".contains(b)).count();
+    let name = std::str::from_utf8(tag.get(..length)?).ok()?;
+    Some(name.rsplit_once(':').map_or(name, |(_, local)| local))
+}

@@ -1,0 +1,64 @@
+//! JSON objects as lists of their members, in the order and spelling of the file.
+
+use super::Member;
+use super::geojson::Text;
+
+impl Member {
+    /// A member from a name and a value in JSON.
+    pub fn new(key: &str, value: impl Into<String>) -> Self {
+        Self { name: quoted(key), value: value.into() }
+    }
+
+    /// The name without quotes and escapes.
+    pub fn key(&self) -> String {
+        serde_json::from_str(&self.name).unwrap_or_else(|_| self.name.clone())
+    }
+
+    /// The value where it is a string, without quotes and escapes.
+    pub fn text(&self) -> Option<String> {
+        serde_json::from_str(&self.value).ok()
+    }
+}
+
+/// A string in JSON.
+pub fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// The members of a JSON object, in order; none of anything else. Of several of one name the last one
+/// counts, in the place of the first.
+pub fn members(object: &str) -> Vec<Member> {
+    let mut list: Vec<Member> = Vec::new();
+    let mut places = std::collections::BTreeMap::new();
+    for (name, value) in Text::new(object.as_bytes(), (1, 1)).members().unwrap_or_default() {
+        let [name, value] =
+            [name, value].map(|text| String::from_utf8_lossy(text.as_bytes()).into_owned());
+        let place = *places.entry(name.clone()).or_insert(list.len());
+        match list.get_mut(place) {
+            Some(member) => member.value = value,
+            None => list.push(Member { name, value }),
+        }
+    }
+    list
+}
+
+/// The JSON object of members.
+pub fn object(members: &[Member]) -> String {
+    let parts: Vec<String> = members.iter().map(|m| format!("{}:{}", m.name, m.value)).collect();
+    format!("{{{}}}", parts.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_keep_order_and_spelling() {
+        let list = members(r#"{ "b" : 1e3, "a\"": {"x": [1, 2]}, "b":2.50 }"#);
+        assert_eq!(object(&list), r#"{"b":2.50,"a\"":{"x": [1, 2]}}"#);
+        assert_eq!(list[1].key(), "a\"");
+        assert_eq!(members("[1]"), []);
+        assert_eq!(Member::new("ä\n", "1").name, "\"ä\\n\"");
+        assert_eq!(Member::new("a", quoted("x\"")).text().as_deref(), Some("x\""));
+    }
+}

@@ -1,0 +1,141 @@
+//! Which fields the features of a layer have, and of what kind their values are.
+
+use super::members::members;
+use super::{Feature, Member};
+use std::collections::BTreeMap;
+
+/// What the values of a field are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FieldKind {
+    /// Nothing but null.
+    Null,
+    /// `true` and `false`.
+    Boolean,
+    /// Whole numbers of 64 bits.
+    Integer,
+    /// Numbers.
+    Number,
+    /// Texts that are days, as 2024-12-31.
+    Date,
+    /// Texts, or values of several kinds.
+    Text,
+    /// Objects and arrays.
+    Json,
+}
+
+impl FieldKind {
+    /// Its name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Null => "null",
+            Self::Boolean => "boolean",
+            Self::Integer => "integer",
+            Self::Number => "number",
+            Self::Date => "date",
+            Self::Text => "text",
+            Self::Json => "json",
+        }
+    }
+
+    /// The kind of a value in JSON.
+    pub fn of(value: &str) -> Self {
+        match value.as_bytes() {
+            [b'"', ..] if is_day(value) => Self::Date,
+            [b'"', ..] => Self::Text,
+            [b'{' | b'[', ..] => Self::Json,
+            [b't' | b'f', ..] => Self::Boolean,
+            [b'n', ..] => Self::Null,
+            _ if value.parse::<i64>().is_ok() => Self::Integer,
+            _ => Self::Number,
+        }
+    }
+
+    /// The kind that holds values of both.
+    pub fn join(self, other: Self) -> Self {
+        match (self, other) {
+            (a, b) if a == b => a,
+            (Self::Null, kind) | (kind, Self::Null) => kind,
+            (Self::Integer, Self::Number) | (Self::Number, Self::Integer) => Self::Number,
+            _ => Self::Text,
+        }
+    }
+}
+
+/// Whether a text of JSON is a day.
+fn is_day(value: &str) -> bool {
+    let shape =
+        |(i, b): (usize, &u8)| if matches!(i, 5 | 8) { *b == b'-' } else { b.is_ascii_digit() };
+    let bytes = value.as_bytes();
+    bytes.len() == 12 && bytes.iter().enumerate().take(11).skip(1).all(shape)
+}
+
+/// A field of a layer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Field {
+    /// Its name.
+    pub key: String,
+    /// What its values are, all together.
+    pub kind: FieldKind,
+    /// How many features have a value that is not null.
+    pub filled: u64,
+    /// The first few values that are not null and differ, in JSON.
+    pub examples: Vec<String>,
+}
+
+/// So many examples are kept.
+const EXAMPLES: usize = 3;
+
+/// The fields of a layer, in the order in which they come first.
+#[derive(Debug, Clone, Default)]
+pub struct Schema {
+    fields: Vec<Field>,
+    places: BTreeMap<String, usize>,
+}
+
+impl Schema {
+    /// Of features.
+    pub fn of(features: &[Feature]) -> Self {
+        let mut schema = Self::default();
+        features.iter().for_each(|feature| schema.add(feature));
+        schema
+    }
+
+    /// Adds what a feature has.
+    pub fn add(&mut self, feature: &Feature) {
+        members(feature.properties.as_deref().unwrap_or_default())
+            .iter()
+            .for_each(|m| self.add_field(m));
+    }
+
+    fn add_field(&mut self, member: &Member) {
+        let kind = FieldKind::of(&member.value);
+        let key = member.key();
+        let place = match self.places.get(&key) {
+            Some(&place) => place,
+            None => {
+                let place = self.fields.len();
+                self.places.insert(key.clone(), place);
+                self.fields.push(Field { key, kind, filled: 0, examples: Vec::new() });
+                place
+            }
+        };
+        let Some(field) = self.fields.get_mut(place) else { return };
+        field.kind = field.kind.join(kind);
+        if kind != FieldKind::Null {
+            field.filled += 1;
+            if field.examples.len() < EXAMPLES && !field.examples.contains(&member.value) {
+                field.examples.push(member.value.clone());
+            }
+        }
+    }
+
+    /// All fields.
+    pub fn columns(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// The place of a field by its name.
+    pub fn find(&self, key: &str) -> Option<usize> {
+        self.places.get(key).copied()
+    }
+}

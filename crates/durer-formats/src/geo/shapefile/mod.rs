@@ -1,0 +1,155 @@
+//! Shapefiles, by *ESRI Shapefile Technical Description*, 1998: geometries in a .shp, their fields in a table
+//! beside it (.dbf) whose encoding a .cpg may name, the coordinate system in a .prj. The index (.shx) is written,
+//! and not needed for reading.
+
+mod dbf;
+mod encoding;
+mod record;
+mod rings;
+mod write;
+
+use super::reader::Beside;
+use super::{Feature, System, Warnings};
+use crate::text::Tally;
+use crate::{Error, Place, Result};
+use dbf::Table;
+use encoding::Encoding;
+pub use write::write;
+
+/// Bytes of the header of a .shp or .shx.
+const HEADER: usize = 100;
+
+/// The number that a .shp or .shx begins with.
+const MAGIC: [u8; 4] = 9994_u32.to_be_bytes();
+
+/// Whether the bytes begin like a .shp; an index begins alike.
+pub fn sniff(bytes: &[u8]) -> bool {
+    bytes.starts_with(&MAGIC) && bytes.get(28..32) == Some(&1000_u32.to_le_bytes())
+}
+
+/// Gives the records of a Shapefile as features.
+pub struct Reader {
+    bytes: Vec<u8>,
+    at: usize,
+    /// Records read.
+    row: usize,
+    table: Option<Table>,
+    /// What the .prj says.
+    pub system: System,
+    faults: Faults,
+}
+
+/// What had to be repaired, told at the end.
+#[derive(Debug, Default)]
+pub struct Faults {
+    pub values: Tally,
+    pub letters: Tally,
+    pub memos: Tally,
+    pub rows: Tally,
+    pub infinite: Tally,
+    pub patches: Tally,
+    pub measures: Tally,
+}
+
+impl Reader {
+    /// Looks for what stands beside the file.
+    ///
+    /// # Errors
+    /// What is no .shp, and a table that cannot be read.
+    pub fn new(bytes: Vec<u8>, beside: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
+        if !sniff(&bytes) || bytes.len() < HEADER {
+            return Err(Error::byte(
+                0,
+                "the header of a Shapefile is expected, 100 bytes from 9994 on",
+            ));
+        }
+        let text = |suffix| beside.find(suffix).map(|bytes| crate::text::name(&bytes).into_owned());
+        let encoding = text("cpg").and_then(|name| Encoding::of_name(&name, warnings));
+        let table = match beside.find("dbf") {
+            Some(table) => Some(Table::new(table, encoding).map_err(|e| e.at(of_table))?),
+            None => {
+                let message = "there is no .dbf beside it; features have no fields";
+                warnings.push(Place::Whole, message);
+                None
+            }
+        };
+        let system = text("prj").map(|wkt| System::of_wkt(&wkt)).unwrap_or_default();
+        Ok(Self { bytes, at: HEADER, row: 0, table, system, faults: Faults::default() })
+    }
+
+    /// The next record; `None` at the end.
+    pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
+        loop {
+            let Some(content) = self.content(warnings) else {
+                self.tell(warnings);
+                return Ok(None);
+            };
+            let place = Place::Byte(content.start as u64);
+            let row = self.row;
+            self.row += 1;
+            if self.table.as_ref().is_some_and(|table| table.is_deleted(row)) {
+                continue;
+            }
+            let record = self.bytes.get(content).unwrap_or_default();
+            let geometry = record::read(record, &place, &mut self.faults, warnings)?;
+            let table = self.table.as_ref();
+            let properties = table.map(|table| table.row(row, &mut self.faults));
+            let srid = self.system.code;
+            return Ok(Some(Feature { geometry, properties, srid, ..Feature::default() }));
+        }
+    }
+
+    /// The bytes of the next record's content.
+    fn content(&mut self, warnings: &mut Warnings) -> Option<std::ops::Range<usize>> {
+        let head = self.bytes.get(self.at..)?.first_chunk::<8>();
+        let Some([.., a, b, c, d]) = head else {
+            if self.at < self.bytes.len() {
+                warnings
+                    .push(Place::Byte(self.at as u64), "the file ends within a record; left out");
+                self.at = self.bytes.len();
+            }
+            return None;
+        };
+        let start = self.at + 8;
+        let words = u32::from_be_bytes([*a, *b, *c, *d]) as usize;
+        let end = start.saturating_add(words.saturating_mul(2));
+        if end > self.bytes.len() {
+            warnings.push(Place::Byte(self.at as u64), "the file ends within a record; left out");
+            self.at = self.bytes.len();
+            return None;
+        }
+        self.at = end;
+        Some(start..end)
+    }
+
+    fn tell(&mut self, warnings: &mut Warnings) {
+        let faults = std::mem::take(&mut self.faults);
+        if let Some(table) = self.table.take()
+            && table.rows() != self.row
+        {
+            let (rows, records) = (table.rows(), self.row);
+            let message = format!("the .dbf has {rows} rows for {records} records");
+            warnings.push(Place::Whole, message);
+        }
+        for (tally, what) in [
+            (faults.values, "values of the .dbf are not of the kind of their field; they are null"),
+            (faults.letters, "texts of the .dbf are not in its encoding; taken as Windows-1252"),
+            (faults.memos, "memos, which stand in a file of their own, are left out"),
+            (faults.rows, "records have no row in the .dbf; they have no fields"),
+            (faults.infinite, "geometries have coordinates that are not finite; left out"),
+            (
+                faults.patches,
+                "multipatches are flattened: their triangles and rings become polygons",
+            ),
+            (faults.measures, "positions have no measure where others have one; it is 0"),
+        ] {
+            if tally.count > 0 {
+                warnings.push(tally.first, format!("{} {what}", tally.count));
+            }
+        }
+    }
+}
+
+fn of_table(place: Place) -> Place {
+    Place::Path(format!("the .dbf, {place}").trim_end_matches([':', ' ']).to_owned())
+}

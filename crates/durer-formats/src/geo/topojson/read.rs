@@ -1,0 +1,324 @@
+//! Features from a topology.
+
+use crate::geo::geojson::{Cursor, RawMember, Text, finish_line, finish_ring, kind};
+use crate::geo::members::quoted;
+use crate::geo::{Dimensions, Feature, Geometry, MAX_DEPTH, Member, Points, Warnings};
+use crate::{Error, Limits, Result};
+use durer::math::DVec2;
+
+/// Where the integers of a quantized topology lie.
+#[derive(Debug, Clone, Copy)]
+struct Transform {
+    scale: DVec2,
+    translate: DVec2,
+}
+
+/// What is read of a topology.
+struct Topology<'a> {
+    arcs: Vec<Points>,
+    transform: Option<Transform>,
+    /// Positions of all features together.
+    count: u64,
+    warnings: &'a mut Warnings,
+    features: Vec<Feature>,
+}
+
+/// Reads all objects of a topology as features, one object after the other; members of the topology that the format
+/// does not define come beside them. `layer` names the one object that is read.
+pub fn read(
+    text: &[u8],
+    layer: Option<&str>,
+    warnings: &mut Warnings,
+) -> Result<(Vec<Feature>, Vec<Member>)> {
+    let whole = Text::new(text, (1, 1)).cursor().value("a topology")?;
+    let members = whole.members()?;
+    if kind(&members).as_deref() != Some("Topology") {
+        return Err(whole.error("a topology needs the member \"type\": \"Topology\""));
+    }
+    let transform = get(&members, "\"transform\"").map(transform).transpose()?;
+    let arcs = match get(&members, "\"arcs\"") {
+        Some(list) => arcs(list, transform)?,
+        None => return Err(whole.error("a topology needs the member arcs")),
+    };
+    let objects = get(&members, "\"objects\"")
+        .ok_or_else(|| whole.error("a topology needs the member objects"))?;
+    let mut topology = Topology { arcs, transform, count: 0, warnings, features: Vec::new() };
+    topology.objects(objects, layer)?;
+    let own = ["\"type\"", "\"arcs\"", "\"objects\"", "\"transform\"", "\"bbox\""];
+    let further =
+        members.iter().filter(|(name, _)| !own.iter().any(|own| own.as_bytes() == name.as_bytes()));
+    let further =
+        further.map(|(name, value)| Ok(Member { name: name.checked()?, value: value.checked()? }));
+    Ok((topology.features, further.collect::<Result<_>>()?))
+}
+
+/// The value of a member by its name in quotes.
+fn get<'a>(members: &[RawMember<'a>], name: &str) -> Option<Text<'a>> {
+    members.iter().rfind(|(n, _)| n.as_bytes() == name.as_bytes()).map(|(_, value)| *value)
+}
+
+fn transform(text: Text<'_>) -> Result<Transform> {
+    let members = text.members()?;
+    let pair = |name: &str| {
+        let value = get(&members, name)
+            .ok_or_else(|| text.error("a transform needs scale and translate"))?;
+        let (numbers, _) = numbers(&mut value.cursor())?;
+        Ok::<_, Error>(DVec2::new(numbers[0], numbers[1]))
+    };
+    Ok(Transform { scale: pair("\"scale\"")?, translate: pair("\"translate\"")? })
+}
+
+/// The numbers of a position, and how many there are.
+fn numbers(cursor: &mut Cursor<'_>) -> Result<([f64; 4], usize)> {
+    let start = cursor.clone();
+    let (mut numbers, mut count) = ([0.0; 4], 0);
+    cursor.array("a position, an array of numbers", |cursor| {
+        let number = cursor.number()?;
+        numbers.get_mut(count).into_iter().for_each(|place| *place = number);
+        count += 1;
+        Ok(())
+    })?;
+    if count < 2 {
+        return Err(start.clone().error("a position needs at least two numbers"));
+    }
+    Ok((numbers, count.min(4)))
+}
+
+/// The positions of all arcs, as coordinates.
+fn arcs(list: Text<'_>, transform: Option<Transform>) -> Result<Vec<Points>> {
+    let mut arcs = Vec::new();
+    list.cursor().array("an array of arcs", |cursor| {
+        let mut arc = Points::default();
+        let mut sum = DVec2::ZERO;
+        cursor.array("an arc, an array of positions", |cursor| {
+            let place = cursor.clone();
+            let ([x, y, z, m], count) = numbers(cursor)?;
+            if arc.is_empty() {
+                arc.dimensions = Dimensions::new(count > 2, count > 3);
+            }
+            let p = match transform {
+                Some(transform) => {
+                    sum += DVec2::new(x, y);
+                    sum * transform.scale + transform.translate
+                }
+                None => DVec2::new(x, y),
+            };
+            if !p.is_finite() {
+                return Err(place.clone().error("coordinates must be finite"));
+            }
+            arc.push(p, [z, m]);
+            Ok(())
+        })?;
+        arcs.push(arc);
+        Ok(())
+    })?;
+    Ok(arcs)
+}
+
+impl Topology<'_> {
+    fn objects(&mut self, objects: Text<'_>, layer: Option<&str>) -> Result<()> {
+        let objects = objects.members()?;
+        let name = |text: &Text<'_>| {
+            Ok::<_, Error>(Member { name: text.checked()?, value: String::new() }.key())
+        };
+        let names: Vec<String> = objects.iter().map(|(key, _)| name(key)).collect::<Result<_>>()?;
+        if let Some(layer) = layer
+            && !names.iter().any(|name| name == layer)
+        {
+            let names = crate::text::quote(names.join(", ").as_bytes());
+            return Err(Error::whole(format!("there is no layer {layer}; it has {names}")));
+        }
+        if layer.is_none() && names.len() > 1 {
+            let count = names.len();
+            let names = crate::text::quote(names.join(", ").as_bytes());
+            let message = format!("its {count} layers, {names}, become one; --layer names one");
+            self.warnings.push(Default::default(), message);
+        }
+        for (name, (_, object)) in names.iter().zip(&objects) {
+            if layer.is_none_or(|layer| layer == name) {
+                self.object(*object)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The features of an object: those of a collection, or it itself.
+    fn object(&mut self, object: Text<'_>) -> Result<()> {
+        let members = object.members()?;
+        if kind(&members).as_deref() != Some("GeometryCollection")
+            || get(&members, "\"properties\"").is_some()
+        {
+            let feature = self.feature(object, &members)?;
+            self.features.push(feature);
+            return Ok(());
+        }
+        let list = get(&members, "\"geometries\"");
+        let list =
+            list.ok_or_else(|| object.error("a GeometryCollection needs the member geometries"))?;
+        list.cursor().array("an array of geometries", |cursor| {
+            let object = cursor.value("a geometry")?;
+            let feature = self.feature(object, &object.members()?)?;
+            self.features.push(feature);
+            Ok(())
+        })
+    }
+
+    fn feature(&mut self, object: Text<'_>, members: &[RawMember<'_>]) -> Result<Feature> {
+        let mut feature =
+            Feature { geometry: self.geometry(object, members, 0)?, ..Feature::default() };
+        for (name, value) in members {
+            match name.as_bytes() {
+                b"\"type\"" | b"\"arcs\"" | b"\"coordinates\"" | b"\"geometries\""
+                | b"\"bbox\"" => {}
+                b"\"properties\"" if value.as_bytes().first() == Some(&b'{') => {
+                    feature.properties = Some(value.checked()?);
+                }
+                b"\"properties\"" => {}
+                b"\"id\"" => {
+                    feature.id = (!value.is_null()).then(|| value.checked()).transpose()?
+                }
+                _ => {
+                    feature.members.push(Member { name: name.checked()?, value: value.checked()? })
+                }
+            }
+        }
+        Ok(feature)
+    }
+
+    fn geometry(
+        &mut self,
+        object: Text<'_>,
+        members: &[RawMember<'_>],
+        depth: usize,
+    ) -> Result<Option<Geometry>> {
+        if depth > MAX_DEPTH {
+            return Err(object.error("geometries are nested too deep"));
+        }
+        let Some(kind) = kind(members) else { return Ok(None) };
+        let member = |name: &str| {
+            let value = get(members, &quoted(name)).map(Text::cursor);
+            value.ok_or_else(|| object.error(format!("a {kind} needs the member {name}")))
+        };
+        Ok(Some(match &kind[..] {
+            "Point" => Geometry::Point(self.positions(|add| add(&mut member("coordinates")?))?),
+            "MultiPoint" => Geometry::MultiPoint(
+                self.positions(|add| member("coordinates")?.array("an array of positions", add))?,
+            ),
+            "LineString" => Geometry::LineString(self.line(&mut member("arcs")?)?),
+            "MultiLineString" => {
+                let mut lines = Vec::new();
+                member("arcs")?.array("an array of lines", |cursor| {
+                    lines.push(self.line(cursor)?);
+                    Ok(())
+                })?;
+                lines.retain(|line| !line.is_empty());
+                Geometry::MultiLineString(lines)
+            }
+            "Polygon" => Geometry::Polygon(self.polygon(&mut member("arcs")?)?),
+            "MultiPolygon" => {
+                let mut polygons = Vec::new();
+                member("arcs")?.array("an array of polygons", |cursor| {
+                    polygons.push(self.polygon(cursor)?);
+                    Ok(())
+                })?;
+                polygons.retain(|rings| !rings.is_empty());
+                Geometry::MultiPolygon(polygons)
+            }
+            "GeometryCollection" => {
+                let mut parts = Vec::new();
+                member("geometries")?.array("an array of geometries", |cursor| {
+                    let part = cursor.value("a geometry")?;
+                    parts.extend(self.geometry(part, &part.members()?, depth + 1)?);
+                    Ok(())
+                })?;
+                Geometry::Collection(parts)
+            }
+            other => {
+                let other = crate::text::quote(other.as_bytes());
+                return Err(object.error(format!("`{other}` is no type of geometry")));
+            }
+        }))
+    }
+
+    /// Positions that stand in a geometry itself.
+    fn positions(
+        &mut self,
+        read: impl FnOnce(&mut dyn FnMut(&mut Cursor<'_>) -> Result<()>) -> Result<()>,
+    ) -> Result<Points> {
+        let (mut points, transform) = (Points::default(), self.transform);
+        read(&mut |cursor| {
+            let place = cursor.clone();
+            let ([x, y, z, m], count) = numbers(cursor)?;
+            if points.is_empty() {
+                points.dimensions = Dimensions::new(count > 2, count > 3);
+            }
+            let p = DVec2::new(x, y);
+            let p = transform.map_or(p, |transform| p * transform.scale + transform.translate);
+            if !p.is_finite() {
+                return Err(place.clone().error("coordinates must be finite"));
+            }
+            points.push(p, [z, m]);
+            Ok(())
+        })?;
+        Ok(points)
+    }
+
+    fn line(&mut self, cursor: &mut Cursor<'_>) -> Result<Points> {
+        let start = cursor.clone();
+        let mut line = self.join(cursor)?;
+        finish_line(&mut line, || start.clone().place(), self.warnings);
+        Ok(line)
+    }
+
+    fn polygon(&mut self, cursor: &mut Cursor<'_>) -> Result<Vec<Points>> {
+        let (mut rings, mut lost) = (Vec::new(), false);
+        cursor.array("an array of rings", |cursor| {
+            let start = cursor.clone();
+            let mut ring = self.join(cursor)?;
+            finish_ring(&mut ring, || start.clone().place(), self.warnings);
+            lost |= rings.is_empty() && ring.is_empty();
+            if !lost && !ring.is_empty() {
+                rings.push(ring);
+            }
+            Ok(())
+        })?;
+        Ok(rings)
+    }
+
+    /// The arcs of a line or ring, one after the other; their common ends come once.
+    fn join(&mut self, cursor: &mut Cursor<'_>) -> Result<Points> {
+        let mut joined = Points::default();
+        let limit = Limits::default().primitives;
+        cursor.array("an array of numbers of arcs", |cursor| {
+            let place = cursor.clone();
+            let number = cursor.number()?;
+            let known = number.fract() == 0.0 && number.abs() < 9e15;
+            let index = if number < 0.0 { -number - 1.0 } else { number } as usize;
+            let arc = self.arcs.get(index).filter(|_| known);
+            let Some(arc) = arc else {
+                let count = self.arcs.len();
+                return Err(place
+                    .clone()
+                    .error(format!("there are {count} arcs, and none of this number")));
+            };
+            self.count += arc.len() as u64;
+            if self.count > limit {
+                let (what, value) = ("the positions of all features", self.count);
+                return Err(Error::Limit { place: place.clone().place(), what, value, limit });
+            }
+            if joined.is_empty() {
+                joined.dimensions = arc.dimensions;
+            }
+            let skipped = usize::from(!joined.is_empty());
+            let order = 0..arc.len();
+            let mut add = |i: usize| joined.push(arc.xy[i], arc.zm(i));
+            if number < 0.0 {
+                order.rev().skip(skipped).for_each(&mut add);
+            } else {
+                order.skip(skipped).for_each(&mut add);
+            }
+            Ok(())
+        })?;
+        Ok(joined)
+    }
+}
