@@ -75,6 +75,18 @@ pub enum Command {
     /// Leave out points of map data; borders that neighbours share stay shared
     #[command(after_long_help = crate::simplify::EXAMPLES, after_help = "--help shows more, and examples.")]
     Simplify(Box<crate::simplify::SimplifyArgs>),
+    /// Make polygons that reach a distance farther than features do, or less far
+    #[command(after_long_help = crate::regions::BUFFER, after_help = "--help shows more, and examples.")]
+    Buffer(Box<crate::regions::BufferArgs>),
+    /// Join features that have the same values of some fields
+    #[command(after_long_help = crate::regions::DISSOLVE, after_help = "--help shows more, and examples.")]
+    Dissolve(Box<crate::regions::DissolveArgs>),
+    /// Make polygons valid
+    #[command(after_long_help = crate::regions::FIX, after_help = "--help shows more, and examples.")]
+    Fix(Box<crate::regions::FixArgs>),
+    /// Say what is wrong with polygons, and with a coverage, and where
+    #[command(after_long_help = crate::regions::CHECK, after_help = "--help shows more, and examples.")]
+    Check(Box<crate::regions::CheckArgs>),
     /// Draw an SVG, or a map of GeoJSON, WKT or WKB layers, to a picture
     #[command(after_long_help = crate::draw::EXAMPLES, after_help = "--help shows more, and examples.")]
     Draw(Box<crate::draw::DrawArgs>),

@@ -26,6 +26,7 @@ mod panics;
 mod pick;
 mod plot;
 mod progress;
+mod regions;
 mod render;
 mod report;
 mod resources;
@@ -132,6 +133,10 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Render(args) => on_threads(&args.running, || render::run(&args)),
         Command::Info(args) => on_threads(&args.running, || info::run(&args)),
         Command::Clip(args) => on_threads(&args.running, || clip::run(&args)),
+        Command::Buffer(args) => on_threads(&args.files.running, || regions::buffer(&args)),
+        Command::Dissolve(args) => on_threads(&args.files.running, || regions::dissolve(&args)),
+        Command::Fix(args) => on_threads(&args.files.running, || regions::fix(&args)),
+        Command::Check(args) => on_threads(&args.running, || regions::check(&args)),
         Command::Tiles(args) => on_threads(&args.running, || tiles::run(&args)),
         Command::Simplify(args) => on_threads(&args.running, || simplify::run(&args)),
         Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),

@@ -12,7 +12,9 @@ mod values;
 mod window;
 
 pub use args::{ClipArgs, EXAMPLES, TileCoordinates, format};
+pub use engine::Rules;
 pub use report::Counts;
+pub use shapes::Area;
 pub use window::window;
 
 use crate::failure::Failure;
@@ -24,11 +26,10 @@ use durer::clip::polygon::validity::{self, Touching};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer::clip::tiles::Tile;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
-use engine::{Algorithm, Cutter, Made, Rules};
+use engine::{Algorithm, Cutter, Made};
 use mask::Mask;
 use rayon::prelude::*;
 use report::Report;
-use shapes::Area;
 use srids::Srids;
 use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
@@ -158,6 +159,12 @@ fn rules(args: &ClipArgs, feature: &Feature) -> Rules {
 pub fn is_valid(geometry: &Geometry) -> bool {
     let area = Area::of_geometry(geometry);
     area.shapes.is_empty() || validity::is_valid(&area.shapes, Touching::AtPoints)
+}
+
+/// The union of polygons that are valid, each for itself, with outer rings counter-clockwise.
+pub fn joined(area: &Area) -> durer::Result<Area> {
+    let rules = Rules { fill: FillRule::Positive, grid: None };
+    Ok(rules.overlay(area, &Shapes::new(), BooleanOp::Union, FillRule::Positive)?.area)
 }
 
 /// The format of the result; of tiles always GeoJSON.

@@ -25,6 +25,11 @@ impl Area {
         area
     }
 
+    /// Polygons without heights and measures.
+    pub fn flat(shapes: Shapes) -> Self {
+        Self { shapes, ..Self::default() }
+    }
+
     fn add(&mut self, geometry: &Geometry) {
         match geometry {
             Geometry::Polygon(rings) => self.add_polygon(rings),

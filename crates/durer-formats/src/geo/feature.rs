@@ -87,6 +87,22 @@ impl Points {
         }
     }
 
+    /// Adds all positions of others, with the ordinates that either has.
+    pub fn append(&mut self, other: &Self) {
+        if self.is_empty() {
+            self.clone_from(other);
+            return;
+        }
+        let own = self.len();
+        let dimensions = self.dimensions.with(other.dimensions);
+        if dimensions != Dimensions::Xy {
+            self.zm.resize(own, [0.0; 2]);
+            self.zm.extend((0..other.len()).map(|i| other.zm(i)));
+        }
+        self.dimensions = dimensions;
+        self.xy.extend_from_slice(&other.xy);
+    }
+
     /// Takes the last position away.
     pub fn pop(&mut self) {
         self.xy.pop();

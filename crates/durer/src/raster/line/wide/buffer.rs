@@ -128,6 +128,7 @@ fn joined(
     let rules = OverlayOptions {
         subject_rule: rule,
         clip_rule: FillRule::NonZero,
+        drop_collinear: true,
         ..OverlayOptions::default()
     };
     Ok(overlay(shapes, &outline, op, &rules, &mut NoTrace)?.shapes)

@@ -1,0 +1,158 @@
+//! `durer buffer`.
+
+use super::{FilesArgs, Job};
+use crate::clip::{Area, joined};
+use crate::failure::Failure;
+use crate::values;
+use clap::{Args, ValueEnum};
+use durer::clip::polygon::{FillRule, Shapes};
+use durer::math::DVec2;
+use durer::raster::line::wide::buffer::{self, Options};
+use durer::raster::line::wide::{Cap, Join};
+use durer_formats::geo::crs::Crs;
+use durer_formats::geo::{Feature, Geometry};
+
+pub const EXAMPLES: &str = "\
+Examples:
+  durer buffer roads.geojson --distance 12 -o corridors.geojson
+  durer buffer parcels.fgb --distance -2.5 --join miter -o buildable.fgb
+  durer buffer wells.csv --distance 500 --dissolve -o protected.geojson
+
+The distance is in units of the coordinates: bring longitude and latitude to metres first, with durer clip --to-crs. \
+Below 0 polygons shrink. Heights and measures are not kept.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer buffer`.
+#[derive(Debug, Args)]
+pub struct BufferArgs {
+    /// How far the result reaches, in units of the coordinates
+    #[arg(short, long, value_name = "D", allow_hyphen_values = true, value_parser = values::number)]
+    pub distance: f64,
+    /// Corners: round, miter or bevel
+    #[arg(long, value_name = "JOIN", default_value = "round")]
+    pub join: JoinName,
+    /// The ends of lines, and points: round, butt (points vanish) or square
+    #[arg(long, value_name = "CAP", default_value = "round")]
+    pub cap: CapName,
+    /// Cut off corners that reach farther than this many distances
+    #[arg(long, value_name = "L", default_value = "5", value_parser = values::positive)]
+    pub miter_limit: f64,
+    /// How far the polygons that stand for arcs may lie from them, in units of the coordinates [default: a thousandth of
+    /// the distance]
+    #[arg(long, value_name = "T", value_parser = values::positive)]
+    pub tolerance: Option<f64>,
+    /// Join all to one feature
+    #[arg(long)]
+    pub dissolve: bool,
+    /// What is read and written.
+    #[command(flatten)]
+    pub files: FilesArgs,
+}
+
+/// `--join`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum JoinName {
+    /// Arcs
+    Round,
+    /// Sharp
+    Miter,
+    /// Cut off straight
+    Bevel,
+}
+
+/// `--cap`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CapName {
+    /// Half circles; points become discs
+    Round,
+    /// Straight, at the end
+    Butt,
+    /// Straight, a distance beyond the end; points become squares
+    Square,
+}
+
+impl BufferArgs {
+    fn options(&self) -> Options {
+        let join = match self.join {
+            JoinName::Round => Join::Round,
+            JoinName::Miter => Join::Miter,
+            JoinName::Bevel => Join::Bevel,
+        };
+        let cap = match self.cap {
+            CapName::Round => Cap::Round,
+            CapName::Butt => Cap::Butt,
+            CapName::Square => Cap::Square,
+        };
+        let (distance, tolerance) = (self.distance, self.tolerance);
+        Options { distance, join, cap, miter_limit: self.miter_limit, tolerance }
+    }
+}
+
+/// Makes buffers of a file's features.
+pub fn run(args: &BufferArgs) -> Result<(), Failure> {
+    if args.miter_limit < 1.0 {
+        return Err(Failure::Usage("--miter-limit: at least 1".to_owned()));
+    }
+    let mut job = Job::new(&args.files)?;
+    let options = args.options();
+    let degrees = Crs::of_system(&job.reader.system()).is_ok_and(|crs| crs.is_geographic());
+    if degrees {
+        let message = "coordinates are degrees, and so is the distance; durer clip --to-crs brings them to metres";
+        job.report.warnings.push(message.to_owned());
+    }
+    let one =
+        |feature: &Feature, geometry: &Geometry| buffer(geometry, feature.fill_rule, &options);
+    if !args.dissolve {
+        let geometry = |f: &Feature, g: &Geometry| Ok((Area::flat(one(f, g)?).into_geometry(), ()));
+        return job.each(geometry, |_, _, ()| {});
+    }
+    let mut all = Shapes::new();
+    loop {
+        let features = job.batch(super::BATCH)?;
+        if features.is_empty() {
+            break;
+        }
+        for (number, feature) in &features {
+            let Some(geometry) = &feature.geometry else { continue };
+            let made = one(feature, geometry);
+            all.append(&made.map_err(|e| job.fail(format!("feature {number}: {e}")))?);
+        }
+    }
+    let whole = joined(&Area::flat(all)).map_err(|e| job.fail(e))?;
+    let features = whole.into_geometry().map(Feature::of_geometry).into_iter().collect();
+    job.write(features)
+}
+
+/// The polygons within a distance of all parts of a geometry.
+fn buffer(geometry: &Geometry, rule: FillRule, options: &Options) -> durer::Result<Shapes> {
+    let mut lines: Vec<Vec<DVec2>> = Vec::new();
+    chains(geometry, &mut lines);
+    let area = Area::of_geometry(geometry);
+    let around = match lines.is_empty() {
+        true => Shapes::new(),
+        false => buffer::of_lines(lines.iter().map(|line| &line[..]), options)?,
+    };
+    if area.shapes.is_empty() {
+        return Ok(around);
+    }
+    let mut all = buffer::of_polygons(&area.shapes, rule, options)?;
+    if around.is_empty() {
+        return Ok(all);
+    }
+    all.append(&around);
+    Ok(joined(&Area::flat(all))?.shapes)
+}
+
+/// The lines of a geometry, and its points as lines of one point.
+fn chains(geometry: &Geometry, out: &mut Vec<Vec<DVec2>>) {
+    match geometry {
+        Geometry::Point(points) | Geometry::MultiPoint(points) => {
+            out.extend(points.xy.iter().map(|p| vec![*p]));
+        }
+        Geometry::LineString(line) => out.push(line.xy.clone()),
+        Geometry::MultiLineString(lines) => out.extend(lines.iter().map(|line| line.xy.clone())),
+        Geometry::Collection(parts) => parts.iter().for_each(|part| chains(part, out)),
+        Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {}
+    }
+}

@@ -1,0 +1,135 @@
+//! `durer dissolve`.
+
+use super::{FilesArgs, Job};
+use crate::clip::{Area, Rules, joined};
+use crate::failure::Failure;
+use clap::Args;
+use durer_formats::geo::{Feature, Geometry, Member, Points};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+pub const EXAMPLES: &str = "\
+Examples:
+  durer dissolve counties.geojson --by STATE -o states.geojson
+  durer dissolve parcels.shp --by owner,use -o holdings.fgb
+  durer dissolve lakes.geojson -o one.geojson
+
+Features with the same value of all fields become one, in the order in which the values come first; without --by \
+all become one. It keeps these fields, and counts its features as `count`. Polygons are joined: borders between \
+them vanish, and what overlapped counts once. Lines and points are put together as they are.
+
+Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wrong use.";
+
+/// The options of `durer dissolve`.
+#[derive(Debug, Args)]
+pub struct DissolveArgs {
+    /// Fields by whose values features are joined
+    #[arg(long, value_name = "FIELD,…", value_delimiter = ',')]
+    pub by: Vec<String>,
+    /// What is read and written.
+    #[command(flatten)]
+    pub files: FilesArgs,
+}
+
+/// Features that become one.
+#[derive(Default)]
+struct Group {
+    /// The values of its fields, `null` where there is none.
+    fields: Vec<Member>,
+    count: u64,
+    area: Area,
+    lines: Vec<Points>,
+    points: Points,
+    srid: Option<i32>,
+}
+
+/// Joins a file's features.
+pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
+    let mut job = Job::new(&args.files)?;
+    let (mut groups, mut places) = (Vec::new(), BTreeMap::new());
+    let mut missing = args.by.clone();
+    loop {
+        let features = job.batch(super::BATCH)?;
+        if features.is_empty() {
+            break;
+        }
+        let clean = |(number, f): &(u64, Feature)| {
+            let rules = Rules { fill: f.fill_rule, grid: None };
+            let made = f.geometry.as_ref().map(|g| rules.clean(g)).transpose();
+            made.map_err(|e| (*number, e))
+        };
+        let cleaned: Vec<_> = features.par_iter().map(clean).collect();
+        for ((_, feature), made) in features.into_iter().zip(cleaned) {
+            let made = made.map_err(|(n, e)| job.fail(format!("feature {n}: {e}")))?;
+            let own = feature.fields();
+            missing.retain(|name| !own.iter().any(|field| field.key() == *name));
+            let fields: Vec<Member> = args.by.iter().map(|name| value(&own, name)).collect();
+            let key: Vec<String> = fields.iter().map(|field| field.value.clone()).collect();
+            let place = *places.entry(key).or_insert_with(|| {
+                groups.push(Group { fields, srid: feature.srid, ..Group::default() });
+                groups.len() - 1
+            });
+            let group: &mut Group = &mut groups[place];
+            group.count += 1;
+            let repaired = made.as_ref().is_some_and(|made| made.repaired);
+            *job.report.repaired.get_or_insert(0) += u64::from(repaired);
+            if let Some(made) = made {
+                group.area.append(&made.area);
+            }
+            if let Some(geometry) = &feature.geometry {
+                group.add(geometry);
+            }
+        }
+    }
+    if job.report.given.features > 0 && !missing.is_empty() {
+        job.report.warnings.push(format!("no feature has the field {}", missing.join(", ")));
+    }
+    let repaired = job.report.repaired.unwrap_or(0);
+    if repaired > 0 {
+        job.report.warnings.push(super::fix::told(repaired));
+    }
+    let features: durer::Result<Vec<Feature>> =
+        groups.into_par_iter().map(Group::into_feature).collect();
+    let features = features.map_err(|e| job.fail(e))?;
+    job.write(features)
+}
+
+/// The value of a field, `null` where there is none.
+fn value(own: &[Member], name: &str) -> Member {
+    let found = own.iter().find(|field| field.key() == name).cloned();
+    found.unwrap_or_else(|| Member::new(name, "null".to_owned()))
+}
+
+impl Group {
+    /// Adds the lines and points of a geometry.
+    fn add(&mut self, geometry: &Geometry) {
+        match geometry {
+            Geometry::Point(points) | Geometry::MultiPoint(points) => self.points.append(points),
+            Geometry::LineString(line) => self.lines.push(line.clone()),
+            Geometry::MultiLineString(lines) => self.lines.extend(lines.iter().cloned()),
+            Geometry::Collection(parts) => parts.iter().for_each(|part| self.add(part)),
+            Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {}
+        }
+    }
+
+    fn into_feature(mut self) -> durer::Result<Feature> {
+        let area = joined(&self.area)?.into_geometry();
+        let lines = match self.lines.len() {
+            0 => None,
+            1 => self.lines.pop().map(Geometry::LineString),
+            _ => Some(Geometry::MultiLineString(self.lines)),
+        };
+        let points = match self.points.len() {
+            0 => None,
+            1 => Some(Geometry::Point(self.points)),
+            _ => Some(Geometry::MultiPoint(self.points)),
+        };
+        let mut parts: Vec<Geometry> = [area, lines, points].into_iter().flatten().collect();
+        let geometry =
+            if parts.len() > 1 { Some(Geometry::Collection(parts)) } else { parts.pop() };
+        let mut feature = Feature { geometry, srid: self.srid, ..Feature::default() };
+        self.fields.push(Member::new("count", self.count.to_string()));
+        feature.set_fields(&self.fields);
+        Ok(feature)
+    }
+}

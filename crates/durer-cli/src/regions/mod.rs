@@ -1,0 +1,204 @@
+//! Commands that make other features of features: `durer buffer`, `durer dissolve`, `durer fix`; and `durer check`, which
+//! says what is wrong with them.
+
+mod buffer;
+mod check;
+mod dissolve;
+mod fix;
+
+pub use buffer::{BufferArgs, EXAMPLES as BUFFER, run as buffer};
+pub use check::{CheckArgs, EXAMPLES as CHECK, run as check};
+pub use dissolve::{DissolveArgs, EXAMPLES as DISSOLVE, run as dissolve};
+pub use fix::{EXAMPLES as FIX, FixArgs, run as fix};
+
+use crate::args::RunningArgs;
+use crate::clip::Counts;
+use crate::failure::Failure;
+use crate::input::{display_name, is_stream};
+use crate::layer::{self, FieldArgs, Fields, Source, failure, named_format, words};
+use crate::messages::Messages;
+use clap::{Args, ValueHint};
+use durer_formats::geo::{Feature, GeoFormat, Geometry};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// What is read and written, and how.
+#[derive(Debug, Args)]
+pub struct FilesArgs {
+    /// A layer: GeoJSON (also one feature per line), WKT, WKB, Shapefile, FlatGeobuf and others; `-` reads standard input
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// Where the result goes: a file whose suffix tells the format, or `-` for standard output, in the format of the input
+    #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// The format of IN [default: by its content, then by its suffix]
+    #[arg(long, value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Formats")]
+    pub from: Option<GeoFormat>,
+    /// The format of OUT [default: by its suffix]
+    #[arg(long, visible_alias = "format", value_name = "FORMAT", value_parser = crate::clip::format, help_heading = "Formats")]
+    pub to: Option<GeoFormat>,
+    /// Which features are kept.
+    #[command(flatten)]
+    pub fields: FieldArgs,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+    /// Write a report on standard output, in JSON: counts and areas in and out
+    #[arg(long, help_heading = "Running")]
+    pub json: bool,
+}
+
+/// What `--json` says.
+#[derive(Debug, Default, Serialize)]
+struct Report {
+    version: &'static str,
+    input: String,
+    output: String,
+    from: &'static str,
+    to: &'static str,
+    #[serde(rename = "in")]
+    given: Counts,
+    out: Counts,
+    /// Features that were changed because they were not valid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repaired: Option<u64>,
+    warnings: Vec<String>,
+    total_seconds: f64,
+    peak_memory_bytes: Option<u64>,
+}
+
+/// Features that are worked on at a time, on all threads.
+const BATCH: usize = 256;
+
+/// One run over a file.
+struct Job<'a> {
+    args: &'a FilesArgs,
+    to: GeoFormat,
+    reader: Source,
+    fields: Fields,
+    report: Report,
+    messages: Messages,
+    start: Instant,
+}
+
+impl<'a> Job<'a> {
+    fn new(args: &'a FilesArgs) -> Result<Self, Failure> {
+        let start = Instant::now();
+        if args.json && is_stream(&args.output) {
+            let message = "--json: the report goes to standard output, where the result goes too";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        let messages = Messages::new(&args.running, 1);
+        let (from, reader) = layer::open(&args.input, args.from, None)?;
+        let to = named_format(&args.output, args.to, Some(from))?;
+        let report = Report {
+            version: env!("CARGO_PKG_VERSION"),
+            input: display_name(&args.input),
+            output: args.output.display().to_string(),
+            from: from.name(),
+            to: to.name(),
+            ..Report::default()
+        };
+        let fields = Fields::new(&args.fields);
+        Ok(Self { args, to, reader, fields, report, messages, start })
+    }
+
+    fn fail(&self, what: impl std::fmt::Display) -> Failure {
+        Failure::Data(format!("{}: {what}", display_name(&self.args.input)))
+    }
+
+    /// The next features that are kept, with their numbers in the file; at most `most`, none at the end.
+    fn batch(&mut self, most: usize) -> Result<Vec<(u64, Feature)>, Failure> {
+        let mut features = Vec::new();
+        while features.len() < most {
+            let next = self.reader.next_feature().map_err(|e| self.fail(words(&e)))?;
+            let Some(mut feature) = next else { break };
+            self.report.given.add(feature.geometry.as_ref());
+            let number = self.report.given.features;
+            if self.fields.apply(&mut feature) {
+                features.push((number, feature));
+            }
+        }
+        let read = self.report.given.features;
+        self.messages.progress.stage(|| format!("{read} features"));
+        Ok(features)
+    }
+
+    /// Changes each geometry by itself; features that have none left are left out. `note` gets what `change` says besides.
+    fn each<N: Send>(
+        mut self,
+        change: impl Fn(&Feature, &Geometry) -> durer::Result<(Option<Geometry>, N)> + Sync,
+        mut note: impl FnMut(&mut Report, u64, N),
+    ) -> Result<(), Failure> {
+        let mut writer = None;
+        loop {
+            let features = self.batch(BATCH)?;
+            if writer.is_some() && features.is_empty() {
+                break;
+            }
+            let changed: Vec<_> = features
+                .par_iter()
+                .map(|(_, f)| f.geometry.as_ref().map(|g| change(f, g)).transpose())
+                .collect();
+            let writer = match &mut writer {
+                Some(writer) => writer,
+                none => none.insert(self.writer()?),
+            };
+            for ((number, mut feature), changed) in features.into_iter().zip(changed) {
+                let had = feature.geometry.is_some();
+                let changed = changed.map_err(|e| self.fail(format!("feature {number}: {e}")))?;
+                if let Some((geometry, noted)) = changed {
+                    feature.geometry = geometry;
+                    feature.fill_rule = Default::default();
+                    note(&mut self.report, number, noted);
+                }
+                if feature.geometry.is_some() || !had {
+                    self.report.out.add(feature.geometry.as_ref());
+                    writer.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
+                }
+            }
+        }
+        self.end(writer)
+    }
+
+    /// Writes these features, and nothing else.
+    fn write(mut self, features: Vec<Feature>) -> Result<(), Failure> {
+        let mut writer = self.writer()?;
+        for feature in features {
+            self.report.out.add(feature.geometry.as_ref());
+            writer.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
+        }
+        self.end(Some(writer))
+    }
+
+    fn writer(&self) -> Result<durer_formats::geo::Writer<layer::Sink>, Failure> {
+        layer::writer(&self.args.output, self.to, self.reader.members(), self.reader.system())
+    }
+
+    fn end(
+        mut self,
+        writer: Option<durer_formats::geo::Writer<layer::Sink>>,
+    ) -> Result<(), Failure> {
+        let writer = match writer {
+            Some(writer) => writer,
+            None => self.writer()?,
+        };
+        let (args, messages) = (self.args, &self.messages);
+        let told = layer::finish(writer, &args.output, self.reader.members(), messages)?;
+        let name = display_name(&args.input);
+        messages.warnings(&name, self.reader.warnings());
+        let own = std::mem::take(&mut self.report.warnings);
+        let none =
+            (self.report.given.features == 0).then(|| "there is no feature in it".to_owned());
+        let own: Vec<String> = own.into_iter().chain(self.fields.told()).chain(none).collect();
+        own.iter().for_each(|warning| messages.warning(&name, warning));
+        let read = self.reader.warnings().iter().map(ToString::to_string);
+        self.report.warnings = told.into_iter().chain(read).chain(own).collect();
+        drop(self.messages);
+        self.report.total_seconds = self.start.elapsed().as_secs_f64();
+        self.report.peak_memory_bytes = crate::report::peak_memory();
+        if args.json { crate::report::print(&self.report) } else { Ok(()) }
+    }
+}
