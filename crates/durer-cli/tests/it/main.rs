@@ -21,6 +21,7 @@ mod pick;
 mod pictures;
 mod plot;
 mod readme;
+mod regions;
 mod resources;
 mod same_bytes;
 mod seen;

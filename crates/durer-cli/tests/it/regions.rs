@@ -1,0 +1,103 @@
+//! `durer buffer`, `dissolve`, `fix` and `check` on small files.
+
+use crate::harness::Folder;
+use serde_json::Value;
+
+/// A layer with a bow tie, two neighbours with the same border, and one that overlaps the second.
+const LAYER: &str = r#"{"type":"FeatureCollection","features":[
+{"type":"Feature","properties":{"use":"farm","n":1},"geometry":{"type":"Polygon","coordinates":[[[20,0],[24,4],[24,0],[20,4],[20,0]]]}},
+{"type":"Feature","properties":{"use":"farm","n":2},"geometry":{"type":"Polygon","coordinates":[[[0,0,7],[4,0,7],[4,4,7],[0,4,7],[0,0,7]]]}},
+{"type":"Feature","properties":{"use":"wood","n":3},"geometry":{"type":"Polygon","coordinates":[[[4,0],[8,0],[8,4],[4,4],[4,0]]]}},
+{"type":"Feature","properties":{"use":"farm","n":4},"geometry":{"type":"Polygon","coordinates":[[[7,1],[9,1],[9,3],[7,3],[7,1]]]}},
+{"type":"Feature","properties":{"n":5},"geometry":{"type":"LineString","coordinates":[[0,0],[10,0]]}}]}"#;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("in.geojson", LAYER);
+    folder
+}
+
+fn features(folder: &Folder, name: &str) -> Vec<Value> {
+    let whole: Value = serde_json::from_slice(&folder.read(name)).unwrap();
+    whole["features"].as_array().unwrap().clone()
+}
+
+#[test]
+fn buffers_have_the_area_that_they_should() {
+    let folder = folder();
+    let miter = "buffer in.geojson --where n=2 --distance 1 --join miter -o out.geojson --json";
+    let report = folder.must(miter).json();
+    assert_eq!(report["out"]["area"], 36.0);
+    let shrunk = "buffer in.geojson --where n=2 --distance=-1 -o out.geojson --json";
+    assert_eq!(folder.must(shrunk).json()["out"]["area"], 4.0);
+    let gone = "buffer in.geojson --where n=2 --distance=-2 -o out.geojson --json";
+    assert_eq!(folder.must(gone).json()["out"]["features"], 0);
+    let line = "buffer in.geojson --where n=5 --distance 2 --cap butt -o out.geojson --json";
+    assert_eq!(folder.must(line).json()["out"]["area"], 40.0);
+    assert_eq!(features(&folder, "out.geojson")[0]["properties"]["n"], 5);
+    let all = "buffer in.geojson --where n>1 --distance 0 --dissolve -o out.geojson --json";
+    let all = folder.must(all);
+    assert_eq!(all.json()["out"]["area"], 34.0);
+    assert!(all.err.contains("coordinates are degrees"), "{}", all.err);
+}
+
+#[test]
+fn features_with_one_value_become_one() {
+    let folder = folder();
+    let told = folder.must("dissolve in.geojson --by use -o out.geojson --json");
+    let found = features(&folder, "out.geojson");
+    let properties: Vec<String> = found.iter().map(|f| f["properties"].to_string()).collect();
+    let expected =
+        [r#"{"count":3,"use":"farm"}"#, r#"{"count":1,"use":"wood"}"#, r#"{"count":1,"use":null}"#];
+    assert_eq!(properties, expected);
+    assert_eq!(found[0]["geometry"]["coordinates"].as_array().map(Vec::len), Some(4));
+    assert_eq!(found[2]["geometry"]["type"], "LineString");
+    assert_eq!(told.json()["out"]["area"], 8.0 + 16.0 + 4.0 + 16.0);
+    assert!(told.err.contains("1 features are not valid"), "{}", told.err);
+    let told = folder.must("dissolve in.geojson --by owner -o out.geojson --json");
+    assert!(told.err.contains("no feature has the field owner"), "{}", told.err);
+    // One feature of all: polygons and the line. What overlaps counts once.
+    assert_eq!(told.json()["out"]["area"], 8.0 + 34.0);
+}
+
+#[test]
+fn what_is_not_valid_is_made_so_and_the_rest_stays() {
+    let folder = folder();
+    let told = folder.must("fix in.geojson -o out.geojson --json");
+    assert_eq!(told.json()["repaired"], 1);
+    assert!(told.err.contains("feature 1 is the first that was repaired"), "{}", told.err);
+    let (given, found) = (features(&folder, "in.geojson"), features(&folder, "out.geojson"));
+    assert_eq!(found[1..], given[1..]);
+    assert_eq!(found[0]["geometry"]["type"], "MultiPolygon");
+    let positive = "fix in.geojson --rule positive --where n=1 -o out.geojson --json";
+    assert_eq!(folder.must(positive).json()["out"]["area"], 4.0);
+    let sound = folder.run("check out.geojson").out;
+    assert!(String::from_utf8_lossy(&sound).contains("nothing is wrong"));
+}
+
+#[test]
+fn faults_are_told_with_their_places() {
+    let folder = folder();
+    let ended = folder.run("check in.geojson --coverage");
+    assert_eq!(ended.code, 1);
+    let out = String::from_utf8_lossy(&ended.out);
+    let lines: Vec<&str> = out.lines().collect();
+    let expected = [
+        "feature 1: edges cross at 22 2",
+        "features 3 and 4: two features overlap at 8 1",
+        "features 3 and 4: two features overlap at 8 3",
+    ];
+    assert_eq!(lines, expected);
+    let report = folder.run("check in.geojson --coverage --json --most 1").json();
+    assert_eq!((&report["valid"], &report["invalid"]), (&Value::Bool(false), &1.into()));
+    assert_eq!(report["counts"].to_string(), r#"{"crossing":1,"overlap":2}"#);
+    assert_eq!(
+        report["faults"].to_string(),
+        r#"[{"at":[22.0,2.0],"fault":"crossing","feature":1}]"#
+    );
+    let good = r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,0]]]}"#;
+    folder.write("good.geojson", good);
+    let ended = folder.must("check good.geojson --coverage --gap-width 1");
+    assert_eq!(ended.out, b"good.geojson: 1 features, nothing is wrong\n");
+    assert_eq!(folder.run("check good.geojson --gap-width 1").code, 2);
+}
