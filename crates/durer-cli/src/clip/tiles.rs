@@ -85,6 +85,7 @@ impl Job {
     /// How many tiles there are at least, counted up to a limit.
     pub fn count(&self, subjects: &[Subject<'_>], limit: u64) -> durer::Result<u64> {
         let boxes = subjects.iter().map(Subject::count_of_box).fold(0, u64::saturating_add);
+        let boxes = boxes.min(Tile::WORLD.count_at(self.zoom));
         if boxes <= limit {
             return Ok(boxes);
         }

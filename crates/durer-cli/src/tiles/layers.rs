@@ -165,7 +165,7 @@ impl Doubts {
             self.latitudes.told(
                 "have latitudes beyond 90 degrees; are longitude and latitude in the wrong order, or --coordinates?",
             ),
-            self.poles.told("go around a pole; their borders are taken as they are"),
+            self.poles.told("go around a pole; they are closed along it"),
             self.ids.told("have ids that are no whole numbers; vector tiles know no others, left out"),
             self.no_geometry.told("have no geometry; left out"),
         ];
@@ -188,7 +188,7 @@ impl Layers {
         number: u64,
         doubts: &mut Doubts,
     ) {
-        let id = feature.id.as_deref().and_then(|id| id.parse().ok());
+        let id = feature.id.as_deref().and_then(whole_number);
         doubts.ids.add(feature.id.is_some() && id.is_none(), number);
         doubts.far.add(projected.far, number);
         doubts.latitudes.add(projected.latitude, number);
@@ -253,6 +253,12 @@ fn typed(value: serde_json::Value) -> Option<(Value, Field)> {
     })
 }
 
+/// An id that vector tiles can have: a whole number, or text that is one.
+fn whole_number(json: &str) -> Option<u64> {
+    let text = json.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(json);
+    text.parse().ok().filter(|number: &u64| number.to_string() == text)
+}
+
 /// The parts of a geometry by kinds.
 #[derive(Default)]
 struct Parts {
@@ -312,7 +318,10 @@ impl Parts {
         for ring in rings {
             let mut places = run(ring, args.short_way, args, doubts);
             if args.short_way {
-                doubts.pole |= goes_around(&places);
+                if goes_around(&places) {
+                    doubts.pole = true;
+                    close_along_pole(&mut places);
+                }
                 // Holes are where their polygon is.
                 let start = places.first().map_or(0.0, |p| p.x);
                 let shift = (first.unwrap_or(start) - start).round();
@@ -328,6 +337,17 @@ impl Parts {
 /// Whether a ring ends in another world than it begins.
 fn goes_around(ring: &[DVec2]) -> bool {
     matches!((ring.first(), ring.last()), (Some(a), Some(b)) if (a.x - b.x).abs() > 0.5)
+}
+
+/// Leads a ring that goes around a pole back along it, far beyond the last latitude of the map.
+fn close_along_pole(ring: &mut Vec<DVec2>) {
+    /// Beyond 0 … 1.
+    const POLES: [f64; 2] = [-0.5, 1.5];
+    let (Some(&first), Some(&last)) = (ring.first(), ring.last()) else { return };
+    let middle = ring.iter().map(|p| p.y).sum::<f64>() / ring.len() as f64;
+    let pole = POLES[usize::from(middle > 0.5)];
+    let end = first.x + (last.x - first.x).round();
+    ring.extend([(end, first.y), (end, pole), (first.x, pole)].map(DVec2::from));
 }
 
 /// The places of positions; where it matters, each in the world nearest to the one before.

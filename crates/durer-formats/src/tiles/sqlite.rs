@@ -363,4 +363,114 @@ mod tests {
             assert!(parts.iter().all(|part| part.len() <= 7 && (count < 2 || part.len() > 1)));
         }
     }
+
+    /// A reader as small as can be.
+    struct Pages(Vec<u8>);
+
+    impl Pages {
+        fn page(&self, number: u32) -> &[u8] {
+            &self.0[(number as usize - 1) * PAGE..number as usize * PAGE]
+        }
+
+        /// The cells of a page, and its last child.
+        fn cells(&self, number: u32) -> (u8, Vec<&[u8]>, u32) {
+            let (page, at) = (self.page(number), if number == 1 { HEADER } else { 0 });
+            let word = |at: usize| usize::from(u16::from_be_bytes([page[at], page[at + 1]]));
+            let kind = page[at];
+            let inner = kind == TABLE_INNER || kind == INDEX_INNER;
+            let head = at + if inner { 12 } else { 8 };
+            let cells = (0..word(at + 3)).map(|i| &page[word(head + 2 * i)..]).collect();
+            (kind, cells, if inner { long(&page[at + 8..]) } else { 0 })
+        }
+
+        /// All records of a table with their numbers, or of an index with zeros, in order.
+        fn records(&self, root: u32, found: &mut Vec<(u64, Vec<u8>)>) {
+            let (kind, cells, last) = self.cells(root);
+            for cell in cells {
+                match kind {
+                    TABLE_INNER => self.records(long(cell), found),
+                    TABLE_LEAF => {
+                        let (length, cell) = number(cell);
+                        let (row, cell) = number(cell);
+                        found.push((row, self.record(length as usize, cell)));
+                    }
+                    _ => {
+                        let cell = if kind == INDEX_INNER {
+                            self.records(long(cell), found);
+                            &cell[4..]
+                        } else {
+                            cell
+                        };
+                        let (length, cell) = number(cell);
+                        found.push((0, cell[..length as usize].to_vec()));
+                    }
+                }
+            }
+            if last > 0 {
+                self.records(last, found);
+            }
+        }
+
+        fn record(&self, length: usize, cell: &[u8]) -> Vec<u8> {
+            if length <= PAGE - 35 {
+                return cell[..length].to_vec();
+            }
+            let least = (PAGE - 12) * 32 / 255 - 23;
+            let part = least + (length - least) % (PAGE - 4);
+            let here = if part <= PAGE - 35 { part } else { least };
+            let (mut record, mut next) = (cell[..here].to_vec(), long(&cell[here..]));
+            while next > 0 {
+                assert_ne!(next, LOCKED);
+                let page = self.page(next);
+                let rest = (length - record.len()).min(PAGE - 4);
+                record.extend(&page[4..4 + rest]);
+                next = long(page);
+            }
+            record
+        }
+    }
+
+    fn long(bytes: &[u8]) -> u32 {
+        u32::from_be_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+    }
+
+    fn number(bytes: &[u8]) -> (u64, &[u8]) {
+        let (mut value, mut at) = (0, 0);
+        loop {
+            value = value << 7 | u64::from(bytes[at] & 0x7f);
+            at += 1;
+            if bytes[at - 1] < 0x80 {
+                return (value, &bytes[at..]);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_and_entries_are_found_again() {
+        for count in [0usize, 1, 73, 74, 75, 149, 3000] {
+            let blob = |i: usize| vec![i as u8; i * 37 % 9001];
+            let mut database = Database::new(std::io::Cursor::new(Vec::new())).unwrap();
+            let mut table = Table::new();
+            for i in 0..count {
+                table.add(&mut database, &[Cell::Integer(i as i64), Cell::Blob(&blob(i))]).unwrap();
+            }
+            let root = table.finish(&mut database).unwrap();
+            let entries: Vec<Vec<u8>> =
+                (0..count).map(|i| record(&[Cell::Integer(i as i64 * 1000)])).collect();
+            let index = index(&mut database, &entries).unwrap();
+            database.name("table", "t", "t", root, "CREATE TABLE t (a integer, b blob)");
+            let pages = Pages(database.finish(7).unwrap().into_inner());
+            assert_eq!(pages.0.len() % PAGE, 0);
+            assert_eq!(long(&pages.0[28..]) as usize * PAGE, pages.0.len());
+            let (mut rows, mut found, mut schema) = (Vec::new(), Vec::new(), Vec::new());
+            pages.records(root, &mut rows);
+            pages.records(index, &mut found);
+            pages.records(1, &mut schema);
+            let expected =
+                |i: usize| (i as u64 + 1, record(&[Cell::Integer(i as i64), Cell::Blob(&blob(i))]));
+            assert_eq!(rows, (0..count).map(expected).collect::<Vec<_>>());
+            assert_eq!(found.into_iter().map(|(_, entry)| entry).collect::<Vec<_>>(), entries);
+            assert_eq!(schema.len(), 1);
+        }
+    }
 }

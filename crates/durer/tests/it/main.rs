@@ -7,6 +7,7 @@ mod clip_line;
 mod clip_place;
 mod clip_polygon;
 mod clip_simplify;
+mod clip_tiles;
 mod clip_volume;
 mod coherence;
 mod commands;

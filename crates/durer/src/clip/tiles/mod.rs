@@ -4,6 +4,7 @@
 //! [`walk()`] goes down from the world to the tiles of one level and cuts what lies in them on the way;
 //! [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole numbers, for many levels.
 
+mod level;
 pub mod mercator;
 mod piece;
 mod pyramid;
@@ -56,13 +57,14 @@ impl Tile {
 
     /// Its number over all levels, coarse ones first, each along Hilbert's curve: the one of PMTiles 3.
     pub fn id(self) -> u64 {
-        let before = ((1u64 << (2 * u32::from(self.zoom))) - 1) / 3;
-        before + hilbert::index(self.zoom, self.x, self.y)
+        let zoom = self.zoom.min(31);
+        let before = ((1u64 << (2 * u32::from(zoom))) - 1) / 3;
+        before + hilbert::index(zoom, self.x, self.y)
     }
 
     /// How many tiles of a level it consists of; 1 where that is not a finer one.
     pub fn count_at(self, zoom: u8) -> u64 {
-        1 << (2 * u32::from(zoom.saturating_sub(self.zoom)))
+        1 << (2 * u32::from(zoom.saturating_sub(self.zoom).min(31)))
     }
 }
 

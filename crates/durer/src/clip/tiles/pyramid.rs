@@ -8,15 +8,15 @@
 //! What lies beyond the world, or reaches beyond it by its buffer, comes from the other side as well.
 
 use super::Tile;
+use super::level::{Level, Part};
 use super::piece::{Body, Shape};
-use super::walk::{Content, count as count_tiles, walk};
-use crate::clip::polygon::{FillRule, Polygon, Shapes, signed_area};
+use super::walk::{count as count_tiles, walk};
+use crate::clip::polygon::{FillRule, Polygon, signed_area};
 use crate::clip::simplify::coverage::Options as Simplify;
 use crate::clip::simplify::{Coverage, LineSimplifier};
-use crate::math::{DVec2, I64Vec2, Rect};
+use crate::math::{DVec2, Rect};
 use crate::trace::NoTrace;
 use crate::{Error, Result, parallel};
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 /// A feature in the square of [`super::mercator`].
@@ -72,21 +72,22 @@ pub struct Piece {
 /// Features made ready for all levels.
 #[derive(Debug)]
 pub struct Pyramid {
-    features: Vec<Ready>,
-    options: Options,
+    pub(super) features: Vec<Ready>,
+    pub(super) options: Options,
 }
 
+/// A feature with what is known of it for all levels.
 #[derive(Debug)]
-struct Ready {
-    body: Body,
-    fill: FillRule,
-    bounds: Rect,
+pub(super) struct Ready {
+    pub body: Body,
+    pub fill: FillRule,
+    pub bounds: Rect,
     /// The first level that has each point; empty for points.
-    levels: Vec<u8>,
+    pub levels: Vec<u8>,
     /// The area of each polygon.
-    areas: Vec<f64>,
+    pub areas: Vec<f64>,
     /// How many polygons the features before have.
-    polygons_before: usize,
+    pub polygons_before: usize,
 }
 
 impl Pyramid {
@@ -127,13 +128,13 @@ impl Pyramid {
         make: impl Fn(Tile, Vec<Piece>) -> R + Sync + Send,
         mut take: impl FnMut(Tile, R) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
-        let level = Level::new(self, zoom);
+        let level = Level::new(self, zoom.min(Tile::MAX_ZOOM));
         let finish = |tile: Tile, parts: Vec<Part<'_>>| {
             let pieces = parts.into_iter().filter_map(|part| part.finished(tile).transpose());
             let pieces = pieces.collect::<Result<Vec<_>>>()?;
             Ok((!pieces.is_empty()).then(|| make(tile, pieces)))
         };
-        walk(&level.contents(), zoom, finish, |tile, made: Result<Option<R>>| match made? {
+        walk(&level.contents(), level.zoom, finish, |tile, made: Result<Option<R>>| match made? {
             Some(made) => take(tile, made),
             None => Ok(()),
         })
@@ -220,12 +221,12 @@ fn layer_levels(
 }
 
 /// The side of the world in cells.
-fn cells(options: &Options, zoom: u8) -> f64 {
+pub(super) fn cells(options: &Options, zoom: u8) -> f64 {
     f64::from(options.extent) * f64::from(1u32 << zoom)
 }
 
 /// The ranges between ends.
-fn runs(ends: &[usize]) -> impl Iterator<Item = std::ops::Range<usize>> {
+pub(super) fn runs(ends: &[usize]) -> impl Iterator<Item = std::ops::Range<usize>> {
     let starts = std::iter::once(0).chain(ends.iter().copied());
     starts.zip(ends.iter().copied()).map(|(start, end)| start..end)
 }
@@ -256,223 +257,4 @@ impl Ready {
 fn area(polygon: Polygon<'_>) -> f64 {
     let holes: f64 = polygon.holes().map(|hole| signed_area(hole).abs()).sum();
     (signed_area(polygon.outer()).abs() - holes).max(0.0)
-}
-
-/// All features on one level.
-struct Level<'a> {
-    pyramid: &'a Pyramid,
-    zoom: u8,
-    /// The side of the world in cells.
-    cells: f64,
-    /// Of each polygon whether a square stands for it, if it is tiny.
-    squares: Vec<bool>,
-}
-
-impl<'a> Level<'a> {
-    fn new(pyramid: &'a Pyramid, zoom: u8) -> Self {
-        let cells = cells(&pyramid.options, zoom);
-        let level = Self { pyramid, zoom, cells, squares: Vec::new() };
-        Self { squares: level.squares(), ..level }
-    }
-
-    fn is_tiny(&self, area: f64) -> bool {
-        let side = self.pyramid.options.tiny / self.cells;
-        area < side * side
-    }
-
-    /// Which of the tiny polygons a square stands for: the one that fills it.
-    fn squares(&self) -> Vec<bool> {
-        /// Polygons in one square of so many times the side count together.
-        const NEAR: f64 = 8.0;
-        let side = self.pyramid.options.tiny / self.cells;
-        let (mut squares, mut sums) = (Vec::new(), BTreeMap::<[i64; 2], f64>::new());
-        for feature in &self.pyramid.features {
-            let Body::Areas(shapes) = &feature.body else { continue };
-            for (polygon, &area) in shapes.polygons().zip(&feature.areas) {
-                let mut full = false;
-                if self.is_tiny(area) {
-                    let at = polygon.outer().first().copied().unwrap_or_default() / (side * NEAR);
-                    let sum = sums.entry([at.x.floor() as i64, at.y.floor() as i64]).or_default();
-                    *sum += area;
-                    full = *sum >= side * side;
-                    *sum -= if full { side * side } else { 0.0 };
-                }
-                squares.push(full);
-            }
-        }
-        squares
-    }
-
-    /// All features, in all worlds from which they are seen in the first.
-    fn contents(&'a self) -> Vec<Part<'a>> {
-        let reach = f64::from(self.pyramid.options.buffer) / self.cells + self.margin();
-        let mut contents = Vec::new();
-        for (i, feature) in self.pyramid.features.iter().enumerate() {
-            if feature.body.points().is_empty() {
-                continue;
-            }
-            let first = (-reach - feature.bounds.max().x).ceil() as i64;
-            let last = (1.0 + reach - feature.bounds.min().x).floor() as i64;
-            contents.extend((first..=last).rev().map(|shift| Part {
-                level: self,
-                feature: i,
-                shift: shift as f64,
-                cut: None,
-            }));
-        }
-        contents
-    }
-
-    /// How far a feature's points on the grid may lie beyond its bounds.
-    fn margin(&self) -> f64 {
-        (self.pyramid.options.tiny + 1.0) / self.cells
-    }
-
-    /// What features of a tile are cut at, in cells.
-    fn window(&self, tile: Tile) -> Result<Rect> {
-        let buffer = DVec2::splat(self.pyramid.options.buffer.into());
-        let side = self.cells / f64::from(1u32 << tile.zoom);
-        let corner = DVec2::new(tile.x.into(), tile.y.into()) * side;
-        Rect::new(corner - buffer, corner + DVec2::splat(side) + buffer)
-    }
-
-    /// No fewer tiles than there are: those that the boxes around the features meet.
-    fn count_of_boxes(&self) -> u64 {
-        let side = self.cells / f64::from(1u32 << self.zoom);
-        let last = f64::from((1u32 << self.zoom) - 1);
-        let reach = f64::from(self.pyramid.options.buffer);
-        let mut count = 0u64;
-        for part in self.contents() {
-            let around = part.around();
-            let first = ((around.min() - reach) / side).floor().max(DVec2::ZERO);
-            let end = ((around.max() + reach) / side).floor().min(DVec2::splat(last));
-            let tiles = (end - first + 1.0).max(DVec2::ZERO);
-            count = count.saturating_add((tiles.x * tiles.y) as u64);
-        }
-        count
-    }
-}
-
-/// A feature, or a part of it that lies in a tile.
-struct Part<'a> {
-    level: &'a Level<'a>,
-    feature: usize,
-    /// By how many worlds it is moved to the east.
-    shift: f64,
-    /// In cells; `None` as long as nothing is cut away.
-    cut: Option<Body>,
-}
-
-impl Part<'_> {
-    fn ready(&self) -> &Ready {
-        &self.level.pyramid.features[self.feature]
-    }
-
-    /// A box around the whole feature, in cells.
-    fn around(&self) -> Rect {
-        let Ready { bounds, .. } = self.ready();
-        let (margin, shift) = (DVec2::splat(self.level.margin()), DVec2::new(self.shift, 0.0));
-        let corners = [bounds.min() + shift - margin, bounds.max() + shift + margin];
-        Rect::around(corners.map(|p| p * self.level.cells)).unwrap_or(*bounds)
-    }
-
-    /// The whole feature on the grid, with `origin` as its zero.
-    fn on_grid(&self, origin: I64Vec2) -> Result<Shape> {
-        let ready = self.ready();
-        let place = |p: DVec2| DVec2::new(p.x + self.shift, p.y) * self.level.cells;
-        let kept = |run: std::ops::Range<usize>| {
-            let levels = ready.levels.get(run.clone()).unwrap_or_default();
-            let points = ready.body.points().get(run).unwrap_or_default();
-            let here = points.iter().zip(levels).filter(|(_, level)| **level <= self.level.zoom);
-            here.map(|(&p, _)| place(p))
-        };
-        let body = match &ready.body {
-            Body::Points(points) => Body::Points(points.iter().copied().map(place).collect()),
-            Body::Lines { ends, .. } => {
-                let (mut points, mut new_ends) = (Vec::new(), Vec::new());
-                for run in runs(ends) {
-                    points.extend(kept(run));
-                    new_ends.push(points.len());
-                }
-                Body::Lines { points, ends: new_ends }
-            }
-            Body::Areas(shapes) => {
-                let mut areas = Shapes::new();
-                for (i, polygon) in shapes.polygons().enumerate() {
-                    if !self.level.is_tiny(ready.areas[i]) {
-                        let rings = polygon.ring_indices();
-                        rings.for_each(|ring| areas.push_ring(kept(shapes.ring_range(ring))));
-                    } else if self.level.squares.get(ready.polygons_before + i) == Some(&true) {
-                        let at = polygon.outer().first().copied().unwrap_or_default();
-                        areas.push_ring(self.square(place(at)));
-                    }
-                    areas.end_polygon();
-                }
-                Body::Areas(areas)
-            }
-        };
-        body.snapped(origin, ready.fill)
-    }
-
-    /// What stands for tiny polygons.
-    fn square(&self, around: DVec2) -> [DVec2; 4] {
-        let half = (self.level.pyramid.options.tiny * 0.5).max(0.5);
-        [(-half, -half), (half, -half), (half, half), (-half, half)]
-            .map(|(x, y)| around + DVec2::new(x, y))
-    }
-
-    /// What becomes of it in its tile.
-    fn finished(self, tile: Tile) -> Result<Option<Piece>> {
-        let side = i64::from(self.level.pyramid.options.extent);
-        let origin = I64Vec2::new(tile.x.into(), tile.y.into()) * side;
-        let shape = match &self.cut {
-            Some(cut) => cut.snapped(origin, FillRule::EvenOdd)?,
-            None => self.on_grid(origin)?,
-        };
-        Ok((!shape.is_empty()).then_some(Piece { feature: self.feature, shape }))
-    }
-}
-
-impl Content for Part<'_> {
-    fn within(&self, tiles: &[Tile]) -> Result<Vec<Option<Self>>> {
-        let part = |cut: Option<Body>| Self { cut, ..*self };
-        if let Some(body) = &self.cut {
-            let cut = |&tile: &Tile| {
-                Ok(body.clip(&self.level.window(tile)?)?.map(|body| part(Some(body))))
-            };
-            return tiles.iter().map(cut).collect();
-        }
-        let around = self.around();
-        let mut body: Option<Body> = None;
-        let mut parts = Vec::with_capacity(tiles.len());
-        for &tile in tiles {
-            let window = self.level.window(tile)?;
-            parts.push(if !window.overlaps(&around) {
-                None
-            } else if window.contains(around.min()) && window.contains(around.max()) {
-                Some(part(None))
-            } else {
-                let whole = match body.take() {
-                    Some(body) => body,
-                    None => self.on_grid(I64Vec2::ZERO)?.to_body(),
-                };
-                let cut = whole.clip(&window)?;
-                body = Some(whole);
-                cut.map(|cut| part(Some(cut)))
-            });
-        }
-        Ok(parts)
-    }
-
-    fn size(&self) -> usize {
-        self.cut.as_ref().unwrap_or(&self.ready().body).points().len()
-    }
-
-    fn covers(&self, tile: Tile) -> bool {
-        let (Some(Body::Areas(shapes)), Ok(window)) = (&self.cut, self.level.window(tile)) else {
-            return false;
-        };
-        let corner = |p: &DVec2| p.cmpeq(window.min()) | p.cmpeq(window.max());
-        shapes.points().len() == 4 && shapes.points().iter().all(|p| corner(p).all())
-    }
 }

@@ -1,0 +1,150 @@
+//! `durer clip --tiles`: to a file per tile, or to a sequence of features.
+
+use super::report::Counts;
+use super::tiles::{self, Reach, Subject};
+use super::{Job, rules};
+use crate::failure::Failure;
+use crate::input::is_stream;
+use crate::layer::failure;
+use crate::tiles::Stopped;
+use durer::clip::tiles::Tile;
+use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Writer};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::atomic::Ordering;
+
+impl Job<'_> {
+    /// Each feature to the tiles that it touches.
+    pub fn tile(&mut self, zoom: u8) -> Result<(), Failure> {
+        let tiling = tiles::Job::new(zoom, self.args.region.tile_coordinates);
+        if self.to == GeoFormat::GeoJson && !is_stream(&self.args.output) {
+            return self.tile_files(&tiling);
+        }
+        if self.to == GeoFormat::GeoJson {
+            self.to = GeoFormat::GeoJsonSeq;
+        }
+        self.tile_sequence(&tiling)
+    }
+
+    /// Feature after feature, each tile after tile.
+    fn tile_sequence(&mut self, tiling: &tiles::Job) -> Result<(), Failure> {
+        let (mut writer, mut seen) = (None, BTreeSet::new());
+        let limit = self.args.region.max_tiles;
+        let mut first = 0;
+        loop {
+            let features = self.batch()?;
+            if features.is_empty() {
+                break;
+            }
+            let subjects = self.subjects(tiling, &features, first);
+            let of_one = |subject: &Subject<'_>| {
+                let one = std::slice::from_ref(subject);
+                let count = tiling.count(one, limit)?;
+                crate::tiles::too_many(count, limit).map_err(Stopped::Written)?;
+                let mut pieces = Vec::new();
+                let take = |tile, parts: Vec<(usize, Geometry)>| {
+                    pieces.extend(parts.into_iter().map(|(_, geometry)| (tile, geometry)));
+                    Ok::<_, Stopped>(())
+                };
+                tiling.visit(one, |_, parts| parts, take).map(|()| pieces)
+            };
+            let cuts: Vec<_> = subjects.par_iter().map(of_one).collect();
+            for (subject, pieces) in subjects.iter().zip(cuts) {
+                let pieces = pieces.map_err(|stopped| self.of_tiling(tiling, stopped))?;
+                self.report.repaired += u64::from(subject.repaired.load(Ordering::Relaxed));
+                let feature = &features[subject.index - first];
+                let own = feature.members.iter().any(|member| member.name == TILE);
+                self.report.replaced += u64::from(own && !pieces.is_empty());
+                for (tile, geometry) in pieces {
+                    seen.insert(tile);
+                    crate::tiles::too_many(seen.len() as u64, limit)?;
+                    self.put(&mut writer, &mut with_tile(feature, geometry, tile))?;
+                }
+            }
+            first += features.len();
+        }
+        self.report.tiles = Some(seen.len() as u64);
+        self.end(writer)
+    }
+
+    /// Tile after tile, each in its file, `z/x/y.geojson`.
+    fn tile_files(&mut self, tiling: &tiles::Job) -> Result<(), Failure> {
+        let mut features = Vec::new();
+        loop {
+            let batch = self.batch()?;
+            if batch.is_empty() {
+                break;
+            }
+            features.extend(batch);
+        }
+        let subjects = self.subjects(tiling, &features, 0);
+        let limit = self.args.region.max_tiles;
+        let count = tiling.count(&subjects, limit);
+        crate::tiles::too_many(count.map_err(|e| self.of_tiling(tiling, e.into()))?, limit)?;
+        let make = |_: Tile, parts: Vec<(usize, Geometry)>| {
+            let mut counts = Counts::default();
+            let mut writer = Writer::new(GeoFormat::GeoJson, Vec::new());
+            for (index, geometry) in parts {
+                let feature = Feature { geometry: Some(geometry), ..features[index].clone() };
+                counts.add(feature.geometry.as_ref());
+                writer.write(&feature)?;
+            }
+            Ok((writer.finish(&[])?, counts))
+        };
+        let (mut out, mut tiles, folder) = (Counts::default(), 0, &self.args.output);
+        let take = |tile: Tile, made: durer_formats::Result<(Vec<u8>, Counts)>| {
+            let (bytes, counts) = made.map_err(|e| Stopped::Written(failure(folder, &e)))?;
+            out.join(&counts);
+            tiles += 1;
+            let suffix = GeoFormat::GeoJson.suffixes()[0];
+            crate::tiles::deliver(folder, tile, suffix, &bytes).map_err(Stopped::Written)
+        };
+        let done = tiling.visit(&subjects, make, take);
+        done.map_err(|stopped| self.of_tiling(tiling, stopped))?;
+        let repaired = |subject: &&Subject<'_>| subject.repaired.load(Ordering::Relaxed);
+        self.report.repaired += subjects.iter().filter(repaired).count() as u64;
+        self.report.out.join(&out);
+        self.report.tiles = Some(tiles);
+        Ok(())
+    }
+
+    /// The features that lie in tiles; takes note of those that do not.
+    fn subjects<'a>(
+        &mut self,
+        tiling: &'a tiles::Job,
+        features: &'a [Feature],
+        first: usize,
+    ) -> Vec<Subject<'a>> {
+        let mut subjects = Vec::new();
+        for (feature, index) in features.iter().zip(first..) {
+            let Some(geometry) = &feature.geometry else { continue };
+            let reach = tiling.reach(geometry);
+            self.report.beyond += u64::from(reach == Reach::BeyondLatitudes);
+            self.report.too_far += u64::from(reach == Reach::TooFar);
+            if reach != Reach::TooFar {
+                subjects.push(Subject::new(tiling, index, geometry, rules(self.args, feature)));
+            }
+        }
+        subjects
+    }
+
+    fn of_tiling(&self, tiling: &tiles::Job, stopped: Stopped) -> Failure {
+        match (stopped, tiling.failed.load(Ordering::Relaxed)) {
+            (Stopped::Written(failure), _) => failure,
+            (Stopped::Cut(error), usize::MAX) => self.fail(error),
+            (Stopped::Cut(error), index) => self.of_feature(index as u64, &error),
+        }
+    }
+}
+
+/// The member that names a feature's tile, as JSON writes it.
+const TILE: &str = "\"tile\"";
+
+/// The part of a feature in a tile, with a member that names the tile.
+fn with_tile(feature: &Feature, geometry: Geometry, tile: Tile) -> Feature {
+    let mut feature = Feature { geometry: Some(geometry), ..feature.clone() };
+    feature.members.retain(|member| member.name != TILE);
+    let value = format!("\"{tile}\"");
+    feature.members.push(Member { name: TILE.to_owned(), value });
+    feature
+}

@@ -1,0 +1,79 @@
+//! `durer simplify`.
+
+use crate::harness::Folder;
+
+/// Two parcels whose border is not quite straight, and a hole with its filling.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write(
+        "parcels.wkt",
+        "POLYGON Z ((0 0 1, 4 0 2, 4.1 2 3, 4 4 4, 0 4 5, 0 0 1))\n\
+         POLYGON ((4 0, 8 0, 8 4, 4 4, 4.1 2, 4 0), (5 1, 6 1, 6.1 1.5, 6 2, 5 2, 5 1))\n\
+         POLYGON ((5 1, 6 1, 6.1 1.5, 6 2, 5 2, 5 1))\n\
+         LINESTRING (0 9, 3 9.1, 6 9)\n",
+    );
+    folder
+}
+
+fn text(folder: &Folder, name: &str) -> String {
+    String::from_utf8(folder.read(name)).unwrap()
+}
+
+#[test]
+fn borders_stay_shared() {
+    for method in ["visvalingam", "douglas-peucker"] {
+        let folder = folder();
+        let line =
+            format!("simplify parcels.wkt --tolerance 0.5 --method {method} -o a.wkt --json");
+        let report = folder.must(&line).json();
+        assert_eq!(
+            text(&folder, "a.wkt"),
+            "POLYGON Z ((0 0 1, 4 0 2, 4 4 4, 0 4 5, 0 0 1))\n\
+             POLYGON ((4 0, 8 0, 8 4, 4 4, 4 0), (5 1, 6 1, 6 2, 5 2, 5 1))\n\
+             POLYGON ((5 1, 6 1, 6 2, 5 2, 5 1))\n\
+             LINESTRING (0 9, 6 9)\n",
+            "{method}"
+        );
+        assert_eq!(
+            (&report["in"]["vertices"], &report["out"]["vertices"]),
+            (&23.into(), &18.into())
+        );
+        folder.must("simplify a.wkt --keep 100% -o b.wkt");
+        assert_eq!(folder.read("a.wkt"), folder.read("b.wkt"));
+    }
+}
+
+#[test]
+fn shares_streams_and_drops() {
+    let folder = folder();
+    folder.must("simplify parcels.wkt --keep 0% -o none.wkt");
+    assert!(text(&folder, "none.wkt").contains("POLYGON Z ((0 0 1, 4 0 2, 4 4 4"));
+    let ended =
+        folder.must("simplify parcels.wkt --tolerance 0.5 --drop-below 2 -o big.wkt --json");
+    assert!(ended.err.contains("1 features enclose less than --drop-below"), "{}", ended.err);
+    assert_eq!(ended.json()["dropped_rings"], 2);
+    assert!(!text(&folder, "big.wkt").contains("5 1"));
+    folder.must("simplify parcels.wkt --each --tolerance 0.5 -o each.wkt");
+    folder.must("simplify parcels.wkt --tolerance 0.5 -o all.wkt");
+    assert_eq!(folder.read("each.wkt"), folder.read("all.wkt"));
+    folder.write("empty.wkt", "");
+    let ended = folder.must("simplify empty.wkt --from wkt --keep 5 -o empty.geojson");
+    assert!(ended.err.contains("there is no feature in it"), "{}", ended.err);
+    assert!(text(&folder, "empty.geojson").contains("FeatureCollection"));
+}
+
+#[test]
+fn wrong_use_is_told() {
+    let folder = folder();
+    for (options, part) in [
+        ("-o a.wkt", "--tolerance"),
+        ("--keep 10% --tolerance 1 -o a.wkt", "cannot be used with"),
+        ("--keep 101% -o a.wkt", "at most 100%"),
+        ("--tolerance -1 -o a.wkt", "--tolerance"),
+        ("--keep 10% --method clever -o a.wkt", "clever"),
+        ("--keep 10% -o a.what", "the suffix tells no format"),
+        ("--keep 10% -o - --json", "--json"),
+    ] {
+        folder.run(&format!("simplify parcels.wkt {options}")).fails(2, part);
+    }
+}

@@ -1,0 +1,156 @@
+//! Features in tiles: valid on the grid, within their windows, the same on any number of threads.
+
+use durer::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
+use durer::clip::tiles::{Body, Feature, Options, Piece, Pyramid, Shape, Tile};
+use durer::math::{DVec2, I64Vec2};
+use durer::trace::NoTrace;
+use durer::{Error, Result};
+use proptest::prelude::*;
+
+fn tiles(features: Vec<Feature>, options: &Options) -> Result<Vec<(Tile, Vec<Piece>)>> {
+    let pyramid = Pyramid::new(features, options.clone())?;
+    let mut found = Vec::new();
+    for zoom in options.zooms.clone() {
+        pyramid.visit(
+            zoom,
+            |_, pieces| pieces,
+            |tile, pieces| {
+                found.push((tile, pieces));
+                Ok::<_, Error>(())
+            },
+        )?;
+    }
+    assert!(pyramid.count(u64::MAX)? >= found.len() as u64);
+    // Counted by what is there.
+    assert!(found.is_empty() || pyramid.count(found.len() as u64 - 1)? >= found.len() as u64);
+    Ok(found)
+}
+
+fn on_threads<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap().install(work)
+}
+
+fn places() -> impl Strategy<Value = Vec<DVec2>> {
+    // Some of them beyond the world, many on the borders of tiles.
+    let place = (-10i32..26, -2i32..18).prop_map(|(x, y)| DVec2::new(x.into(), y.into()) / 16.0);
+    prop::collection::vec(place, 1..12)
+}
+
+fn features() -> impl Strategy<Value = Vec<Feature>> {
+    let body = (0..3, places(), places()).prop_map(|(kind, points, others)| match kind {
+        0 => Body::Points(points),
+        1 => {
+            let ends = vec![points.len(), points.len() + others.len()];
+            Body::Lines { points: [points, others].concat(), ends }
+        }
+        _ => Body::Areas(Shapes::from_rings([points, others])),
+    });
+    let feature = (0..2usize, body).prop_map(|(layer, body)| Feature {
+        layer,
+        body,
+        fill: FillRule::EvenOdd,
+    });
+    prop::collection::vec(feature, 0..6)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn shapes_are_valid_and_within_their_tiles(
+        features in features(),
+        (extent, buffer, tiny) in (2u32..40, 0u32..2, 0u32..3),
+    ) {
+        let options = Options { zooms: 0..=3, extent, buffer, tiny: tiny.into(), ..Options::default() };
+        let found = on_threads(1, || tiles(features.clone(), &options)).unwrap();
+        prop_assert_eq!(&found, &on_threads(4, || tiles(features, &options)).unwrap());
+        prop_assert!(found.windows(2).all(|pair| pair[0].0.id() < pair[1].0.id()));
+        let (low, high) = (-i64::from(buffer), i64::from(extent + buffer));
+        let inside = |p: &I64Vec2| p.min_element() >= low && p.max_element() <= high;
+        for piece in found.iter().flat_map(|(_, pieces)| pieces) {
+            match &piece.shape {
+                Shape::Points(points) => prop_assert!(!points.is_empty() && points.iter().all(inside)),
+                Shape::Lines(lines) => {
+                    prop_assert!(lines.iter().flatten().all(inside));
+                    prop_assert!(lines.iter().all(|l| l.len() > 1 && l.windows(2).all(|w| w[0] != w[1])));
+                }
+                Shape::Areas(shapes) => {
+                    prop_assert!(shapes.points().iter().all(inside) && shapes.area() > 0.0);
+                    let options = overlay::Options::with_rule(FillRule::Positive);
+                    let again = overlay(shapes, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace);
+                    prop_assert_eq!(&again.unwrap().shapes, shapes);
+                }
+            }
+        }
+    }
+}
+
+fn square(x: f64, y: f64, side: f64) -> Feature {
+    let corners =
+        [(0., 0.), (side, 0.), (side, side), (0., side)].map(|(u, v)| DVec2::new(x + u, y + v));
+    Feature { layer: 0, body: Body::Areas(Shapes::from_rings([corners])), fill: FillRule::EvenOdd }
+}
+
+#[test]
+fn areas_are_divided_among_tiles() {
+    let options = Options { zooms: 0..=4, buffer: 0, tiny: 0.0, ..Options::default() };
+    let found = tiles(vec![square(0.3, 0.2, 0.45)], &options).unwrap();
+    for zoom in 0..=4u8 {
+        let side = 4096.0 * f64::from(1 << zoom);
+        let area = |piece: &Piece| match &piece.shape {
+            Shape::Areas(shapes) => shapes.area(),
+            _ => 0.0,
+        };
+        let level = found.iter().filter(|(tile, _)| tile.zoom == zoom);
+        let all: f64 = level.flat_map(|(_, pieces)| pieces).map(area).sum();
+        assert!((all / side / side - 0.45 * 0.45).abs() < 2e-4 / f64::from(1 << zoom), "{zoom}");
+    }
+}
+
+#[test]
+fn buffers_reach_around_the_world() {
+    let options = Options { zooms: 1..=1, ..Options::default() };
+    let found = tiles(vec![square(0.0, 0.1, 0.001)], &options).unwrap();
+    let names: Vec<String> = found.iter().map(|(tile, _)| tile.to_string()).collect();
+    assert_eq!(names, ["1/0/0", "1/1/0"]);
+    let Shape::Areas(shapes) = &found[1].1[0].shape else { panic!("an area") };
+    assert_eq!(shapes.bounds_of_whole(), (4096, 4104));
+}
+
+trait Whole {
+    fn bounds_of_whole(&self) -> (i64, i64);
+}
+
+impl Whole for Shapes<I64Vec2> {
+    /// The smallest and the largest x.
+    fn bounds_of_whole(&self) -> (i64, i64) {
+        let x = || self.points().iter().map(|p| p.x);
+        (x().min().unwrap(), x().max().unwrap())
+    }
+}
+
+#[test]
+fn what_cannot_be_tiled_is_named() {
+    let far = Feature { body: Body::Points(vec![DVec2::splat(1e300)]), ..square(0.0, 0.0, 1.0) };
+    let odd = Feature { body: Body::Points(vec![DVec2::NAN]), ..far.clone() };
+    let new = |feature: Feature, options: Options| Pyramid::new(vec![feature], options).map(drop);
+    assert!(matches!(new(far, Options::default()), Err(Error::Parameter { name: "place", .. })));
+    assert!(matches!(new(odd, Options::default()), Err(Error::NonFinite { .. })));
+    let base = Options::default();
+    #[expect(clippy::reversed_empty_ranges)]
+    let backwards = 5..=3;
+    for (name, options) in [
+        ("zoom", Options { zooms: backwards, ..base.clone() }),
+        ("zoom", Options { zooms: 0..=25, ..base.clone() }),
+        ("extent", Options { extent: 0, ..base.clone() }),
+        ("buffer", Options { buffer: 4096, ..base.clone() }),
+        ("tolerance", Options { tolerance: f64::NAN, ..base.clone() }),
+        ("tiny", Options { tiny: -1.0, ..base.clone() }),
+    ] {
+        let found = new(square(0.0, 0.0, 1.0), options);
+        assert!(
+            matches!(found, Err(Error::Parameter { name: n, .. }) if n == name),
+            "{name}: {found:?}"
+        );
+    }
+}
