@@ -59,7 +59,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
     }
     .ok_or_else(cut_off)?;
     if !header.from_top {
-        super::flip(&mut pixels, width);
+        flip(&mut pixels, width);
     }
     super::show_if_all_transparent(&mut pixels);
     Ok((header.width, header.height, pixels))
@@ -153,7 +153,7 @@ fn row_pixels(header: &Header, row: &[u8]) -> Vec<[u8; 4]> {
 fn fields(value: u32, masks: [u32; 4]) -> [u8; 4] {
     let mut parts = masks.map(|mask| {
         let shift = mask.trailing_zeros().min(31);
-        super::widen((value & mask) >> shift, mask >> shift)
+        widen((value & mask) >> shift, mask >> shift)
     });
     if masks[3] == 0 {
         parts[3] = 255;
@@ -197,6 +197,20 @@ fn runs(header: &Header, data: &[u8]) -> Option<Vec<[u8; 4]>> {
         }
     }
     Some(pixels)
+}
+
+/// A value of `most` levels spread over a byte.
+fn widen(value: u32, most: u32) -> u8 {
+    (u64::from(value) * 255 + u64::from(most) / 2).checked_div(u64::from(most)).unwrap_or(0) as u8
+}
+
+/// Exchanges top and bottom.
+fn flip(pixels: &mut [[u8; 4]], width: usize) {
+    let height = pixels.len() / width.max(1);
+    for y in 0..height / 2 {
+        let (upper, lower) = pixels.split_at_mut((height - 1 - y) * width);
+        upper[y * width..][..width].swap_with_slice(&mut lower[..width]);
+    }
 }
 
 #[cfg(test)]

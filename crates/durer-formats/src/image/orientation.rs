@@ -1,7 +1,7 @@
 //! How viewers turn a picture: the orientation that cameras write into its file (CIPA DC-008, *Exif*, tag 0x0112), in
 //! an APP1 segment of a JPEG or an eXIf chunk of a PNG.
 
-use super::{JPEG, PNG};
+use super::{jpeg, png};
 use durer::target::Pixels;
 
 /// The tag of the orientation in the first directory, and the type of its value: 16 bits.
@@ -44,7 +44,7 @@ impl Orientation {
 
     /// What the file of a picture says; upright where it says nothing, or nothing that makes sense.
     pub fn of(bytes: &[u8]) -> Self {
-        let exif = if bytes.starts_with(PNG) { of_png(bytes) } else { of_jpeg(bytes) };
+        let exif = if bytes.starts_with(png::MAGIC) { of_png(bytes) } else { of_jpeg(bytes) };
         let number = exif.and_then(value).unwrap_or(1);
         Self::ALL.get(usize::from(number).wrapping_sub(1)).copied().unwrap_or_default()
     }
@@ -81,7 +81,7 @@ impl Orientation {
 fn of_jpeg(bytes: &[u8]) -> Option<&[u8]> {
     const APP1: u8 = 0xe1;
     const START_OF_SCAN: u8 = 0xda;
-    bytes.starts_with(JPEG).then_some(())?;
+    bytes.starts_with(jpeg::MAGIC).then_some(())?;
     let mut rest = bytes.get(2..)?;
     loop {
         let &[0xff, marker, high, low, ..] = rest else { return None };
@@ -101,7 +101,7 @@ fn of_jpeg(bytes: &[u8]) -> Option<&[u8]> {
 
 /// That of a PNG.
 fn of_png(bytes: &[u8]) -> Option<&[u8]> {
-    let mut rest = bytes.get(PNG.len()..)?;
+    let mut rest = bytes.get(png::MAGIC.len()..)?;
     loop {
         let (length, after) = rest.split_first_chunk()?;
         let length = u32::from_be_bytes(*length) as usize;
@@ -170,7 +170,7 @@ mod tests {
         let chunk = |kind: &[u8; 4], data: &[u8]| {
             [&(data.len() as u32).to_be_bytes()[..], kind, data, &[0; 4]].concat()
         };
-        [PNG, &chunk(b"IHDR", &[0; 13]), &chunk(b"eXIf", exif)].concat()
+        [png::MAGIC, &chunk(b"IHDR", &[0; 13]), &chunk(b"eXIf", exif)].concat()
     }
 
     #[test]

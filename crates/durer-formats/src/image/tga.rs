@@ -3,9 +3,11 @@
 //! Source: *Truevision TGA File Format Specification*, version 2.0, 1991. The format has no magic number:
 //! a file is one whose header makes sense, which few other bytes do.
 
-use super::bytes::Bytes;
-use super::{Picture, broken, check_size};
+use super::{Picture, broken, check_size, pixels_of, show_if_all_transparent};
 use crate::{Limits, Result};
+use image::codecs::tga::TgaDecoder;
+use image::{ColorType, ImageDecoder, ImageError};
+use std::io::{ErrorKind, Read};
 
 /// The length of the header.
 const HEADER: usize = 18;
@@ -24,7 +26,6 @@ enum Kind {
 /// The header.
 #[derive(Debug, Clone, Copy)]
 struct Header {
-    id_length: usize,
     kind: Kind,
     packed: bool,
     /// First index, number, and bits of the entries of the colour map.
@@ -32,9 +33,6 @@ struct Header {
     width: u32,
     height: u32,
     bits: usize,
-    /// Whether the first row is the upper one, and whether rows run from right to left.
-    from_top: bool,
-    from_right: bool,
 }
 
 impl Header {
@@ -52,15 +50,12 @@ impl Header {
             _ => return None,
         };
         let header = Self {
-            id_length: usize::from(byte(0)?),
             kind,
             packed: image_type & 8 != 0,
             map: [short(3)?, short(5)?, usize::from(byte(7)?)],
             width: short(12)? as u32,
             height: short(14)? as u32,
             bits: usize::from(byte(16)?),
-            from_top: descriptor & 0x20 != 0,
-            from_right: descriptor & 0x10 != 0,
         };
         let known = image_type & !0b1011 == 0 && map_type <= 1 && descriptor & 0xc0 == 0;
         let has_map = map_type == 1 && matches!(header.map[2], 15 | 16 | 24 | 32);
@@ -71,6 +66,17 @@ impl Header {
         };
         (known && fits && header.width > 0 && header.height > 0).then_some(header)
     }
+
+    /// The bytes of a header without its number of bits of alpha, which many writers get wrong: 32 bits have
+    /// alpha, and so have 16 of grey.
+    fn without_alpha(&self, head: &[u8]) -> Vec<u8> {
+        let mut head = head.to_vec();
+        if let Some(descriptor) = head.last_mut() {
+            let alpha = if self.kind == Kind::Grey && self.bits == 16 { 8 } else { 0 };
+            *descriptor = *descriptor & 0x30 | alpha;
+        }
+        head
+    }
 }
 
 /// Whether bytes begin like a TGA file.
@@ -78,89 +84,37 @@ pub(super) fn is_tga(bytes: &[u8]) -> bool {
     Header::of(bytes).is_some()
 }
 
-/// Decodes a file.
+/// Decodes a file, by the decoder of the crate `image`.
 ///
 /// # Errors
 /// As [`super::decode`].
 pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
     let header = Header::of(bytes).ok_or_else(|| broken(name, "is no TGA picture"))?;
-    let size = (header.width, header.height);
-    let data = bytes.len() as u64;
     let per_byte = if header.packed { PIXELS_PER_BYTE } else { 1 };
-    check_size(size, 4, data.saturating_mul(per_byte), name, limits)?;
-    let short = || broken(name, "is cut off");
-    let mut rest = Bytes::new(bytes.get(HEADER + header.id_length..).ok_or_else(short)?);
-    let [first, count, map_bits] = header.map;
-    let has_map = bytes.get(1) == Some(&1);
-    let entries = if has_map { count * map_bits.div_ceil(8) } else { 0 };
-    let map = rest.take(entries).ok_or_else(short)?;
-    let map: Vec<[u8; 4]> =
-        map.chunks_exact(map_bits.div_ceil(8).max(1)).map(|entry| color(entry, map_bits)).collect();
-    let value = |pixel: &[u8]| match header.kind {
-        Kind::Color => Some(color(pixel, header.bits)),
-        Kind::Grey => {
-            let [grey, alpha] = [0, 1].map(|i| pixel.get(i).copied().unwrap_or(255));
-            Some([grey, grey, grey, alpha])
+    let holds = (bytes.len() as u64).saturating_mul(per_byte);
+    // Samples and pixels are there at once.
+    check_size((header.width, header.height), 8, holds, name, limits)?;
+    let wrong = |e: ImageError| match e {
+        ImageError::IoError(e) if e.kind() == ErrorKind::UnexpectedEof => {
+            broken(name, "is cut off")
         }
-        Kind::Indexed => {
-            let index = pixel.iter().rev().fold(0, |index, &byte| index << 8 | usize::from(byte));
-            map.get(index.checked_sub(first)?).copied()
-        }
+        e => broken(name, e),
     };
-    let stored = stored(&header, &mut rest).ok_or_else(short)?;
-    let pixels =
-        stored.chunks_exact(header.bits.div_ceil(8)).map(value).collect::<Option<Vec<_>>>();
-    let mut pixels = pixels.ok_or_else(|| broken(name, "has an index beyond its colour map"))?;
-    turn(&header, &mut pixels);
-    super::show_if_all_transparent(&mut pixels);
+    let (head, rest) = bytes.split_at_checked(HEADER).unwrap_or((bytes, &[]));
+    let head = header.without_alpha(head);
+    let decoder = TgaDecoder::new(head.as_slice().chain(rest)).map_err(wrong)?;
+    let color = decoder.color_type();
+    let pixels = header.width as usize * header.height as usize;
+    let mut samples = vec![0; pixels * usize::from(color.bytes_per_pixel())];
+    decoder.read_image(&mut samples).map_err(wrong)?;
+    let mut pixels = match color {
+        ColorType::L8 => pixels_of(&samples, |s| s, |[g]| [g, g, g, 255]),
+        ColorType::La8 => pixels_of(&samples, |s| s, |[g, a]| [g, g, g, a]),
+        ColorType::Rgb8 => pixels_of(&samples, |s| s, |[r, g, b]| [r, g, b, 255]),
+        _ => pixels_of(&samples, |s| s, |rgba| rgba),
+    };
+    show_if_all_transparent(&mut pixels);
     Ok((header.width, header.height, pixels))
-}
-
-/// The bytes of all pixels, in the file's order.
-fn stored(header: &Header, rest: &mut Bytes<'_>) -> Option<Vec<u8>> {
-    let size = header.bits.div_ceil(8);
-    let length = header.width as usize * header.height as usize * size;
-    if !header.packed {
-        return Some(rest.take(length)?.to_vec());
-    }
-    let mut stored = Vec::with_capacity(length);
-    while stored.len() < length {
-        let packet = rest.byte()?;
-        let count = usize::from(packet & 0x7f) + 1;
-        if packet & 0x80 == 0 {
-            stored.extend_from_slice(rest.take(count * size)?);
-        } else {
-            let pixel = rest.take(size)?;
-            (0..count).for_each(|_| stored.extend_from_slice(pixel));
-        }
-    }
-    stored.truncate(length);
-    Some(stored)
-}
-
-/// A stored colour, blue first. Fifteen bits have no alpha, and sixteen have it hardly ever.
-fn color(bytes: &[u8], bits: usize) -> [u8; 4] {
-    match (bytes, bits) {
-        (&[b, g, r, a], _) => [r, g, b, a],
-        (&[b, g, r], _) => [r, g, b, 255],
-        (&[low, high], _) => {
-            let all = u16::from_le_bytes([low, high]);
-            let [r, g, b] = [10, 5, 0].map(|shift| super::widen(u32::from(all >> shift) & 31, 31));
-            [r, g, b, 255]
-        }
-        _ => [0, 0, 0, 255],
-    }
-}
-
-/// Brings rows and columns into the order from the upper left.
-fn turn(header: &Header, pixels: &mut [[u8; 4]]) {
-    let width = header.width as usize;
-    if header.from_right {
-        pixels.chunks_exact_mut(width).for_each(<[_]>::reverse);
-    }
-    if !header.from_top {
-        super::flip(pixels, width);
-    }
 }
 
 #[cfg(test)]
@@ -213,6 +167,9 @@ mod tests {
         assert_eq!(first(file(2, 24, 0x20, &[], &[3, 2, 1].repeat(4))), [1, 2, 3, 255]);
         assert_eq!(first(file(2, 32, 0x28, &[], &[3, 2, 1, 9].repeat(4))), [1, 2, 3, 9]);
         assert_eq!(first(file(10, 32, 0x28, &[], &[0x83, 3, 2, 1, 0])), [1, 2, 3, 255]);
+        assert_eq!(first(file(2, 24, 0x28, &[], &[3, 2, 1].repeat(4))), [1, 2, 3, 255]);
+        assert_eq!(first(file(2, 32, 0x20, &[], &[3, 2, 1, 9].repeat(4))), [1, 2, 3, 9]);
+        assert_eq!(first(file(3, 16, 0x20, &[], &[3, 9].repeat(4))), [3, 3, 3, 9]);
         assert_eq!(first(file(2, 16, 0x20, &[], &[0x1f, 0x7c].repeat(4))), [255, 0, 255, 255]);
         assert_eq!(first(file(1, 8, 0x20, &[9, 9, 9, 3, 2, 1], &[1, 0, 0, 0])), [1, 2, 3, 255]);
     }
@@ -222,7 +179,7 @@ mod tests {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
         assert!(error(&file(3, 8, 0, &[], &[1, 2])).contains("cut off"));
         assert!(error(&file(11, 8, 0, &[], &[0x81, 1])).contains("cut off"));
-        assert!(error(&file(1, 8, 0, &[1, 2, 3], &[0, 0, 0, 1])).contains("colour map"));
+        assert!(error(&file(1, 8, 0, &[1, 2, 3], &[0, 0, 0, 1])).contains("color map"));
         let mut huge = file(3, 8, 0, &[], &[1, 2, 3, 4]);
         huge[12..16].copy_from_slice(&[0xff, 0x3f, 0xff, 0x3f]);
         assert!(error(&huge).contains("too short for its 16383 × 16383 pixels"));
