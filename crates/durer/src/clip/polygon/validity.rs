@@ -341,11 +341,14 @@ fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool
     })
 }
 
+/// A ring along an edge, or at a vertex, by the bits of the coordinates of a [`Way`].
+type RingWay = (usize, [[u64; 2]; 3]);
+
 /// Where different rings touch.
 #[derive(Default)]
 struct Touches {
     /// For each place, by the bits of its coordinates, the ways through it, by ring.
-    places: BTreeMap<[u64; 2], BTreeSet<(usize, [[u64; 2]; 3])>>,
+    places: BTreeMap<[u64; 2], BTreeSet<RingWay>>,
 }
 
 /// The bits of a point; zeros of either sign are one place.

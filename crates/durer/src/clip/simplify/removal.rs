@@ -34,10 +34,10 @@ impl Links {
 
     /// Puts another neighbour in the place of one.
     fn replace(&mut self, point: u32, old: u32, new: u32) {
-        if let Some(pair) = self.0.get_mut(point as usize) {
-            if let Some(link) = pair.iter_mut().find(|link| **link == old) {
-                *link = new;
-            }
+        if let Some(pair) = self.0.get_mut(point as usize)
+            && let Some(link) = pair.iter_mut().find(|link| **link == old)
+        {
+            *link = new;
         }
     }
 }

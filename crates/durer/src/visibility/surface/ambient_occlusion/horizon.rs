@@ -256,9 +256,9 @@ fn light_above<S: Simd>(
             // The horizon of the surface itself, cos(n ± π/2), and what rises above it.
             let low = sin_n * -side;
             let highest = highest(simd, planes, around, (points, to_eye), low, pixels);
-            arcs = arcs + arc(simd, side, highest, [cos_n, sin_n]);
+            arcs += arc(simd, side, highest, [cos_n, sin_n]);
         }
-        sum = sum + length.simd_gt(splat(1e-4)).select(length * arcs, splat(0.0));
+        sum += length.simd_gt(splat(1e-4)).select(length * arcs, splat(0.0));
     }
     sum
 }
@@ -348,8 +348,8 @@ fn mean<S: Simd>(
             // No number is above 0 where nothing is.
             let weight = weight.simd_gt(splat(0.0)).select(weight, splat(0.0));
             let at = planes.place(x, y);
-            sum = sum + weight * f32x16::from_slice(simd, &rough[at..at + LANES]);
-            weights = weights + weight;
+            sum += weight * f32x16::from_slice(simd, &rough[at..at + LANES]);
+            weights += weight;
         }
     }
     weights.simd_gt(splat(0.0)).select(sum / weights, splat(1.0))

@@ -11,7 +11,7 @@ use crate::view::View;
 const PHASES_SHIFT: u32 = PATTERN.trailing_zeros();
 
 /// Numbers before and after those of a row, so that looks beyond the picture find that nothing is there.
-const MARGIN: usize = (FARTHEST as usize + 1 >> PHASES_SHIFT) + LANES + 1;
+const MARGIN: usize = ((FARTHEST as usize + 1) >> PHASES_SHIFT) + LANES + 1;
 
 /// Distances and normals of what a picture shows, in the directions of the screen: to the right, down, and back
 /// to the eye.
