@@ -230,9 +230,9 @@ mod tests {
         let starts = |a, b| {
             let line = line(a, b);
             let subject = [Subject::new(&job, 0, &line, Rules::default())];
-            let starts =
-                contents(&subject).iter().filter_map(|p| p.geometry.bounds()).map(|r| r.min().x);
-            starts.collect::<Vec<_>>()
+            let parts = contents(&subject);
+            let boxes = parts.iter().filter_map(|p| p.geometry.bounds());
+            boxes.map(|r| r.min().x).collect::<Vec<_>>()
         };
         assert_eq!(starts(-180.0, 180.0), [-180.0]);
         assert_eq!(starts(170.0, 190.0), [170.0, -190.0]);

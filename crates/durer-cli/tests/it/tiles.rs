@@ -227,12 +227,7 @@ fn land() -> Folder {
             points.into_iter().chain(first).map(|(x, y)| format!("[{x},{y}]")).collect();
         format!("[[{}]]", text.join(","))
     };
-    let left = border
-        .iter()
-        .rev()
-        .copied()
-        .chain([(10.0, 0.0), (10.0, 2.0)].into_iter())
-        .collect::<Vec<_>>();
+    let left = border.iter().rev().copied().chain([(10.0, 0.0), (10.0, 2.0)]).collect::<Vec<_>>();
     let right = border.iter().copied().chain([(12.0, 2.0), (12.0, 0.0)]).collect::<Vec<_>>();
     let feature = |id: &str, properties: &str, ring: String| {
         format!(
