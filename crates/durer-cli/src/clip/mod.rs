@@ -32,9 +32,7 @@ use srids::Srids;
 use std::fs::File;
 use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
-use tiles::{Reach, Subject};
 
 /// Features that are cut at a time, on all threads.
 const BATCH: usize = 256;
