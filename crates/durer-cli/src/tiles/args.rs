@@ -57,7 +57,7 @@ pub struct TilesArgs {
     )]
     pub method: LineSimplifier,
     /// Leave out polygons smaller than a square of this side, in cells; those near to each other that are as large
-    /// together become such a square. 0 leaves all in that have an area on the grid
+    /// together become such a square. At most 1 on the highest level; 0 leaves all in that have an area on the grid
     #[arg(long, value_name = "CELLS", default_value_t = 4.0, allow_hyphen_values = true, value_parser = values::not_negative, help_heading = "Simplification")]
     pub tiny: f64,
     /// The name of a layer; one for each IN, or one for all [default: the names of the files]

@@ -2,7 +2,7 @@
 
 use super::Tile;
 use super::piece::{Body, Shape};
-use super::pyramid::{Piece, Pyramid, Ready, cells, runs};
+use super::pyramid::{Options, Piece, Pyramid, Ready, cells, runs};
 use super::walk::Content;
 use crate::Result;
 use crate::clip::polygon::{FillRule, Shapes};
@@ -27,8 +27,15 @@ impl<'a> Level<'a> {
         Self { squares: level.squares(), ..level }
     }
 
+    /// The side of a square that polygons smaller than it are joined to, in cells. The last level has all that have
+    /// an area there.
+    fn tiny(&self) -> f64 {
+        let Options { tiny, zooms, .. } = &self.pyramid.options;
+        if self.zoom == *zooms.end() { tiny.min(1.0) } else { *tiny }
+    }
+
     fn is_tiny(&self, area: f64) -> bool {
-        let side = self.pyramid.options.tiny / self.cells;
+        let side = self.tiny() / self.cells;
         area < side * side
     }
 
@@ -36,15 +43,16 @@ impl<'a> Level<'a> {
     fn squares(&self) -> Vec<bool> {
         /// Polygons in one square of so many times the side count together.
         const NEAR: f64 = 8.0;
-        let side = self.pyramid.options.tiny / self.cells;
-        let (mut squares, mut sums) = (Vec::new(), BTreeMap::<[i64; 2], f64>::new());
+        let side = self.tiny() / self.cells;
+        let (mut squares, mut sums) = (Vec::new(), BTreeMap::<(usize, i64, i64), f64>::new());
         for feature in &self.pyramid.features {
             let Body::Areas(shapes) = &feature.body else { continue };
             for (polygon, &area) in shapes.polygons().zip(&feature.areas) {
                 let mut full = false;
                 if self.is_tiny(area) {
                     let at = polygon.outer().first().copied().unwrap_or_default() / (side * NEAR);
-                    let sum = sums.entry([at.x.floor() as i64, at.y.floor() as i64]).or_default();
+                    let place = (feature.layer, at.x.floor() as i64, at.y.floor() as i64);
+                    let sum = sums.entry(place).or_default();
                     *sum += area;
                     full = *sum >= side * side;
                     *sum -= if full { side * side } else { 0.0 };
@@ -77,7 +85,7 @@ impl<'a> Level<'a> {
 
     /// How far a feature's points on the grid may lie beyond its bounds.
     fn margin(&self) -> f64 {
-        (self.pyramid.options.tiny + 1.0) / self.cells
+        (self.tiny() + 1.0) / self.cells
     }
 
     /// A tile, in cells.
@@ -174,7 +182,7 @@ impl Part<'_> {
 
     /// What stands for tiny polygons.
     fn square(&self, around: DVec2) -> [DVec2; 4] {
-        let half = (self.level.pyramid.options.tiny * 0.5).max(0.5);
+        let half = (self.level.tiny() * 0.5).max(0.5);
         [(-half, -half), (half, -half), (half, half), (-half, half)]
             .map(|(x, y)| around + DVec2::new(x, y))
     }

@@ -48,7 +48,7 @@ pub struct Options {
     /// have 512. 0 leaves out only what is straight. The last level has all points.
     pub tolerance: f64,
     /// Polygons smaller than a square of this side, in cells, are left out; whenever those near to each other
-    /// are together as large, such a square stands for them. 0 leaves all in.
+    /// are together as large, such a square stands for them. On the last level it is 1 at most; 0 leaves all in.
     pub tiny: f64,
 }
 
@@ -79,6 +79,7 @@ pub struct Pyramid {
 /// A feature with what is known of it for all levels.
 #[derive(Debug)]
 pub(super) struct Ready {
+    pub layer: usize,
     pub body: Body,
     pub fill: FillRule,
     pub bounds: Rect,
@@ -233,7 +234,7 @@ pub(super) fn runs(ends: &[usize]) -> impl Iterator<Item = std::ops::Range<usize
 
 impl Ready {
     fn new(feature: Feature, levels: Vec<u8>, polygons_before: usize) -> Result<Self> {
-        let Feature { body, fill, .. } = feature;
+        let Feature { layer, body, fill } = feature;
         let points = body.points();
         if let Some(index) = points.iter().position(|p| !p.is_finite()) {
             return Err(Error::NonFinite { what: "point", index });
@@ -249,7 +250,7 @@ impl Ready {
             Body::Areas(shapes) => shapes.polygons().map(area).collect(),
             _ => Vec::new(),
         };
-        Ok(Self { body, fill, bounds, levels, areas, polygons_before })
+        Ok(Self { layer, body, fill, bounds, levels, areas, polygons_before })
     }
 }
 
