@@ -42,7 +42,7 @@ pub struct Influences {
 /// Reads a primitive; `None` where it has no positions.
 ///
 /// # Errors
-/// Where an accessor does not fit its use, or an index refers to no vertex.
+/// Where an accessor does not fit its use, or indices refer to no vertex and nothing is left without them.
 pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Option<Geometry>> {
     let attributes = Attributes::of(source, primitive, at)?;
     let Some(positions) = attributes.vectors("POSITION")? else { return Ok(None) };
@@ -61,10 +61,14 @@ pub fn read(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Opti
     g.check_counts(at)?;
     let indices = match &attributes.packed {
         Some(packed) => Some(packed.indices()),
-        None => read_indices(source, primitive, count, at)?,
+        None => read_indices(source, primitive, at)?,
     };
+    let dangling = indices.as_deref().and_then(|list| first_dangling(list, count));
     let mode = if attributes.packed.is_some() { Mode::Triangles } else { Mode::of(primitive, at)? };
     g.join(mode, indices, source, at)?;
+    if let Some(first) = dangling {
+        g.leave_out_dangling(&first, at)?;
+    }
     normals::repair(&mut g);
     Ok(Some(g))
 }
@@ -256,26 +260,51 @@ impl Geometry {
         };
         Ok(())
     }
+
+    /// Leaves out what has a corner that is no vertex; `first` tells the first of these. Where nothing is left,
+    /// that is an error.
+    fn leave_out_dangling(&mut self, first: &str, at: &str) -> Result<()> {
+        let (corners, kind) = match self.topology {
+            Topology::Points => (1, "points"),
+            Topology::Lines => (2, "lines"),
+            Topology::Triangles => (3, "triangles"),
+        };
+        let vertices = self.positions.len();
+        let indices = self.indices.get_or_insert_default();
+        let (count, mut kept) = (indices.len(), 0);
+        for one in (0..count / corners).map(|i| i * corners..(i + 1) * corners) {
+            if indices[one.clone()].iter().all(|&i| (i as usize) < vertices) {
+                indices.copy_within(one, kept);
+                kept += corners;
+            }
+        }
+        indices.truncate(kept);
+        if kept == 0 {
+            return Err(Error::path(format!("{at}.indices"), first));
+        }
+        let left_out = (count - kept) / corners;
+        if left_out > 0 {
+            let message = "with a corner that is no vertex are left out, the first";
+            self.notes.push(format!("{left_out} {kind} {message}: {first}"));
+        }
+        Ok(())
+    }
 }
 
-fn read_indices(
-    source: &Source<'_>,
-    primitive: &Primitive,
-    vertices: usize,
-    at: &str,
-) -> Result<Option<Vec<u32>>> {
+fn read_indices(source: &Source<'_>, primitive: &Primitive, at: &str) -> Result<Option<Vec<u32>>> {
     let Some(accessor) = primitive.indices else { return Ok(None) };
-    let at = format!("{at}.indices");
-    let indices = source.integers::<1>(accessor, &at)?.into_flattened();
+    Ok(Some(source.integers::<1>(accessor, &format!("{at}.indices"))?.into_flattened()))
+}
+
+/// Tells the first index that is none of so many vertices, if there is one.
+fn first_dangling(indices: &[u32], vertices: usize) -> Option<String> {
     // All of them at once, for there is hardly ever one, and it is found sooner than the first.
-    let dangling = |i: u32| i >= vertices as u32;
-    if indices.iter().fold(false, |any, &i| any | dangling(i))
-        && let Some(place) = indices.iter().position(|&i| dangling(i))
-    {
-        let message = format!("index {place} is vertex {} of {vertices}", indices[place]);
-        return Err(Error::path(at, message));
+    let dangling = |i: u32| i as usize >= vertices;
+    if !indices.iter().fold(false, |any, &i| any | dangling(i)) {
+        return None;
     }
-    Ok(Some(indices))
+    let place = indices.iter().position(|&i| dangling(i))?;
+    Some(format!("index {place} is vertex {} of {vertices}", indices[place]))
 }
 
 #[cfg(test)]

@@ -279,6 +279,36 @@ fn broken_primitives_tell_their_path() {
 }
 
 #[test]
+fn what_has_a_corner_that_is_no_vertex_is_left_out() {
+    for (mode, indices, kept, word) in [
+        (4, vec![0, 1, 3, 0, 2, 1, 9, 9, 9], vec![0, 2, 1], "2 triangles"),
+        (5, vec![0, 1, 2, 7], vec![0, 1, 2], "1 triangles"),
+        (1, vec![8, 0, 1, 2], vec![1, 2], "1 lines"),
+        (0, vec![2, 65535, 0], vec![2, 0], "1 points"),
+    ] {
+        let mut data = triangle_bytes();
+        data.extend(indices.iter().flat_map(|i: &u16| i.to_le_bytes()));
+        let count = indices.len();
+        let model = read(&file(
+            &data,
+            &format!(
+                r#""accessors": [{ACCESSOR}, {{"bufferView": 0, "byteOffset": 36, "componentType": 5123,
+                    "count": {count}, "type": "SCALAR"}}],
+                "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 1,
+                    "mode": {mode}}}]}}], "nodes": [{{"mesh": 0}}]"#
+            ),
+        ));
+        let model = model.unwrap();
+        assert_eq!(model.scene.meshes[0].indices.as_ref(), Some(&kept), "mode {mode}");
+        let first = indices.iter().position(|i| *i > 2).unwrap();
+        let why = format!("the first: index {first} is vertex {} of 3", indices[first]);
+        let told = model.warnings.last().unwrap().to_string();
+        let all = format!("{word} with a corner that is no vertex are left out, {why}");
+        assert_eq!(told, format!("meshes[0].primitives[0]: {all}"));
+    }
+}
+
+#[test]
 fn extensions_are_refused_or_warned_about() {
     let nodes = r#""nodes": [{"mesh": 0}]"#;
     let required = triangle(&format!(r#"{nodes}, "extensionsRequired": ["X_shape"]"#));
