@@ -125,7 +125,8 @@ fn cut_and_damaged_files_fail_alike() {
     assert!(refused > 100, "{refused}");
     let mut dangling = file.clone();
     dangling[file.len() - 2] = 1;
-    let told = both(&dangling, &NoResources, &options).unwrap().warnings[0].to_string();
+    let model = both(&dangling, &NoResources, &options).unwrap();
+    let told = model.warnings.last().unwrap().to_string();
     assert!(told.contains("1 points with a corner that is no vertex"), "{told}");
     assert!(told.contains("index 59999 is vertex"), "{told}");
 }
