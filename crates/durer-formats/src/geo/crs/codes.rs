@@ -147,7 +147,10 @@ fn projected(code: i32) -> Option<Projected> {
     let world = |name: &str, method| named(name, WGS84, method, 0.0, [0.0, 0.0]);
     match code {
         WEB => {
-            return world("WGS_1984_Web_Mercator_Auxiliary_Sphere", Method::Mercator { scale: 1.0 });
+            return world(
+                "WGS_1984_Web_Mercator_Auxiliary_Sphere",
+                Method::Mercator { scale: 1.0 },
+            );
         }
         3395 => return world("WGS_1984_World_Mercator", Method::Mercator { scale: 1.0 }),
         8857 => return world("WGS_1984_Equal_Earth_Greenwich", Method::EqualEarth),
