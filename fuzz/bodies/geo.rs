@@ -1,9 +1,11 @@
 //! What must hold for any bytes, read as map data: the bodies of the fuzz targets `geojson`, `wkt`,
-//! `wkb` and `svg`, which the tests call as well.
+//! `wkb`, `svg`, `shapefile`, `flatgeobuf`, `topojson`, `csv`, `kml` and `gpx`, which the tests call as well.
 
 use super::words::text;
 use arbitrary::{Result, Unstructured};
-use durer_formats::geo::{Feature, GeoFormat, Reader, Writer};
+use durer_formats::Resources;
+use durer_formats::geo::crs::{Crs, code_of_wkt};
+use durer_formats::geo::{Beside, Feature, GeoFormat, Reader, Writer};
 
 /// Whatever is read can be written, and reads back as the same.
 fn round_trip(format: GeoFormat, bytes: &[u8]) {
@@ -97,7 +99,11 @@ const WKT: &[&str] = &[
     " M ",
     " ZM ",
     "SRID=4326;",
-    "CIRCULARSTRING",
+    "CIRCULARSTRING (0 0, 1 1, 2 0)",
+    "COMPOUNDCURVE",
+    "CURVEPOLYGON",
+    "MULTISURFACE",
+    "TIN",
     "nan",
     "-",
     "1e400",
@@ -128,7 +134,7 @@ fn records(bytes: &[u8]) -> Result<Vec<u8>> {
         let word = |v: u32| if little { v.to_le_bytes() } else { v.to_be_bytes() };
         let flags = *u.choose(&[0, 1000, 2000, 3000, 1 << 31, 1 << 30, 3 << 30, 1 << 29])?;
         out.push(u8::from(little));
-        out.extend(word(u.int_in_range(0..=8)? + flags));
+        out.extend(word(u.int_in_range(0..=18)? + flags));
         if flags == 1 << 29 {
             out.extend(word(4326));
         }
@@ -203,6 +209,149 @@ const SVG: &[&str] = &[
     "![CDATA[",
     "]]",
 ];
+
+/// Whatever is read can be written, as a file of the same bytes each time that it is read and written.
+fn settles(format: GeoFormat, bytes: &[u8]) {
+    let Some(first) = read(format, bytes) else { return };
+    let text = write(format, &first);
+    let again = |text: &[u8]| write(format, &read(format, text).expect("it is read back"));
+    let second = again(&text);
+    assert_eq!(again(&second), second);
+}
+
+/// One file for every other that is asked for: a table, its encoding, and the coordinate system.
+struct Others<'a>(&'a [u8]);
+
+impl Resources for Others<'_> {
+    fn read(&self, _: &str, _: u64) -> std::result::Result<Vec<u8>, String> {
+        Ok(self.0.to_vec())
+    }
+}
+
+/// Shapefiles: the bytes as a .shp, as what is beside one, and as a definition.
+pub fn shapefile(bytes: &[u8]) {
+    const EMPTY: &[u8] =
+        b"\0\0\x27\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\xe8\x03\0\0";
+    let nulls = [EMPTY, &[0; 68], &b"\0\0\0\x01\0\0\0\x02\0\0\0\0".repeat(3)].concat();
+    for shp in [bytes, &nulls] {
+        let beside = Beside { name: "a.shp", resources: &Others(bytes), layer: None };
+        let Ok(mut reader) = Reader::with(GeoFormat::Shapefile, shp, &beside) else { continue };
+        while let Ok(Some(_)) = reader.next_feature() {}
+    }
+    if let Some(features) = read(GeoFormat::Shapefile, bytes) {
+        // A .shp may hold several kinds of shapes, against its rules; then it is not written.
+        let mut writer = Writer::new(GeoFormat::Shapefile, Vec::new());
+        features.iter().for_each(|feature| writer.write(feature).expect("memory"));
+        let written = writer.finish(&[]).ok();
+        written
+            .into_iter()
+            .for_each(|out| drop(read(GeoFormat::Shapefile, &out).expect("read back")));
+    }
+    let text = String::from_utf8_lossy(bytes);
+    let _ = (code_of_wkt(&text), Crs::parse(&text));
+}
+
+/// FlatGeobuf.
+pub fn flatgeobuf(bytes: &[u8]) {
+    settles(GeoFormat::FlatGeobuf, bytes);
+    settles(GeoFormat::FlatGeobuf, &[b"fgb\x03fgb\0", bytes].concat());
+}
+
+const TOPOJSON: &[&str] = &[
+    "{\"type\":\"Topology\",",
+    "\"arcs\":",
+    "\"objects\":{\"a\":",
+    "\"geometries\":[",
+    "\"transform\":{\"scale\":[1,2],\"translate\":[3,4]},",
+    "\"type\":\"GeometryCollection\",",
+    "{\"type\":\"Polygon\",\"arcs\":[[0]]}",
+    "{\"type\":\"LineString\",\"arcs\":[-1]}",
+    "{\"type\":\"Point\",\"coordinates\":[0,0]}",
+    "[[[0,0],[1,0],[1,1],[0,0]]]",
+    "[",
+    "]",
+    "{",
+    "}",
+    ",",
+    "0",
+    "-1",
+];
+
+/// TopoJSON.
+pub fn topojson(bytes: &[u8]) {
+    settles(GeoFormat::TopoJson, bytes);
+    if let Ok(text) = text(bytes, TOPOJSON) {
+        settles(GeoFormat::TopoJson, &text);
+    }
+}
+
+const CSV: &[&str] = &[
+    "wkt",
+    "lon",
+    "lat",
+    ",",
+    ";",
+    "\n",
+    "\"",
+    "\"\"",
+    "POINT (1 2)",
+    "1",
+    "01",
+    "-0.5",
+    "x",
+    "\r",
+];
+
+/// Tables as text.
+pub fn csv(bytes: &[u8]) {
+    settles(GeoFormat::Csv, bytes);
+    if let Ok(text) = text(bytes, CSV) {
+        settles(GeoFormat::Csv, &text);
+        settles(GeoFormat::Csv, &[b"a,wkt\n", &text[..]].concat());
+    }
+}
+
+const MARKUP: &[&str] = &[
+    "<kml>",
+    "</kml>",
+    "<gpx>",
+    "</gpx>",
+    "<Placemark>",
+    "</Placemark>",
+    "<MultiGeometry>",
+    "</MultiGeometry>",
+    "<Polygon><outerBoundaryIs><LinearRing><coordinates>0,0 1,0 1,1 0,0</coordinates></LinearRing></outerBoundaryIs></Polygon>",
+    "<LineString>",
+    "</LineString>",
+    "<Point><coordinates>",
+    "</coordinates></Point>",
+    "<wpt lat='1' lon='2'/>",
+    "<trk><trkseg>",
+    "<trkpt lat='1' lon='2'><ele>3</ele></trkpt>",
+    "</trkseg></trk>",
+    "<name>a</name>",
+    "1,2,3",
+    " ",
+];
+
+fn only_read(format: GeoFormat, bytes: &[u8]) {
+    read(format, bytes).into_iter().for_each(|features| drop(write(GeoFormat::GeoJson, &features)));
+    if let Ok(text) = text(bytes, MARKUP) {
+        read(format, &text)
+            .into_iter()
+            .for_each(|features| drop(write(GeoFormat::GeoJson, &features)));
+    }
+}
+
+/// KML.
+pub fn kml(bytes: &[u8]) {
+    only_read(GeoFormat::Kml, bytes);
+}
+
+/// GPX.
+pub fn gpx(bytes: &[u8]) {
+    only_read(GeoFormat::Gpx, bytes);
+}
 
 /// SVG.
 pub fn svg(bytes: &[u8]) {

@@ -86,8 +86,8 @@ fn coordinate_systems_are_kept_or_named() {
     assert!(folder.read("o.wkt").starts_with(b"SRID=4326;POLYGON"));
     for (line, told) in [
         (
-            "clip a.wkt --window 0,0,9,9 -o o.geojson",
-            "SRID 4326 is left out: geojson has no place for it",
+            "clip b.wkt --window 0,0,9,9 -o o.geojson",
+            "SRIDs 4326, 3857 are left out: geojson has no place for it",
         ),
         ("clip a.wkt --by mask.wkt -o o.wkt", "the mask has another SRID"),
         (

@@ -20,11 +20,17 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 23] = [
+const TARGETS: [(&str, Body); 29] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
     ("svg", geo::svg),
+    ("shapefile", geo::shapefile),
+    ("flatgeobuf", geo::flatgeobuf),
+    ("topojson", geo::topojson),
+    ("csv", geo::csv),
+    ("kml", geo::kml),
+    ("gpx", geo::gpx),
     ("drawing", drawing::drawing),
     ("gltf", model::gltf),
     ("draco", model::draco),

@@ -246,7 +246,7 @@ fn wkb_of_both_byte_orders_and_postgis_is_read() {
     for (hex, expected) in [
         ("0102000000FFFFFFFF", "column 11: a count of 4294967295, but only 0 bytes are left"),
         ("0101000000", "line 1, column 11: the data end"),
-        ("0109000000", "type 9 is not supported"),
+        ("010D000000", "type 13 is not supported"),
         ("05", "byte order 5"),
         ("01010000000000000000F07F0000000000000040", "the data end"),
         ("0101000000000000000000F07F0000000000000040", "column 11: coordinates must be finite"),
@@ -512,8 +512,13 @@ fn many_small_things_take_no_longer_than_few_large_ones() {
 
 #[test]
 fn files_with_nothing_in_them_have_no_features() {
-    for format in GeoFormat::ALL.into_iter().filter(|f| *f != GeoFormat::Svg) {
-        assert_eq!(features(format, b""), [], "{format}");
+    for format in GeoFormat::ALL {
+        if format.streams() {
+            assert_eq!(features(format, b""), [], "{format}");
+        } else {
+            let found = Reader::new(format, &b""[..]).and_then(|mut reader| reader.next_feature());
+            assert!(found.is_err(), "{format} has a head");
+        }
     }
     let nothing = [GeoFormat::GeoJson, GeoFormat::GeoJsonSeq, GeoFormat::GeoJsonRs, GeoFormat::Wkt];
     for format in nothing {
@@ -660,7 +665,8 @@ proptest! {
         srid in prop::option::of(1..99999i32),
     ) {
         let all: Vec<Feature> = geometries.into_iter().map(Feature::of_geometry).collect();
-        for format in GeoFormat::ALL.into_iter().filter(|f| *f != GeoFormat::Svg) {
+        // The others have tests of their own: they keep fields, and not all dimensions of nothing.
+        for format in GeoFormat::ALL.into_iter().filter(|f| f.streams()) {
             let mut all = all.clone();
             if format.is_geojson() {
                 // GeoJSON knows no measure without a height.
@@ -683,7 +689,10 @@ proptest! {
         given in geometry(),
     ) {
         for format in GeoFormat::ALL {
-            let mut bytes = written(format, &[Feature::of_geometry(given.clone())]);
+            let mut writer = Writer::new(format, Vec::new());
+            // A Shapefile refuses geometries of several kinds.
+            let whole = writer.write(&Feature::of_geometry(given.clone())).and_then(|()| writer.finish(&[]));
+            let mut bytes = whole.unwrap_or_default();
             if let Some(place) = bytes.get_mut(at) {
                 *place = byte;
             }

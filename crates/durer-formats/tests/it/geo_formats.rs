@@ -97,7 +97,7 @@ fn columns_of_csv_are_numbers_only_where_all_are() {
 
 const TOPOLOGY: &str = r#"{"type":"Topology","about":{"x":1},"transform":{"scale":[0.5,0.25],"translate":[10,20]},
 "objects":{"b":{"type":"GeometryCollection","geometries":[
-  {"type":"Polygon","id":7,"properties":{"n":1},"arcs":[[0,1]]},{"type":"Polygon","arcs":[[-1,2]]},{"type":null,"properties":{"n":3}}]},
+  {"type":"Polygon","id":7,"properties":{"n":1},"arcs":[[0,1]]},{"type":"Polygon","arcs":[[-1,-3]]},{"type":null,"properties":{"n":3}}]},
  "a":{"type":"Point","coordinates":[2,4]}},
 "arcs":[[[0,0],[2,0],[0,2]],[[2,2],[-2,-2]],[[2,2],[2,0],[-4,-2]]]}"#;
 
@@ -106,9 +106,8 @@ fn topologies_are_read_in_their_order() {
     let (features, warnings) = read(TOPOLOGY.as_bytes(), "");
     assert_eq!(
         wkt(&features),
-        "POLYGON ((10 20, 11 20, 11 20.5, 10 20))\nPOLYGON ((11 20.5, 11 20, 10 20, 11 20.5))\nPOINT (11 21)\n"
-            .replace("11 20.5))", "11 20.5))")
-            .replace("POLYGON ((11 20.5, 11 20, 10 20, 11 20.5))", &wkt(&features[1..2]).trim_end().to_owned())
+        "POLYGON ((10 20, 11 20, 11 20.5, 10 20))
+POLYGON ((11 20.5, 11 20, 10 20, 12 20.5, 11 20.5))\nPOINT (11 21)\n"
     );
     assert_eq!(
         (features[0].id.as_deref(), features[0].properties.as_deref()),
@@ -130,12 +129,12 @@ fn topologies_are_read_in_their_order() {
     );
     assert!(open("c").err().expect("none").to_string().contains("no layer c; it has b, a"));
     for (from, to, told) in [
-        ("[[0,1]]", "[[0,9]]", "line 2, column 137: there are 3 arcs, and none of this number"),
+        ("[[0,1]]", "[[0,9]]", "line 3, column 60: there are 3 arcs, and none of this number"),
         ("[[0,1]]", "[[0,0.5]]", "none of this number"),
         (
             "\"arcs\":[[[0,0]",
             "\"arcs\":[[[0]",
-            "line 4, column 10: a position needs at least two numbers",
+            "line 5, column 10: a position needs at least two numbers",
         ),
         ("\"scale\":", "\"skale\":", "needs scale and translate"),
     ] {
@@ -159,9 +158,9 @@ fn written_topologies_share_arcs() {
 
 #[test]
 fn an_arc_that_is_told_very_often_is_refused() {
-    let arc = vec!["[0,0]"; 200].join(",");
+    let arc = vec!["[0,0]"; 12_000].join(",");
     let many = vec!["0"; 10_000].join(",");
-    let lines = vec![format!("{{\"type\":\"LineString\",\"arcs\":[{many}]}}"); 60].join(",");
+    let lines = format!("{{\"type\":\"LineString\",\"arcs\":[{many}]}}");
     let text = format!(
         "{{\"type\":\"Topology\",\"arcs\":[[{arc}]],\"objects\":{{\"a\":{{\"type\":\"GeometryCollection\",\"geometries\":[{lines}]}}}}}}"
     );

@@ -46,6 +46,9 @@ impl Projection {
         }
         let (lat, lon) = (lat.clamp(-FRAC_PI_2, FRAC_PI_2), around(lon - self.meridian));
         let (body, a) = (self.body, self.body.a);
+        if self.is_far(lat) {
+            return None;
+        }
         let p = match self.method {
             Method::Mercator { scale } => DVec2::new(lon, body.isometric(lat)) * (a * scale),
             Method::Transverse { lat: origin, scale } => {
@@ -73,6 +76,17 @@ impl Projection {
             }
         };
         Some(p + self.offset).filter(|p| p.is_finite() && p.abs().max_element() < LARGEST)
+    }
+
+    /// Whether a latitude is that of a pole which lies at infinity.
+    fn is_far(&self, lat: f64) -> bool {
+        let far = match self.method {
+            Method::Mercator { .. } => true,
+            Method::Conformal { parallels: [first, second], .. } => lat * (first + second) < 0.0,
+            Method::Stereographic { pole, .. } => lat * pole < 0.0,
+            _ => false,
+        };
+        far && is_pole(lat)
     }
 
     /// To longitude and latitude in radians; `None` where nothing lies there.

@@ -102,9 +102,12 @@ fn piece(c: &[f32; 4], z: f64) -> (f64, f64) {
 
 /// The piece that a latitude lies in, and how many degrees from its start.
 fn at(lat: f64) -> (usize, f64) {
-    let fifths = lat.abs() * (36.0 / std::f64::consts::PI);
-    let i = (fifths as usize).min(18);
-    (i, (fifths - i as f64) * 5.0)
+    /// Five degrees in radians, and how many times they are in one.
+    const STEP: f64 = 0.087_266_462_599_716_47;
+    const STEPS: f64 = 11.459_155_902_616_464;
+    // A little more, so that a full fifth degree is in the piece that begins there.
+    let i = ((lat.abs() * STEPS + 1e-15) as usize).min(18);
+    (i, (lat.abs() - STEP * i as f64).to_degrees())
 }
 
 /// From longitude and latitude, on a sphere of radius 1.
@@ -119,6 +122,10 @@ pub fn robinson_back(p: DVec2) -> Option<(f64, f64)> {
     let height = p.y.abs() / HEIGHT;
     if height > 1.0 + 1e-6 {
         return None;
+    }
+    if height >= 1.0 {
+        let [width, ..] = ROBINSON_X[18];
+        return Some((p.x / (WIDTH * f64::from(width)), FRAC_PI_2.copysign(p.y)));
     }
     let i = ROBINSON_Y.iter().rposition(|c| f64::from(c[0]) <= height).unwrap_or(0).min(17);
     let mut z = 5.0 * (height - f64::from(ROBINSON_Y[i][0]))

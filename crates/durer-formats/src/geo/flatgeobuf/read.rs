@@ -80,7 +80,7 @@ impl Reader {
             .ok_or_else(|| Error::byte(start as u64, "the feature cannot be read"))?;
         let own = columns(&table, 2);
         let columns = if own.is_empty() { &self.columns } else { &own };
-        let fields = table.bytes(1).map(|bytes| fields(bytes, columns, &mut self.binary, &place));
+        let fields = fields(table.bytes(1).unwrap_or_default(), columns, &mut self.binary, &place)?;
         let mut shapes = Shapes {
             left: bytes.len() / 16,
             place: &place,
@@ -96,7 +96,6 @@ impl Reader {
             }
             finite
         });
-        let fields = fields.transpose()?.unwrap_or_default();
         let properties = (!columns.is_empty()).then(|| object(&fields));
         Ok(Some(Feature { geometry, properties, srid: self.system.code, ..Feature::default() }))
     }
@@ -164,7 +163,7 @@ fn system(header: &Table<'_>) -> System {
     System { code: code.or_else(|| crs::code_of_wkt(wkt.as_deref()?)), wkt }
 }
 
-/// The values of a feature: numbers of columns, each followed by a value.
+/// The values of a feature: numbers of columns, each followed by a value. Columns without one are null.
 fn fields(
     bytes: &[u8],
     columns: &[Column],
@@ -172,20 +171,26 @@ fn fields(
     place: &Place,
 ) -> Result<Vec<Member>> {
     let wrong = |what: &str| Error::Decode { place: place.clone(), message: what.to_owned() };
-    let mut fields = Vec::new();
+    let mut values = vec![None; columns.len()];
     let mut rest = bytes;
     while let Some((number, after)) = rest.split_first_chunk() {
-        let column = columns.get(usize::from(u16::from_le_bytes(*number)));
-        let column = column.ok_or_else(|| wrong("a value is of a column that there is not"))?;
+        let number = usize::from(u16::from_le_bytes(*number));
+        let (column, own) = columns
+            .get(number)
+            .zip(values.get_mut(number))
+            .ok_or_else(|| wrong("a value is of a column that there is not"))?;
         let (value, after) = value(column.kind, after)
             .ok_or_else(|| wrong("the values of a feature end within one"))?;
-        match value {
-            Some(json) => fields.push(Member::new(&column.key, json)),
-            None => binary.add(|| place.clone()),
+        if value.is_none() {
+            binary.add(|| place.clone());
         }
+        *own = value;
         rest = after;
     }
-    Ok(fields)
+    let readable = columns.iter().zip(values).filter(|(column, _)| column.kind != column::BINARY);
+    Ok(readable
+        .map(|(column, value)| Member::new(&column.key, value.unwrap_or_else(|| "null".to_owned())))
+        .collect())
 }
 
 /// A value in JSON, nothing where it is binary, and what follows it.

@@ -1,7 +1,7 @@
 //! Geometry objects: `coordinates` by their type, with what is repaired.
 
-use super::object::{Cursor, Text};
-use crate::geo::{Dimensions, Geometry, MAX_DEPTH, Points, Warnings};
+use super::object::{Cursor, RawMember, Text};
+use crate::geo::{Dimensions, Geometry, MAX_DEPTH, Member, Points, Warnings};
 use crate::{Place, Result};
 use durer::math::DVec2;
 
@@ -9,6 +9,8 @@ use durer::math::DVec2;
 #[derive(Debug, Default)]
 pub struct Geometries {
     pub warnings: Warnings,
+    /// Members of the geometry read last that the format does not define.
+    pub further: Vec<Member>,
 }
 
 /// What positions of one run must make up.
@@ -25,7 +27,7 @@ impl Geometries {
         &mut self,
         kind: &str,
         whole: Text<'_>,
-        members: &[super::object::RawMember<'_>],
+        members: &[RawMember<'_>],
     ) -> Result<Option<Geometry>> {
         self.nested(kind, whole, members, 0)
     }
@@ -34,7 +36,7 @@ impl Geometries {
         &mut self,
         kind: &str,
         whole: Text<'_>,
-        members: &[super::object::RawMember<'_>],
+        members: &[RawMember<'_>],
         depth: usize,
     ) -> Result<Option<Geometry>> {
         let member = |name: &str| {
@@ -86,7 +88,9 @@ impl Geometries {
         let unknown = || {
             text.error(format!("`{}` is no type of geometry", crate::text::quote(kind.as_bytes())))
         };
-        if depth > 0 && members.iter().any(|(name, _)| !is_of_geometry(name)) {
+        if depth == 0 {
+            self.further = further_members(&members)?;
+        } else if members.iter().any(|(name, _)| !is_of_geometry(name)) {
             self.warnings.members.add(|| text.place());
         }
         self.nested(&kind, text, &members, depth)?.ok_or_else(unknown)
@@ -177,8 +181,16 @@ impl Geometries {
     }
 }
 
+/// Members of a geometry that the format does not define. As those of features they are kept without `bbox`.
+pub fn further_members(members: &[RawMember<'_>]) -> Result<Vec<Member>> {
+    let further = members.iter().filter(|(name, _)| !is_of_geometry(name));
+    further
+        .map(|(name, value)| Ok(Member { name: name.checked()?, value: value.checked()? }))
+        .collect()
+}
+
 /// Whether the format defines a member of geometries.
-pub fn is_of_geometry(name: &Text<'_>) -> bool {
+fn is_of_geometry(name: &Text<'_>) -> bool {
     matches!(name.as_bytes(), b"\"type\"" | b"\"coordinates\"" | b"\"geometries\"" | b"\"bbox\"")
 }
 

@@ -1,6 +1,6 @@
 //! Features from a stream, one at a time; only the feature at hand is held.
 
-use super::coordinates::{Geometries, is_of_geometry};
+use super::coordinates::{Geometries, further_members};
 use super::object::{RawMember, Text};
 use super::scan::{Progress, Scan};
 use crate::geo::{Feature, Member, Warnings};
@@ -344,7 +344,7 @@ impl<R: Read> Reader<R> {
                     has_geometry = true;
                     if !value.is_null() {
                         feature.geometry = Some(self.geometries.object(*value, 0)?);
-                        feature.geometry_members = further_members(&value.members()?)?;
+                        feature.geometry_members = std::mem::take(&mut self.geometries.further);
                     }
                 }
                 b"\"properties\"" if value.is_null() => feature.properties = None,
@@ -368,14 +368,6 @@ impl<R: Read> Reader<R> {
             Err(whole.error("a Feature needs the member \"geometry\""))
         }
     }
-}
-
-/// Members of a geometry that the format does not define. Like those of features, they are kept without `bbox`.
-fn further_members(members: &[RawMember<'_>]) -> Result<Vec<Member>> {
-    let further = members.iter().filter(|(name, _)| !is_of_geometry(name));
-    further
-        .map(|(name, value)| Ok(Member { name: name.checked()?, value: value.checked()? }))
-        .collect()
 }
 
 /// The value of the member `type`, if it is a string.

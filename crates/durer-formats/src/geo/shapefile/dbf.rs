@@ -143,7 +143,11 @@ const NULL: &str = "null";
 fn decode(encoding: Option<Encoding>, bytes: &[u8]) -> (Cow<'_, str>, bool) {
     match encoding {
         Some(encoding) => encoding.decode(bytes),
-        None => (name(super::encoding::whole_letters(bytes)), true),
+        None => {
+            // A letter that is cut off is one of UTF-8 only after others of it.
+            let whole = super::encoding::whole_letters(bytes);
+            (name(if whole.is_ascii() { bytes } else { whole }), true)
+        }
     }
 }
 
@@ -179,12 +183,14 @@ fn double(value: f64) -> Option<String> {
     String::from_utf8(text).ok()
 }
 
-/// A decimal number in JSON, with its digits where they are such.
+/// A decimal number in JSON: with its digits where they are such, but for zeros at their end after the first.
 fn decimal(value: &[u8]) -> Option<String> {
     let value: Vec<u8> = value.iter().copied().filter(|b| !matches!(b, b' ' | 0)).collect();
     let text = std::str::from_utf8(&value).ok()?;
     if serde_json::from_str::<serde_json::Number>(text).is_ok() {
-        return Some(text.to_owned());
+        let is_plain = text.contains('.') && !text.contains(['e', 'E']);
+        let short = if is_plain { text.trim_end_matches('0') } else { text };
+        return Some(if short.ends_with('.') { format!("{short}0") } else { short.to_owned() });
     }
     let dotted = text.replace(',', ".");
     let (number, length) = crate::number::float(dotted.as_bytes())?;
@@ -229,7 +235,10 @@ mod tests {
             ("0012", Some("12")),
             ("-.5", Some("-0.5")),
             ("1,5", Some("1.5")),
-            ("1.50", Some("1.50")),
+            ("1.50", Some("1.5")),
+            ("8.000", Some("8.0")),
+            ("100", Some("100")),
+            ("1.20e10", Some("1.20e10")),
             ("1e3x", None),
         ] {
             assert_eq!(decimal(text.as_bytes()).as_deref(), json, "{text}");

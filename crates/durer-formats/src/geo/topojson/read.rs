@@ -287,38 +287,50 @@ impl Topology<'_> {
 
     /// The arcs of a line or ring, one after the other; their common ends come once.
     fn join(&mut self, cursor: &mut Cursor<'_>) -> Result<Points> {
+        let start = cursor.clone();
         let mut joined = Points::default();
-        let limit = Limits::default().primitives;
+        for (index, is_turned) in self.numbers(cursor, start)? {
+            let Some(arc) = self.arcs.get(index) else { continue };
+            if joined.is_empty() {
+                joined.dimensions = arc.dimensions;
+            }
+            let skipped = usize::from(!joined.is_empty());
+            let mut add = |i: usize| joined.push(arc.xy[i], arc.zm(i));
+            if is_turned {
+                (0..arc.len()).rev().skip(skipped).for_each(&mut add);
+            } else {
+                (skipped..arc.len()).for_each(&mut add);
+            }
+        }
+        Ok(joined)
+    }
+
+    /// The numbers of arcs, and whether each is turned; their positions are charged before they are taken.
+    fn numbers(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        start: Cursor<'_>,
+    ) -> Result<Vec<(usize, bool)>> {
+        let mut numbers = Vec::new();
         cursor.array("an array of numbers of arcs", |cursor| {
             let place = cursor.clone();
             let number = cursor.number()?;
             let known = number.fract() == 0.0 && number.abs() < 9e15;
             let index = if number < 0.0 { -number - 1.0 } else { number } as usize;
-            let arc = self.arcs.get(index).filter(|_| known);
-            let Some(arc) = arc else {
+            let Some(arc) = self.arcs.get(index).filter(|_| known) else {
                 let count = self.arcs.len();
-                return Err(place
-                    .clone()
-                    .error(format!("there are {count} arcs, and none of this number")));
+                let message = format!("there are {count} arcs, and none of this number");
+                return Err(place.clone().error(message));
             };
             self.count += arc.len() as u64;
-            if self.count > limit {
-                let (what, value) = ("the positions of all features", self.count);
-                return Err(Error::Limit { place: place.clone().place(), what, value, limit });
-            }
-            if joined.is_empty() {
-                joined.dimensions = arc.dimensions;
-            }
-            let skipped = usize::from(!joined.is_empty());
-            let order = 0..arc.len();
-            let mut add = |i: usize| joined.push(arc.xy[i], arc.zm(i));
-            if number < 0.0 {
-                order.rev().skip(skipped).for_each(&mut add);
-            } else {
-                order.skip(skipped).for_each(&mut add);
-            }
+            numbers.push((index, number < 0.0));
             Ok(())
         })?;
-        Ok(joined)
+        let limit = Limits::default().primitives;
+        if self.count > limit {
+            let (what, value) = ("the positions of all features", self.count);
+            return Err(Error::Limit { place: start.clone().place(), what, value, limit });
+        }
+        Ok(numbers)
     }
 }

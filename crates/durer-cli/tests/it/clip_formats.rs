@@ -1,0 +1,169 @@
+//! `durer clip` as a converter: formats, fields, coordinate systems; and `durer info` of layers.
+
+use crate::harness::Folder;
+use std::io::Write;
+
+const PLACES: &str = "name,lon,lat,people\nBern,7.44,46.95,134000\nBasel,7.59,47.56,178000\nOslo,10.75,59.91,709000\n";
+
+const AREAS: &str = r#"{"type":"FeatureCollection","features":[
+{"type":"Feature","id":1,"properties":{"use":"Forest","size":2.5},"geometry":{"type":"Polygon","coordinates":[[[8,47],[9,47],[9,48],[8,47]]]}},
+{"type":"Feature","id":2,"properties":{"use":"field","size":10},"geometry":{"type":"Polygon","coordinates":[[[9,47],[10,47],[10,48],[9,47]]]}},
+{"type":"Feature","id":3,"properties":{"use":null,"size":1},"geometry":{"type":"Polygon","coordinates":[[[8,47],[9,48],[9,47],[10,48],[8,47]]]}}]}"#;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("places.csv", PLACES);
+    folder.write("areas.geojson", AREAS);
+    folder
+}
+
+/// What a command says on standard output.
+fn said(folder: &Folder, line: &str) -> String {
+    String::from_utf8(folder.must(line).out).expect("text")
+}
+
+fn text(folder: &Folder, name: &str) -> String {
+    String::from_utf8(folder.read(name)).expect("text")
+}
+
+#[test]
+fn files_are_converted_without_a_mask() {
+    let folder = folder();
+    for name in ["o.fgb", "o.shp", "o.topojson", "o.csv", "o.geojsonl"] {
+        assert_eq!(folder.must(&format!("clip areas.geojson -o {name}")).err, "", "{name}");
+        folder.must(&format!("clip {name} -o back.wkt"));
+        let back = text(&folder, "back.wkt").replace("SRID=4326;", "");
+        assert_eq!(back.lines().count(), 3, "{name}");
+        assert!(back.contains("POLYGON ((8 47, 9 "), "{name}: {back}");
+    }
+    assert_eq!(text(&folder, "o.cpg"), "UTF-8");
+    assert!(text(&folder, "o.prj").starts_with("GEOGCS[\"GCS_WGS_1984\""));
+    // The same format without anything to do is a forgotten mask.
+    folder.run("clip areas.geojson -o a.geojson").fails(2, "nothing to cut with");
+    folder.run("clip areas.geojson -o a.kml").fails(2, "kml is only read");
+    folder.run("clip areas.geojson --to shapefile -o -").fails(2, "several files");
+    folder.run("clip areas.geojson --outside -o a.wkt").fails(2, "nothing to cut with");
+}
+
+#[test]
+fn compressed_files_are_read_as_they_are() {
+    let folder = folder();
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packed.write_all(PLACES.as_bytes()).expect("memory");
+    folder.write("places.csv.gz", packed.finish().expect("memory"));
+    folder.must("clip places.csv.gz --window 7,46,8,48 -o o.wkt");
+    assert_eq!(text(&folder, "o.wkt"), "POINT (7.44 46.95)\nPOINT (7.59 47.56)\n");
+    assert!(said(&folder, "info places.csv.gz").contains("3 Point"));
+    folder.must("draw places.csv.gz --label name -o o.png");
+}
+
+#[test]
+fn features_are_chosen_by_their_fields() {
+    let folder = folder();
+    for (options, count) in [
+        ("--where use~FOR", 1),
+        ("--where size>=2.5", 2),
+        ("--where size>=2.5 --where use!=field", 1),
+        ("--where use=null", 1),
+        ("--where id<3", 2),
+    ] {
+        let ended = folder.must(&format!("clip areas.geojson {options} -o o.csv --json"));
+        assert_eq!(ended.json()["out"]["features"], count, "{options}");
+        assert_eq!(ended.json()["unchosen"].as_u64().unwrap_or(0), 3 - count, "{options}");
+    }
+    folder.must(
+        "clip areas.geojson --where use=field --select size,use --rename use=kind -o o.geojsonl",
+    );
+    assert!(text(&folder, "o.geojsonl").contains(r#""properties":{"size":10,"kind":"field"}"#));
+    let ended = folder.must("clip areas.geojson --where usage=field -o o.geojson");
+    assert!(
+        ended.err.contains("no feature has the field usage; there are size, use"),
+        "{}",
+        ended.err
+    );
+    folder.run("clip areas.geojson --where use -o o.geojson").fails(2, "FIELD=VALUE");
+}
+
+#[test]
+fn coordinates_are_brought_to_another_system() {
+    let folder = folder();
+    folder.must(
+        "clip places.csv --from-crs EPSG:4326 --to-crs EPSG:32632 --window 7,46,8,47 -o o.wkt",
+    );
+    let line = text(&folder, "o.wkt");
+    let numbers = line.trim().strip_prefix("SRID=32632;POINT (").and_then(|l| l.strip_suffix(')'));
+    let numbers: Vec<f64> =
+        numbers.expect("a point").split(' ').map(|n| n.parse().expect("a number")).collect();
+    // pyproj: 381216.6, 5200846.6
+    let (x, y) = (numbers[0], numbers[1]);
+    assert!((x - 381_287.0).abs() < 200.0 && (y - 5_200_800.0).abs() < 400.0, "{line}");
+    folder.must("clip o.wkt --to-crs 4326 -o back.geojson");
+    let back = text(&folder, "back.geojson");
+    assert!(back.contains("[7.4") && back.contains(",46.9") && !back.contains("crs"), "{back}");
+    // GeoJSON in another system says so, and so do messages.
+    let ended = folder.must("clip areas.geojson --to-crs EPSG:3035 -o o.geojson");
+    assert!(ended.err.contains("told by its older member crs"), "{}", ended.err);
+    assert!(text(&folder, "o.geojson").contains("urn:ogc:def:crs:EPSG::3035"));
+    // It is heard again.
+    folder.must("clip o.geojson --to-crs EPSG:4326 -o back.geojson");
+    assert!(!text(&folder, "back.geojson").contains("crs"));
+    folder.must("clip areas.geojson --to-crs EPSG:3857 -o o.fgb");
+    assert!(said(&folder, "info o.fgb").contains("EPSG:3857"));
+    folder.run("clip places.csv --to-crs EPSG:3857 -o o.fgb").fails(2, "--from-crs says where");
+    folder.run("clip places.csv --to-crs mars -o o.fgb").fails(2, "`mars` is not known");
+    folder.write("pole.wkt", "SRID=4326;POINT (0 90)\nSRID=4326;POINT (0 9)");
+    let ended = folder.must("clip pole.wkt --from-crs 4326 --to-crs 3857 -o o.csv --json");
+    assert_eq!(ended.json()["out"]["features"], 1);
+    assert!(ended.err.contains("1 features reach beyond where EPSG:3857"), "{}", ended.err);
+}
+
+#[test]
+fn info_tells_fields_extent_system_and_validity() {
+    let folder = folder();
+    let told = folder.must("info areas.geojson --json").json();
+    assert_eq!(told["features"], 3);
+    assert_eq!(told["geometries"]["Polygon"], 3);
+    assert_eq!(told["extent"], serde_json::json!([8.0, 47.0, 10.0, 48.0]));
+    assert_eq!(told["crs"]["code"], "EPSG:4326");
+    assert_eq!((&told["invalid"], &told["first_invalid"]), (&1.into(), &3.into()));
+    assert_eq!(told["fields"][0]["name"], "use");
+    assert_eq!(
+        (&told["fields"][0]["kind"], &told["fields"][0]["filled"]),
+        (&"text".into(), &2.into())
+    );
+    assert_eq!(told["fields"][1]["examples"], serde_json::json!([2.5, 10, 1]));
+    let text = said(&folder, "info areas.geojson places.csv");
+    assert!(text.contains("use [text, 2 filled] \"Forest\", \"field\""), "{text}");
+    assert!(text.contains("people [integer] 134000, 178000, 709000"), "{text}");
+    folder.write("cube.obj", crate::harness::CUBE);
+    assert!(said(&folder, "info cube.obj").contains("triangles   12"));
+    folder.write("cloud.csv", "x,y,z\n1,2,3\n");
+    assert!(said(&folder, "info cloud.csv").contains("points"), "points of a model");
+}
+
+#[test]
+fn foreign_formats_are_named() {
+    let folder = folder();
+    folder.write("a.gpkg", b"SQLite format 3\0");
+    let told =
+        "a.gpkg: this is an SQLite database, such as GeoPackage or MBTiles; export it as GeoJSON";
+    folder.run("clip a.gpkg --window 0,0,1,1 -o o.geojson").fails(1, told);
+    folder.run("draw a.gpkg -o o.png").fails(1, told);
+    folder.write("a.geojson", b"PK\x03\x04");
+    folder.run("clip a.geojson --window 0,0,1,1 -o o.wkt").fails(1, "a ZIP archive");
+}
+
+#[test]
+fn one_layer_of_a_topology_is_read() {
+    let folder = Folder::new();
+    let object = r#"{"type":"Point","coordinates":[1,2]}"#;
+    folder.write(
+        "t.json",
+        format!(r#"{{"type":"Topology","arcs":[],"objects":{{"a":{object},"b":{object}}}}}"#),
+    );
+    let ended = folder.must("clip t.json -o o.wkt");
+    assert!(ended.err.contains("its 2 layers, a, b, become one"), "{}", ended.err);
+    assert_eq!(folder.must("clip t.json --layer b -o o.wkt").err, "");
+    assert_eq!(text(&folder, "o.wkt"), "POINT (1 2)\n");
+    folder.run("clip t.json --layer c -o o.wkt").fails(1, "there is no layer c");
+}
