@@ -412,6 +412,9 @@ pub struct ReadingArgs {
     /// Show the model in this variant of its materials, by name or number; `durer info` lists them
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
+    /// Let the lights of COLLADA and FBX files shine; those of glTF always do
+    #[arg(long)]
+    pub own_lights: bool,
     /// Let references lead to any file below this folder [default: the model's own folder]
     ///
     /// Textures, buffers and material libraries are read from the model's folder alone, whatever links and `..`

@@ -53,6 +53,7 @@ pub fn read_options(args: &ReadingArgs) -> Reading {
         pose: posed.then_some(pose),
         variant: args.variant.clone(),
         plate: args.plate,
+        own_lights: args.own_lights,
     };
     Reading { options, root: args.root.clone() }
 }

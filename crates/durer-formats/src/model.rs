@@ -121,6 +121,9 @@ pub struct ReadOptions {
     pub variant: Option<String>,
     /// Only what stands on this plate, counted from 1, of a project that has plates; `None` = all.
     pub plate: Option<u32>,
+    /// Whether lights of COLLADA and FBX shine. Most are what an exporter has left in every file, of units that
+    /// nobody keeps to, so that models look worse by them than without. Those of glTF always shine.
+    pub own_lights: bool,
 }
 
 /// A model as read.

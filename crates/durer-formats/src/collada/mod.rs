@@ -58,7 +58,8 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
         None => model.warn(Place::Whole, "the file has no visual scene"),
     }
     nodes.warn(&mut model);
-    eye::add(&mut model, &document, &nodes.cameras, &nodes.lights, unit);
+    let lights = if options.own_lights { &nodes.lights[..] } else { &[] };
+    eye::add(&mut model, &document, &nodes.cameras, lights, unit);
     animations(&document, root, &mut model);
     if model.scene.instances.is_empty() {
         model.warn(Place::Whole, "the scene has no nodes with a mesh");

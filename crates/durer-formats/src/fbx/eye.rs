@@ -13,7 +13,7 @@ use ufbx::{ApertureMode, Camera, Light, LightDecay, LightType, Node, ProjectionM
 const INCH: f64 = 25.4;
 
 /// Gives a model the cameras and lights of its nodes. `unit` is the length of the file's unit in metres.
-pub(super) fn add(model: &mut Model, scene: &Scene, frames: &Frames, unit: f64) {
+pub(super) fn add(model: &mut Model, scene: &Scene, frames: &Frames, unit: f64, own_lights: bool) {
     let here = |node: &Node| Place::Path(node.element.name.to_string());
     let eyes = scene.nodes.into_iter().filter_map(|node| {
         let camera = node.camera.as_deref()?;
@@ -25,7 +25,7 @@ pub(super) fn add(model: &mut Model, scene: &Scene, frames: &Frames, unit: f64) 
     });
     eye::add_cameras(eyes, &mut model.scene, &mut model.warnings);
     let (mut lamps, mut broken, mut areas) = (Vec::new(), Tally::default(), Tally::default());
-    for node in &scene.nodes {
+    for node in scene.nodes.into_iter().filter(|_| own_lights) {
         let Some(light) = node.light.as_deref().filter(|l| l.cast_light) else { continue };
         match lamp(light, frames.world(node)) {
             Some(lamp) => lamps.push(lamp),

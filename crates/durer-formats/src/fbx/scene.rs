@@ -29,7 +29,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     let mut nodes = Nodes::new(&scene, &frames, materials, limits);
     nodes.place(&mut model)?;
     nodes.warn(&mut model);
-    eye::add(&mut model, &scene, &frames, world.unit);
+    eye::add(&mut model, &scene, &frames, world.unit, options.own_lights);
     left_out(&scene, &frames, &mut model);
     if model.scene.instances.is_empty() {
         model.warn(Place::Whole, "the scene has no nodes with a mesh");

@@ -75,7 +75,12 @@ fn material(id: u32, properties: &str) -> String {
 }
 
 fn read_with(text: &str, resources: &dyn Resources, limits: Limits) -> Result<Model> {
-    read_model(text.as_bytes(), "x", resources, &ReadOptions { limits, ..ReadOptions::default() })
+    read_model(
+        text.as_bytes(),
+        "x",
+        resources,
+        &ReadOptions { limits, own_lights: true, ..ReadOptions::default() },
+    )
 }
 
 fn read(text: &str) -> Model {

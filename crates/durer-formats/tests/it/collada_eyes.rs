@@ -21,7 +21,12 @@ fn read(held: &str, content: &str, tool: &str) -> Model {
         <node id="h"><translate>0 0 500</translate><rotate>1 0 0 -90</rotate><scale>3 3 3</scale><instance_{held} url="#x"/></node>
         </visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"##
     );
-    read_model(text.as_bytes(), "x", &NoResources, &ReadOptions::default()).expect("readable")
+    let options = ReadOptions { own_lights: true, ..ReadOptions::default() };
+    let shining = read_model(text.as_bytes(), "x", &NoResources, &options).expect("readable");
+    let options = ReadOptions::default();
+    let plain = read_model(text.as_bytes(), "x", &NoResources, &options).expect("readable");
+    assert_eq!((plain.scene.lights, plain.warnings), (vec![], vec![]));
+    shining
 }
 
 fn optics(kind: &str, content: &str) -> Model {

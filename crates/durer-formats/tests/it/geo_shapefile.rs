@@ -72,10 +72,7 @@ fn geometries_of_one_kind_go_there_and_back() {
         let (features, code, warnings) = read(&files);
         let again = wkt(&features);
         // A group of one is written as the one.
-        assert_eq!(
-            (again.replace("((2 2, 2 2.5, 2.5 2.5, 2 2))", "((2 2, 2 2.5, 2.5 2.5, 2 2))"), code),
-            (text.to_owned(), None)
-        );
+        assert_eq!((again.clone(), code), (text.to_owned(), None));
         assert_eq!(warnings, Vec::<String>::new());
         let names: Vec<&String> = files.0.keys().collect();
         assert_eq!(names, ["a.cpg", "a.dbf", "a.shp", "a.shx"]);
