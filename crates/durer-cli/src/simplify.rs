@@ -147,7 +147,10 @@ fn tell(messages: &Messages, args: &SimplifyArgs, reader: &Source, report: &mut 
     if report.given.features == 0 {
         found.push("there is no feature in it".to_owned());
     }
-    if gone > 0 {
+    if args.drop_below.is_none() && report.dropped_rings > 0 {
+        let rings = report.dropped_rings;
+        found.push(format!("{rings} rings have less than three different points and are left out"));
+    } else if gone > 0 {
         found.push(format!("{gone} features enclose less than --drop-below and are left out"));
     }
     for message in found {
@@ -185,10 +188,10 @@ fn write(
         };
         for mut feature in features {
             let had = feature.geometry.is_some();
-            if let Some(area) = args.drop_below {
-                feature.geometry =
-                    feature.geometry.and_then(|g| large(g, area, &mut report.dropped_rings));
-            }
+            // Rings that had less than three different points have less than three points now.
+            let area = args.drop_below.unwrap_or(0.0);
+            let dropped = &mut report.dropped_rings;
+            feature.geometry = feature.geometry.and_then(|g| large(g, area, dropped));
             if feature.geometry.is_some() || !had {
                 report.out.add(feature.geometry.as_ref());
                 writer.write(&feature).map_err(|e| failure(&args.output, &e))?;
@@ -265,7 +268,7 @@ fn chains(geometry: &mut Geometry, f: &mut dyn FnMut(&mut Points, bool)) {
 
 /// What is large enough; `dropped` counts rings.
 fn large(geometry: Geometry, area: f64, dropped: &mut u64) -> Option<Geometry> {
-    let is_large = |ring: &Points| signed_area(&ring.xy).abs() >= area;
+    let is_large = |ring: &Points| ring.len() > 2 && signed_area(&ring.xy).abs() >= area;
     let mut polygon = |mut rings: Vec<Points>| {
         let before = rings.len();
         if !rings.first().is_some_and(is_large) {
