@@ -2,6 +2,7 @@
 
 mod algorithms;
 mod clip;
+mod clip_shared;
 mod clip_told;
 mod config;
 mod conformance_clip;
