@@ -228,8 +228,8 @@ impl Cutter<'_> {
             let lost = self.rules.loses(area, &near);
             return Ok(Cut { geometry: cut.into_geometry(), repaired, lost, ..Cut::default() });
         }
-        let fill = self.rules.fill;
-        let cut = coverage::cut(&area.shapes, self.mask.prepared(), self.op, fill)?;
+        let options = coverage::Options { rule: self.rules.fill, mend: !apart };
+        let cut = coverage::cut(&area.shapes, self.mask.prepared(), self.op, &options)?;
         let (lost, snapped) = (cut.lost, cut.snapped);
         if cut.whole {
             return Ok(Cut::of(Some(oriented(geometry.clone()))));
@@ -401,11 +401,23 @@ impl Rules {
         op: BooleanOp,
         subject_rule: FillRule,
     ) -> Result<Made> {
+        self.join(area, clip, op, subject_rule, false)
+    }
+
+    fn join(
+        &self,
+        area: &Area,
+        clip: &Shapes,
+        op: BooleanOp,
+        subject_rule: FillRule,
+        mend: bool,
+    ) -> Result<Made> {
         if self.grid.is_some() {
             let area = self.snapped(area, clip, op, subject_rule)?;
             return Ok(Made { area, ..Made::default() });
         }
-        let cut = coverage::join(&area.shapes, clip, op, subject_rule)?;
+        let options = coverage::Options { rule: subject_rule, mend };
+        let cut = coverage::join(&area.shapes, clip, op, &options)?;
         let snapped = cut.snapped;
         Ok(Made { area: area.cut(cut.shapes, &cut.sources), repaired: false, snapped })
     }
@@ -463,7 +475,7 @@ impl Rules {
         }
         let repaired =
             self.fill == FillRule::EvenOdd && !is_valid(&area.shapes, Touching::AtPoints);
-        let made = self.overlay(&area, &Shapes::new(), BooleanOp::Union, self.fill)?;
+        let made = self.join(&area, &Shapes::new(), BooleanOp::Union, self.fill, true)?;
         Ok(Made { repaired, ..made })
     }
 }

@@ -48,7 +48,8 @@ impl Window {
 /// A window, or one across the meridian where the left border is the larger one, as in RFC 7946.
 pub fn region(text: &str) -> Result<Window, String> {
     let [xl, yb, xr, yt] = corners(text)?;
-    if !(xr < xl && xr >= -180.0 && xl <= 180.0 && yb < yt) {
+    // From the eastern hemisphere to the western one: all else is a slip.
+    if !(0.0 < xl && xl <= 180.0 && -180.0 <= xr && xr < 0.0 && yb < yt) {
         return window(text).map(Window::Plain);
     }
     let rect = |xl: f64, xr: f64| {
@@ -61,7 +62,9 @@ pub fn region(text: &str) -> Result<Window, String> {
 pub fn window(text: &str) -> Result<Rect, String> {
     let [xl, yb, xr, yt] = corners(text)?;
     if xl >= xr || yb >= yt {
-        return Err("the window is empty; give left, lower, right, upper".to_owned());
+        let message = "the window is empty; give left, lower, right, upper; from 0 to 180 and from -180 to 0 \
+                       degrees, left and right make a window across the 180th meridian";
+        return Err(message.to_owned());
     }
     Rect::new(DVec2::new(xl, yb), DVec2::new(xr, yt)).map_err(|e| e.to_string())
 }
@@ -84,7 +87,8 @@ mod tests {
             Ok(Window::Across([rect(-190.0, -170.0), rect(170.0, 190.0)]))
         );
         assert_eq!(region("-170,-10,170,10"), Ok(Window::Plain(rect(-170.0, 170.0))));
-        for wrong in ["170,10,-170,-10", "5,0,5,1", "500,0,400,1", "1,2,3", "nan,0,1,1"] {
+        for wrong in ["170,10,-170,-10", "5,0,5,1", "3,0,1,1", "500,0,-400,1", "1,2,3", "nan,0,1,1"]
+        {
             assert!(region(wrong).is_err(), "{wrong}");
         }
     }

@@ -3,6 +3,7 @@
 mod algorithms;
 mod clip;
 mod clip_formats;
+mod clip_shared;
 mod clip_told;
 mod config;
 mod conformance_clip;

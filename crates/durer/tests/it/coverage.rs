@@ -156,7 +156,7 @@ fn case(seed: u64, corners: usize) -> Option<Case> {
 }
 
 fn cut(shapes: &Shapes, mask: &Prepared, op: BooleanOp) -> coverage::Cut {
-    coverage::cut(shapes, mask, op, FillRule::EvenOdd).expect("finite")
+    coverage::cut(shapes, mask, op, &Default::default()).expect("finite")
 }
 
 type Edge = [DVec2; 2];
@@ -223,7 +223,8 @@ fn check(case: &Case) -> Result<(), TestCaseError> {
     let none = Shapes::new();
     let mut whole = Shapes::new();
     cells.iter().for_each(|cell| whole.append(cell));
-    let union = coverage::join(&whole, &none, BooleanOp::Union, FillRule::NonZero).unwrap().shapes;
+    let options = coverage::Options { rule: FillRule::NonZero, mend: false };
+    let union = coverage::join(&whole, &none, BooleanOp::Union, &options).unwrap().shapes;
     let both = cut(&union, &mask, BooleanOp::Intersection).shapes.area();
     prop_assert!((both - areas[0]).abs() <= slack, "{both} {areas:?}");
     Ok(())
@@ -325,4 +326,17 @@ fn tiny_features_keep_their_area_under_a_large_mask() {
     let total = inside.shapes.area() + outside.shapes.area();
     assert!((total / square.area() - 1.0).abs() < 1e-6);
     assert!(inside.shapes.area() > 0.3 * total && outside.shapes.area() > 0.3 * total);
+}
+
+/// A spike along an edge, its foot a rounding beside that, as of Sudan in Natural Earth 1:110m.
+#[test]
+fn spikes_that_end_a_rounding_beside_an_edge_leave_nothing() {
+    let p = DVec2::new;
+    let foot = p(33.963392794971185, 9.464285229420625);
+    let ring = [p(33.96162, 9.58358), p(33.97498, 8.68456), foot, p(30.0, 9.0), p(31.0, 12.0)];
+    let spiked = Shapes::from_rings([ring]);
+    let options = coverage::Options { mend: true, ..Default::default() };
+    let whole = coverage::join(&spiked, &Shapes::new(), BooleanOp::Union, &options).unwrap();
+    let left = Shapes::from_rings([[ring[3], foot, ring[0], ring[4]]]);
+    assert_eq!(whole.shapes, left);
 }

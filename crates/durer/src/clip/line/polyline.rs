@@ -310,9 +310,8 @@ impl Border {
                 }
             }
         }
-        // Along the longer axis, so that rounding does not spoil the order.
-        let d = (b * 0.5 - a * 0.5).abs();
-        let axis = usize::from(d.y > d.x);
+        // So that rounding does not spoil the order.
+        let axis = longer_axis(a, b);
         cuts.points
             .sort_by(|p, q| p[axis].total_cmp(&q[axis]).then(p[1 - axis].total_cmp(&q[1 - axis])));
         if a[axis] > b[axis] {
@@ -339,6 +338,12 @@ impl Border {
     }
 }
 
+/// The axis on which a segment is longer; halves, because the difference may overflow.
+fn longer_axis(a: DVec2, b: DVec2) -> usize {
+    let d = (b * 0.5 - a * 0.5).abs();
+    usize::from(d.y > d.x)
+}
+
 /// Adds where a segment meets an edge.
 fn meet(segment: [DVec2; 2], edge: &Edge, cuts: &mut Cuts) {
     let [a, b] = segment;
@@ -348,8 +353,9 @@ fn meet(segment: [DVec2; 2], edge: &Edge, cuts: &mut Cuts) {
     let met = |p: DVec2| p == c || p == d || is_on(p, edge.ends, edge.line);
     let mut touches = [a, b].into_iter().filter(|&p| met(p)).collect::<Vec<_>>();
     touches.extend([c, d].into_iter().filter(|&p| p != a && p != b && is_on(p, segment, segment)));
-    touches.dedup();
-    let Some(&first) = touches.first() else {
+    let axis = longer_axis(a, b);
+    touches.sort_by(|p, q| p[axis].total_cmp(&q[axis]));
+    let [Some(&first), Some(&last)] = [touches.first(), touches.last()] else {
         let crossed = side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
         let point = if crossed { crossing(segment, edge.line) } else { None };
         // What was cut from the edge's line may miss it by its own rounding.
@@ -357,7 +363,7 @@ fn meet(segment: [DVec2; 2], edge: &Edge, cuts: &mut Cuts) {
         return cuts.points.extend(point);
     };
     // With two points in common they run along each other.
-    if let Some(&last) = touches.iter().rev().find(|&&p| p != first) {
+    if first != last {
         cuts.along.push((first, last));
     }
     cuts.points.extend(touches);

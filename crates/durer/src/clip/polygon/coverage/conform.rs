@@ -3,9 +3,9 @@
 //! What is near is told by the point and the edge of the input alone, so that neighbours decide alike.
 
 use crate::clip::attribute::Source;
-use crate::clip::polygon::Shapes;
 use crate::clip::polygon::rectangle::Near;
 use crate::clip::polygon::rectangle::tree::Tree;
+use crate::clip::polygon::{Shapes, Vertex};
 use crate::clip::touch::{are_one, is_on, reach};
 use crate::math::{DVec2, Rect};
 use std::ops::Range;
@@ -83,6 +83,8 @@ struct Touches {
     same: Vec<(usize, usize)>,
     /// Edges of the subject, and the mask's vertex that lies on each.
     on_subject: Vec<(usize, usize)>,
+    /// Edges of the subject, and another vertex of it that lies on each.
+    on_self: Vec<(usize, usize)>,
 }
 
 /// An edge, by the index of its first point.
@@ -108,30 +110,46 @@ fn around(edges: &[Edge]) -> Option<Rect> {
     Rect::around(edges.iter().flat_map(|edge| edge.ends))
 }
 
+/// Calls with all edges of ours and theirs whose boxes are near each other, and some that are not.
+fn each_near(ours: &[Edge], theirs: &[Edge], mut f: impl FnMut(&Edge, &Edge)) {
+    let tree = Tree::new(theirs.len(), &|some: Range<usize>| around(&theirs[some]));
+    for run in ours.chunks(Tree::RUN) {
+        let Some(bounds) = around(run) else { continue };
+        let margin = 2.0 * reach(bounds.max().abs().max(bounds.min().abs()));
+        let (low, high) = (bounds.min() - margin, bounds.max() + margin);
+        let Ok(near) = Rect::new(low, high) else { continue };
+        tree.visit(|node| {
+            let look = node.around.overlaps(&near);
+            if look && node.is_last() {
+                for other in &theirs[node.items.clone()] {
+                    let [a, b] = other.ends;
+                    if a.min(b).cmple(high).all() && a.max(b).cmpge(low).all() {
+                        run.iter().for_each(|edge| f(edge, other));
+                    }
+                }
+            }
+            look
+        });
+    }
+}
+
 impl Touches {
     fn between(subject: &Shapes, mask: &Mask) -> Self {
         let mut touches = Self::default();
         let (ours, theirs) = (Edge::all(subject), Edge::all(&mask.near.shapes));
-        let tree = Tree::new(theirs.len(), &|some: Range<usize>| around(&theirs[some]));
-        for run in ours.chunks(Tree::RUN) {
-            let Some(bounds) = around(run) else { continue };
-            let margin = 2.0 * reach(bounds.max().abs().max(bounds.min().abs()));
-            let (low, high) = (bounds.min() - margin, bounds.max() + margin);
-            let Ok(near) = Rect::new(low, high) else { continue };
-            tree.visit(|node| {
-                let look = node.around.overlaps(&near);
-                if look && node.is_last() {
-                    for other in &theirs[node.items.clone()] {
-                        let [a, b] = other.ends;
-                        if a.min(b).cmple(high).all() && a.max(b).cmpge(low).all() {
-                            run.iter().for_each(|edge| touches.look(edge, other, &mask.near.lines));
-                        }
-                    }
-                }
-                look
-            });
-        }
+        each_near(&ours, &theirs, |edge, other| touches.look(edge, other, &mask.near.lines));
         touches
+    }
+
+    /// Adds where the subject comes near to itself.
+    fn within(&mut self, subject: &Shapes) {
+        let edges = Edge::all(subject);
+        each_near(&edges, &edges, |edge, other| {
+            let (p, [a, b]) = (edge.ends[0], other.ends);
+            if !are_one(p, a) && !are_one(p, b) && is_on(p, [a, b], [a, b]) {
+                self.on_self.push((other.index, edge.index));
+            }
+        });
     }
 
     /// Looks whether the first point of either edge lies on the other one.
@@ -151,44 +169,49 @@ impl Touches {
     }
 
     fn is_empty(&self) -> bool {
-        self.on_mask.is_empty() && self.same.is_empty() && self.on_subject.is_empty()
+        self.on_mask.is_empty()
+            && self.same.is_empty()
+            && self.on_subject.is_empty()
+            && self.on_self.is_empty()
     }
 
     /// Brings the touches of each edge in their order along it.
     fn sort(&mut self, subject: &Shapes, mask: &Shapes) {
-        sort_along(&mut self.on_mask, mask, subject);
-        sort_along(&mut self.on_subject, subject, mask);
+        sort_along(&mut self.on_mask, mask, |&ours| subject.points()[ours]);
         self.same.sort_unstable();
         // Of several the first.
         self.same.dedup_by_key(|pair| pair.0);
     }
 }
 
-fn sort_along(touches: &mut Vec<(usize, usize)>, of: &Shapes, points: &Shapes) {
-    let along = |&(edge, point): &(usize, usize)| {
-        let a = of.points()[edge];
-        let way = of.points()[of.next_point(edge)] - a;
-        (points.points()[point] - a).dot(way)
+/// Brings points on edges, each with the index of its edge, in their order along that, each once.
+fn sort_along<T>(touches: &mut Vec<(usize, T)>, of: &Shapes, place: impl Fn(&T) -> DVec2) {
+    let along = |(edge, point): &(usize, T)| {
+        let a = of.points()[*edge];
+        let way = of.points()[of.next_point(*edge)] - a;
+        (place(point) - a).dot(way)
     };
+    let order = |p: DVec2, q: DVec2| p.order(q);
     touches.sort_by(|s, t| {
-        s.0.cmp(&t.0).then_with(|| along(s).total_cmp(&along(t))).then(s.1.cmp(&t.1))
+        let by_edge = s.0.cmp(&t.0).then_with(|| along(s).total_cmp(&along(t)));
+        by_edge.then_with(|| order(place(&s.1), place(&t.1)))
     });
-    // One vertex for rings that touch there.
-    touches.dedup_by(|s, t| s.0 == t.0 && points.points()[s.1] == points.points()[t.1]);
+    touches.dedup_by(|s, t| s.0 == t.0 && place(&s.1) == place(&t.1));
 }
 
-/// Puts the vertices of each that lie on edges of the other there.
-pub(super) fn conform(input: &Shapes, mask: Mask) -> (Subject<'_>, Mask) {
+/// Puts the vertices of each that lie on edges of the other there; with `mend` also those of the subject
+/// that lie on its own edges.
+pub(super) fn conform(input: &Shapes, mask: Mask, mend: bool) -> (Subject<'_>, Mask) {
     let mut touches = Touches::between(input, &mask);
+    if mend {
+        touches.within(input);
+    }
     if touches.is_empty() {
         return (Subject::plain(input), mask);
     }
     touches.sort(input, &mask.near.shapes);
-    let conformed = divide_mask(input, &mask, &touches);
-    if touches.on_subject.is_empty() {
-        return (Subject::plain(input), conformed);
-    }
-    (divide_subject(input, &mask, &touches), conformed)
+    let subject = divide_subject(input, &mask, &touches);
+    (subject, divide_mask(input, &mask, &touches))
 }
 
 fn divide_mask(input: &Shapes, mask: &Mask, touches: &Touches) -> Mask {
@@ -219,13 +242,20 @@ fn divide_mask(input: &Shapes, mask: &Mask, touches: &Touches) -> Mask {
 }
 
 fn divide_subject<'a>(input: &'a Shapes, mask: &Mask, touches: &Touches) -> Subject<'a> {
+    let theirs = |&(edge, vertex): &(usize, usize)| (edge, mask.near.shapes.points()[vertex]);
+    let own = |&(edge, vertex): &(usize, usize)| (edge, input.points()[vertex]);
+    let mut inserted: Vec<(usize, DVec2)> =
+        touches.on_subject.iter().map(theirs).chain(touches.on_self.iter().map(own)).collect();
+    if inserted.is_empty() {
+        return Subject::plain(input);
+    }
+    sort_along(&mut inserted, input, |&p| p);
     let (mut shapes, mut sources) = (Shapes::new(), Vec::new());
-    let mut inserted = touches.on_subject.iter().peekable();
+    let mut inserted = inserted.into_iter().peekable();
     rebuild(input, &mut shapes, |k, ring| {
         ring.push(input.points()[k]);
         sources.push(Source::Vertex(k));
-        while let Some(&(_, vertex)) = inserted.next_if(|touch| touch.0 == k) {
-            let p = mask.near.shapes.points()[vertex];
+        while let Some((_, p)) = inserted.next_if(|touch| touch.0 == k) {
             ring.push(p);
             sources.push(on_edge(input, k, p));
         }

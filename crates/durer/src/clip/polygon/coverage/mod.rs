@@ -22,6 +22,16 @@ use crate::math::Rect;
 use crate::trace::NoTrace;
 use conform::{Mask, Subject};
 
+/// How to cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Which points the subject encloses.
+    pub rule: FillRule,
+    /// Whether the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
+    /// lie there but for rounding, and would leave slivers.
+    pub mend: bool,
+}
+
 /// What is left of polygons.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cut {
@@ -38,11 +48,11 @@ pub struct Cut {
     pub lost: bool,
 }
 
-/// The subject's part inside the mask (intersection) or outside of it (difference). Which points the
-/// subject encloses is told by `rule`; the mask is valid polygons.
+/// The subject's part inside the mask (intersection) or outside of it (difference). The mask is valid
+/// polygons.
 ///
 /// ```
-/// use durer::clip::polygon::{BooleanOp, FillRule, Shapes, coverage, rectangle::Prepared};
+/// use durer::clip::polygon::{BooleanOp, Shapes, coverage, rectangle::Prepared};
 /// use durer::math::DVec2;
 ///
 /// // Two neighbours of different size, cut through the edge that they share.
@@ -50,7 +60,7 @@ pub struct Cut {
 /// let wide = Shapes::from_rings([[p(1., 2.), p(2., 5.), p(-300., 5.), p(-300., 2.)]]);
 /// let narrow = Shapes::from_rings([[p(2., 5.), p(1., 2.), p(4., 2.), p(4., 5.)]]);
 /// let mask = Prepared::new(Shapes::from_rings([[p(-1., 3.), p(5., 3.1), p(5., 4.2), p(-1., 4.)]]))?;
-/// let cut = |shapes| coverage::cut(shapes, &mask, BooleanOp::Intersection, FillRule::EvenOdd);
+/// let cut = |shapes| coverage::cut(shapes, &mask, BooleanOp::Intersection, &Default::default());
 /// let (left, right) = (cut(&wide)?.shapes, cut(&narrow)?.shapes);
 /// let shared: Vec<_> = left.points().iter().filter(|p| right.points().contains(p)).collect();
 /// assert_eq!(shared.len(), 2);
@@ -60,18 +70,23 @@ pub struct Cut {
 ///
 /// # Errors
 /// As [`overlay()`](fn@super::overlay) for the subject's points.
-pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, rule: FillRule) -> Result<Cut> {
+pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, options: &Options) -> Result<Cut> {
     let near = subject.bounds().map(|bounds| Near::around(mask, &bounds)).unwrap_or_default();
-    let (subject, mask) = conform::conform(subject, Mask::new(near));
-    solve(&subject, &mask, op, rule)
+    let (subject, mask) = conform::conform(subject, Mask::new(near), options.mend);
+    solve(&subject, &mask, op, options.rule)
 }
 
-/// All of one set of polygons with all of another, the points that the first encloses told by `rule`.
+/// All of one set of polygons with all of another, of which the second are valid.
 ///
 /// # Errors
 /// As [`overlay()`](fn@super::overlay).
-pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, rule: FillRule) -> Result<Cut> {
-    solve(&Subject::plain(first), &Mask::new(Near::all(second.clone())), op, rule)
+pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, options: &Options) -> Result<Cut> {
+    let mask = Mask::new(Near::all(second.clone()));
+    if !options.mend {
+        return solve(&Subject::plain(first), &mask, op, options.rule);
+    }
+    let (first, mask) = conform::conform(first, mask, true);
+    solve(&first, &mask, op, options.rule)
 }
 
 /// The grid that [`cut`] and [`join`] decide on: the finest that the overlay takes.
