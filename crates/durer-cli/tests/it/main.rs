@@ -13,6 +13,7 @@ mod drawings;
 mod faults;
 mod fill;
 mod harness;
+mod kinds;
 mod limits;
 mod looks;
 mod memory;
