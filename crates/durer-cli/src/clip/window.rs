@@ -49,7 +49,7 @@ impl Window {
 pub fn region(text: &str) -> Result<Window, String> {
     let [xl, yb, xr, yt] = corners(text)?;
     // From the eastern hemisphere to the western one: all else is a slip.
-    if !(0.0 < xl && xl <= 180.0 && -180.0 <= xr && xr < 0.0 && yb < yt) {
+    if !(0.0 < xl && xl <= 180.0 && (-180.0..0.0).contains(&xr) && yb < yt) {
         return window(text).map(Window::Plain);
     }
     let rect = |xl: f64, xr: f64| {
