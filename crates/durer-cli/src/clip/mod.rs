@@ -54,7 +54,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     };
     let (from, mut reader) = crate::layer::open(&args.input, args.from, args.layer.as_deref())?;
     let to = output_format(args, from)?;
-    let shift = Shift::new(&args.systems, from, &reader.system())?;
+    let shift = Shift::new(&args.systems, &reader.system());
     let fields = Fields::new(&args.fields);
     let mut report = Report {
         version: env!("CARGO_PKG_VERSION"),
@@ -304,7 +304,7 @@ impl Job<'_> {
             self.report.given.add(feature.geometry.as_ref());
             self.report.srids.add(feature.srid);
             // Tiles are in their own system, which features are brought to before.
-            if self.args.region.tiles.is_some() && !self.shifted(&mut feature) {
+            if self.args.region.tiles.is_some() && !self.shifted(&mut feature)? {
                 feature.geometry = None;
             }
             positions += feature.geometry.as_ref().map_or(0, Geometry::len);
@@ -321,7 +321,7 @@ impl Job<'_> {
         writer: &mut Option<Writer<Sink>>,
         feature: &mut Feature,
     ) -> Result<(), Failure> {
-        if self.args.region.tiles.is_none() && !self.shifted(feature) {
+        if self.args.region.tiles.is_none() && !self.shifted(feature)? {
             return Ok(());
         }
         if writer.is_none() {
@@ -391,13 +391,13 @@ impl Job<'_> {
     }
 
     /// Whether a feature has a place in the system that is asked for, to which it is brought.
-    fn shifted(&mut self, feature: &mut Feature) -> bool {
+    fn shifted(&mut self, feature: &mut Feature) -> Result<bool, Failure> {
         match &mut self.shift {
             Some(shift) => shift.apply(feature),
             None => {
                 let from = self.args.systems.from_crs.as_ref();
                 feature.srid = from.map_or(feature.srid, |from| from.code());
-                true
+                Ok(true)
             }
         }
     }

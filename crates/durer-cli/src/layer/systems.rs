@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::crs::{Crs, Transform};
-use durer_formats::geo::{Feature, GeoFormat, System};
+use durer_formats::geo::{Feature, System};
 
 /// The options.
 #[derive(Debug, Clone, Default, Args)]
@@ -23,7 +23,13 @@ pub struct SystemArgs {
 /// Brings features to another system.
 #[derive(Debug, Clone)]
 pub struct Shift {
-    transform: Transform,
+    to: Crs,
+    /// The way there, where all coordinates come from one system.
+    common: Option<Transform>,
+    /// The way there for features that tell the number of their own system: the number of the last one, and its way.
+    own: Option<(i32, Transform)>,
+    /// Why nothing is known of the file as a whole.
+    unknown: String,
     /// The system of what comes out.
     pub system: System,
     /// Features that have no place there.
@@ -31,38 +37,52 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// What options ask for, of a file of a format that says it is in a system; nothing where nothing is asked for.
-    ///
-    /// # Errors
-    /// Where the system that coordinates come from is not known.
-    pub fn new(
-        args: &SystemArgs,
-        format: GeoFormat,
-        told: &System,
-    ) -> Result<Option<Self>, Failure> {
-        let Some(to) = &args.to_crs else { return Ok(None) };
-        let from = match &args.from_crs {
-            Some(from) => Ok(from.clone()),
-            None => Crs::of_system(told),
+    /// What options ask for, of a file that says it is in a system; nothing where nothing is asked for.
+    pub fn new(args: &SystemArgs, told: &System) -> Option<Self> {
+        let to = args.to_crs.clone()?;
+        let from = args.from_crs.clone().map_or_else(|| Crs::of_system(told), Ok);
+        let (common, unknown) = match from {
+            Ok(from) => (Some(Transform::new(&from, &to)), String::new()),
+            Err(why) => (None, why),
         };
-        let from = from.map_err(|e| {
-            Failure::Usage(format!(
-                "--to-crs: {e} ({}); --from-crs says where coordinates come from",
-                format.name()
-            ))
-        })?;
-        Ok(Some(Self { transform: Transform::new(&from, to), system: to.system(), lost: 0 }))
+        let system = to.system();
+        Some(Self { to, common, own: None, unknown, system, lost: 0 })
+    }
+
+    /// The way from a feature's system.
+    fn transform(&mut self, srid: Option<i32>) -> Result<&Transform, Failure> {
+        if let Some(common) = &self.common {
+            return Ok(common);
+        }
+        let wrong = |why: &str| {
+            Failure::Usage(format!("--to-crs: {why}; --from-crs says where coordinates come from"))
+        };
+        let srid = srid.ok_or_else(|| wrong(&self.unknown))?;
+        let known = self.own.take().filter(|(own, _)| *own == srid);
+        let own = match known {
+            Some(known) => known,
+            None => {
+                let from = Crs::of_system(&System::of_code(srid)).map_err(|e| wrong(&e))?;
+                (srid, Transform::new(&from, &self.to))
+            }
+        };
+        Ok(&self.own.insert(own).1)
     }
 
     /// Brings a feature there; false where it has no place there.
-    pub fn apply(&mut self, feature: &mut Feature) -> bool {
+    ///
+    /// # Errors
+    /// Where the system that it comes from is not known.
+    pub fn apply(&mut self, feature: &mut Feature) -> Result<bool, Failure> {
+        if let Some(geometry) = feature.geometry.take() {
+            feature.geometry = self.transform(feature.srid)?.geometry(&geometry);
+            if feature.geometry.is_none() {
+                self.lost += 1;
+                return Ok(false);
+            }
+        }
         feature.srid = self.system.code;
-        let Some(geometry) = &feature.geometry else { return true };
-        let moved = self.transform.geometry(geometry);
-        let is_there = moved.is_some();
-        self.lost += u64::from(!is_there);
-        feature.geometry = moved;
-        is_there
+        Ok(true)
     }
 
     /// What is to be told at the end.
