@@ -11,6 +11,7 @@ mod drawings;
 mod faults;
 mod fill;
 mod harness;
+mod kinds;
 mod limits;
 mod looks;
 mod memory;
