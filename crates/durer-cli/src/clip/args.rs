@@ -122,8 +122,8 @@ pub struct CuttingArgs {
     pub algorithm: Option<Algorithm>,
     /// The grid for vertices of overlays, in units of the coordinates [default: 2^-40 of the extent]
     ///
-    /// Without it, vertices of the input keep their coordinates and crossings are rounded to the
-    /// finest grid. With it, and by `vatti` always, all vertices of polygons are snapped. Powers of two are best.
+    /// Without it, vertices of the input keep their coordinates, and cuts lie where edges of the input
+    /// cross, correctly rounded. With it, and by `vatti` always, all vertices of polygons are snapped. Powers of two are best.
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::positive)]
     pub grid: Option<f64>,
 }
