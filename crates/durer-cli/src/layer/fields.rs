@@ -178,7 +178,7 @@ impl Fields {
             return;
         }
         let keys: Vec<String> = fields.iter().map(Member::key).collect();
-        self.missing.retain(|name| !keys.contains(name) && !(has_id && name == "id"));
+        self.missing.retain(|name| !(keys.contains(name) || has_id && name == "id"));
         let room = LISTED.saturating_sub(self.known.len());
         self.known.extend(keys.into_iter().take(room));
     }
