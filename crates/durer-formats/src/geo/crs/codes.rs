@@ -69,14 +69,11 @@ const ALBERS: [Conic; 3] = [
     (3338, NAD83, "NAD_1983_Alaska_Albers", [-154.0, 50.0], [55.0, 65.0], [0.0, 0.0]),
 ];
 
-/// A row of [`TRANSVERSE`].
-type Transverse = (i32, i32, &'static str, f64, f64, [f64; 2]);
+/// A cylinder: its number, that of longitudes and latitudes, name, meridian, scale and offset.
+type Cylinder = (i32, i32, &'static str, f64, f64, [f64; 2]);
 
-/// A row of [`AZIMUTHAL`].
-type Azimuthal = (i32, i32, &'static str, [f64; 2], [f64; 2]);
-
-/// Transverse Mercator: number, longitudes and latitudes, name, meridian, scale, offset.
-const TRANSVERSE: [Transverse; 4] = [
+/// Transverse Mercator.
+const TRANSVERSE: [Cylinder; 4] = [
     (
         2193,
         4167,
@@ -90,8 +87,11 @@ const TRANSVERSE: [Transverse; 4] = [
     (2180, 9702, "ETRF2000-PL_CS92", 19.0, 0.9993, [500_000.0, -5_300_000.0]),
 ];
 
-/// Lambert's azimuthal: number, longitudes and latitudes, name, origin, offset.
-const AZIMUTHAL: [Azimuthal; 9] = [
+/// A plane: its number, that of longitudes and latitudes, name, origin and offset.
+type Plane = (i32, i32, &'static str, [f64; 2], [f64; 2]);
+
+/// Lambert's azimuthal.
+const AZIMUTHAL: [Plane; 9] = [
     (3035, ETRS89, "ETRS_1989_LAEA", [10.0, 52.0], [4_321_000.0, 3_210_000.0]),
     (6931, WGS84, "WGS_1984_NSIDC_EASE_Grid_2_North", [0.0, 90.0], [0.0, 0.0]),
     (6932, WGS84, "WGS_1984_NSIDC_EASE_Grid_2_South", [0.0, -90.0], [0.0, 0.0]),
