@@ -69,11 +69,12 @@ impl<W: Write + Seek> PmTiles<W> {
         })?;
         self.addressed += 1;
         let known = self.small.get(tile).copied();
-        if let (Some((offset, _)), Some(last)) = (known, self.entries.last_mut()) {
-            if last.offset == offset && last.id + u64::from(last.run) == id {
-                last.run += 1;
-                return Ok(());
-            }
+        if let (Some((offset, _)), Some(last)) = (known, self.entries.last_mut())
+            && last.offset == offset
+            && last.id + u64::from(last.run) == id
+        {
+            last.run += 1;
+            return Ok(());
         }
         let offset = match known {
             Some((offset, _)) => offset,

@@ -34,10 +34,9 @@ impl Links {
 
     /// Puts another neighbour in the place of one.
     fn replace(&mut self, point: u32, old: u32, new: u32) {
-        if let Some(pair) = self.0.get_mut(point as usize) {
-            if let Some(link) = pair.iter_mut().find(|link| **link == old) {
-                *link = new;
-            }
+        let pair = self.0.get_mut(point as usize);
+        if let Some(link) = pair.and_then(|pair| pair.iter_mut().find(|link| **link == old)) {
+            *link = new;
         }
     }
 }
