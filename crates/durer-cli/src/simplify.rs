@@ -95,8 +95,7 @@ struct Report {
     #[serde(rename = "in")]
     given: Counts,
     out: Counts,
-    /// Rings that enclosed too little.
-    dropped_rings: u64,
+    dropped: Dropped,
     warnings: Vec<String>,
     total_seconds: f64,
     peak_memory_bytes: Option<u64>,
@@ -125,7 +124,7 @@ pub fn run(args: &SimplifyArgs) -> Result<(), Failure> {
         tolerance: None,
         given: Counts::default(),
         out: Counts::default(),
-        dropped_rings: 0,
+        dropped: Dropped::default(),
         warnings: Vec::new(),
         total_seconds: 0.0,
         peak_memory_bytes: None,
@@ -147,11 +146,14 @@ fn tell(messages: &Messages, args: &SimplifyArgs, reader: &Source, report: &mut 
     if report.given.features == 0 {
         found.push("there is no feature in it".to_owned());
     }
-    if args.drop_below.is_none() && report.dropped_rings > 0 {
-        let rings = report.dropped_rings;
-        found.push(format!("{rings} rings have less than three different points and are left out"));
-    } else if gone > 0 {
-        found.push(format!("{gone} features enclose less than --drop-below and are left out"));
+    let degenerate = report.dropped.degenerate;
+    if degenerate > 0 {
+        found.push(format!(
+            "{degenerate} rings of fewer than three different points, or lines of fewer than two, are left out"
+        ));
+    }
+    if gone > 0 {
+        found.push(format!("{gone} features have nothing left and are left out"));
     }
     for message in found {
         messages.warning(&name, &message);
@@ -188,10 +190,8 @@ fn write(
         };
         for mut feature in features {
             let had = feature.geometry.is_some();
-            // Rings that had less than three different points have less than three points now.
-            let area = args.drop_below.unwrap_or(0.0);
-            let dropped = &mut report.dropped_rings;
-            feature.geometry = feature.geometry.and_then(|g| large(g, area, dropped));
+            let least = args.drop_below.unwrap_or(0.0);
+            feature.geometry = feature.geometry.and_then(|g| report.dropped.left(g, least));
             if feature.geometry.is_some() || !had {
                 report.out.add(feature.geometry.as_ref());
                 writer.write(&feature).map_err(|e| failure(&args.output, &e))?;
@@ -266,29 +266,60 @@ fn chains(geometry: &mut Geometry, f: &mut dyn FnMut(&mut Points, bool)) {
     }
 }
 
-/// What is large enough; `dropped` counts rings.
-fn large(geometry: Geometry, area: f64, dropped: &mut u64) -> Option<Geometry> {
-    let is_large = |ring: &Points| ring.len() > 2 && signed_area(&ring.xy).abs() >= area;
-    let mut polygon = |mut rings: Vec<Points>| {
-        let before = rings.len();
-        if !rings.first().is_some_and(is_large) {
-            rings.clear();
+/// Which runs of points are left out.
+#[derive(Debug, Default, Clone, Copy, Serialize)]
+struct Dropped {
+    /// Rings that enclose less than asked for.
+    small_rings: u64,
+    /// Rings of fewer than three points and lines of fewer than two, as the input had them but for repeated points.
+    degenerate: u64,
+}
+
+impl Dropped {
+    /// Whether a ring stays.
+    fn keeps(&mut self, ring: &Points, least: f64) -> bool {
+        let degenerate = ring.len() < 3;
+        let small = !degenerate && signed_area(&ring.xy).abs() < least;
+        self.degenerate += u64::from(degenerate);
+        self.small_rings += u64::from(small);
+        !degenerate && !small
+    }
+
+    fn polygon(&mut self, mut rings: Vec<Points>, least: f64) -> Option<Vec<Points>> {
+        // Without its outer ring there is nothing of a polygon.
+        let outer = rings.first().is_some_and(|ring| self.keeps(ring, least));
+        let mut first = true;
+        rings.retain(|ring| std::mem::take(&mut first) || self.keeps(ring, least));
+        Some(rings).filter(|_| outer)
+    }
+
+    fn line(&mut self, line: &Points) -> bool {
+        self.degenerate += u64::from(line.len() < 2);
+        line.len() > 1
+    }
+
+    /// What is left of a geometry. What was empty before stays.
+    fn left(&mut self, geometry: Geometry, least: f64) -> Option<Geometry> {
+        if geometry.is_empty() {
+            return Some(geometry);
         }
-        rings.retain(is_large);
-        *dropped += (before - rings.len()) as u64;
-        (!rings.is_empty()).then_some(rings)
-    };
-    match geometry {
-        Geometry::Polygon(rings) => polygon(rings).map(Geometry::Polygon),
-        Geometry::MultiPolygon(polygons) => {
-            let left: Vec<_> = polygons.into_iter().filter_map(polygon).collect();
-            (!left.is_empty()).then_some(Geometry::MultiPolygon(left))
-        }
-        Geometry::Collection(parts) => {
-            let left: Vec<_> =
-                parts.into_iter().filter_map(|part| large(part, area, dropped)).collect();
-            (!left.is_empty()).then_some(Geometry::Collection(left))
-        }
-        other => Some(other),
+        let left = match geometry {
+            Geometry::LineString(line) if !self.line(&line) => return None,
+            Geometry::MultiLineString(mut lines) => {
+                lines.retain(|line| self.line(line));
+                Geometry::MultiLineString(lines)
+            }
+            Geometry::Polygon(rings) => Geometry::Polygon(self.polygon(rings, least)?),
+            Geometry::MultiPolygon(polygons) => {
+                let left = polygons.into_iter().filter_map(|rings| self.polygon(rings, least));
+                Geometry::MultiPolygon(left.collect())
+            }
+            Geometry::Collection(parts) => {
+                let left = parts.into_iter().filter_map(|part| self.left(part, least));
+                Geometry::Collection(left.collect())
+            }
+            other => other,
+        };
+        Some(left).filter(|left| !left.is_empty())
     }
 }

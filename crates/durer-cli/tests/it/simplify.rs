@@ -52,8 +52,8 @@ fn shares_streams_and_drops() {
     assert!(none.ends_with("LINESTRING (0 9, 6 9)\n"), "{none}");
     let ended =
         folder.must("simplify parcels.wkt --tolerance 0.5 --drop-below 2 -o big.wkt --json");
-    assert!(ended.err.contains("1 features enclose less than --drop-below"), "{}", ended.err);
-    assert_eq!(ended.json()["dropped_rings"], 2);
+    assert!(ended.err.contains("1 features have nothing left"), "{}", ended.err);
+    assert_eq!(ended.json()["dropped"]["small_rings"], 2);
     assert!(!text(&folder, "big.wkt").contains("5 1"));
     folder.must("simplify parcels.wkt --each --tolerance 0.5 -o each.wkt");
     folder.must("simplify parcels.wkt --tolerance 0.5 -o all.wkt");
@@ -62,6 +62,21 @@ fn shares_streams_and_drops() {
     let ended = folder.must("simplify empty.wkt --from wkt --keep 5 -o empty.geojson");
     assert!(ended.err.contains("there is no feature in it"), "{}", ended.err);
     assert!(text(&folder, "empty.geojson").contains("FeatureCollection"));
+}
+
+#[test]
+fn what_is_no_ring_is_told() {
+    let folder = Folder::new();
+    folder.write(
+        "a.wkt",
+        "MULTIPOLYGON (((0 0, 1 0, 0 0, 0 0)), ((2 0, 3 0, 2 1, 2 0), (5 5, 5 5, 5 5, 5 5)))\n\
+         LINESTRING (7 7, 7 7)\nPOLYGON EMPTY\n",
+    );
+    let ended = folder.must("simplify a.wkt --tolerance 0.1 -o b.wkt --json");
+    assert!(ended.err.contains("3 rings of fewer than three different points"), "{}", ended.err);
+    assert!(ended.err.contains("1 features have nothing left"), "{}", ended.err);
+    let text = text(&folder, "b.wkt");
+    assert_eq!(text, "MULTIPOLYGON (((2 0, 3 0, 2 1, 2 0)))\nPOLYGON EMPTY\n");
 }
 
 #[test]
