@@ -26,6 +26,8 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::polygon::weiler_atherton::INFO,
     &clip::polygon::greiner_hormann::INFO,
     &clip::polygon::vatti::INFO,
+    &clip::polygon::validity::INFO,
+    &clip::polygon::mismatch::INFO,
     &clip::polygon::overlay::INFO,
     &clip::polygon::rectangle::INFO,
     &clip::simplify::douglas_peucker::INFO,

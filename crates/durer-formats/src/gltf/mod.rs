@@ -166,9 +166,9 @@ fn tell_missing_scene(root: &Root, nodes: &[usize], model: &mut Model) {
     let scenes = root.scenes.len();
     if scenes == 0 && !nodes.is_empty() {
         model.warn(Place::Path("scenes".into()), "there is none; all root nodes are shown");
-    } else if let Some(scene) = root.scene.map(Whole::index).filter(|&s| s >= scenes && scenes > 0)
-    {
-        let message = format!("there is no scene {scene}, only {scenes}; the first one is shown");
+    } else if let Some(scene) = root.scene.map(Whole::index).filter(|&s| s >= scenes) {
+        let shown = if scenes == 0 { "nothing is shown" } else { "the first one is shown" };
+        let message = format!("there is no scene {scene} among {scenes}; {shown}");
         model.warn(Place::Path("scene".into()), message);
     }
 }

@@ -132,7 +132,7 @@ fn a_default_scene_that_is_missing_gives_way_to_what_there_is() {
     };
     let none = "scenes: there is none; all root nodes are shown";
     assert_eq!(shown(r#""scene": 0,"#), ("ab".into(), none.into()));
-    let first = "scene: there is no scene 7, only 1; the first one is shown";
+    let first = "scene: there is no scene 7 among 1; the first one is shown";
     assert_eq!(shown(r#""scene": 7, "scenes": [{"nodes": [1]}],"#), ("b".into(), first.into()));
 }
 

@@ -10,10 +10,23 @@
 
 use super::Shapes;
 use super::rectangle::Prepared;
+use crate::info::{Class, Info};
 use crate::math::{DVec2, Orientation, Rect, in_sector, orient2d};
 use crate::{Error, Result};
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "validity",
+    title: "Validity of polygons by exact predicates",
+    authors: "Open Geospatial Consortium",
+    year: 2004,
+    source: "ISO 19125-1, Simple feature access, 6.1.11",
+    class: Class::ObjectSpace,
+    cost: "O(n √n) for n edges of usual data",
+    limits: "some thousand comparisons per edge",
+};
 
 /// So many pairs of edges are looked at per edge, at most.
 pub(super) const PAIRS_PER_EDGE: usize = 4096;

@@ -152,6 +152,8 @@ fn valid(
         }
     }
     snapped.end_polygon();
-    let (none, options) = (Shapes::new(), overlay::Options::with_rule(fill));
+    let none = Shapes::new();
+    // On whole numbers no neighbour needs a point in the middle of a straight border.
+    let options = overlay::Options { drop_collinear: true, ..overlay::Options::with_rule(fill) };
     Ok(overlay(&snapped, &none, BooleanOp::Union, &options, &mut NoTrace)?.shapes)
 }
