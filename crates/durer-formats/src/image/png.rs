@@ -66,7 +66,7 @@ pub struct DeepImage {
 /// tells [`bits_per_sample`].
 ///
 /// # Errors
-/// As [`super::decode`]; also [`Error::Decode`] for what is no PNG.
+/// As [`super::decode`]; also [`Decode`](crate::Error::Decode) for what is no PNG.
 pub fn decode_deep(bytes: &[u8], name: &str, limits: &Limits) -> Result<DeepImage> {
     if !bytes.starts_with(MAGIC) {
         return Err(broken(name, "is no PNG, the one format with 16 bits per channel"));

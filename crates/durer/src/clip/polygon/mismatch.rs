@@ -94,7 +94,7 @@ pub struct Misfit {
 ///
 /// # Errors
 /// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] where it takes more than some thousand
-/// comparisons per edge; with `gap_width` as [`overlay`].
+/// comparisons per edge; with `gap_width` as [`overlay()`].
 pub fn misfits(features: &[Shapes], gap_width: Option<f64>) -> Result<Vec<Misfit>> {
     let layer = Layer::new(features)?;
     let mut found = Found::default();

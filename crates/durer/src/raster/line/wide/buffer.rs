@@ -3,7 +3,7 @@
 //!
 //! The Minkowski sum with a disc (R. Wein, *Exact and efficient construction of planar Minkowski sums using the
 //! convolution method*, ESA 2006), by the outline of a wide line: the border of a polygon as a stroke of twice the
-//! distance is joined to it or taken from it by [`overlay`]. Class: object space. Cost: that of an overlay
+//! distance is joined to it or taken from it by [`overlay()`]. Class: object space. Cost: that of an overlay
 //! of the outline, O((n + k) log n) for n points of it and k crossings. Limits: arcs are polygons within a tolerance.
 
 use super::{Cap, Join, Stroke, outline};
@@ -85,7 +85,7 @@ impl Options {
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`] for options out of range; otherwise as [`overlay`].
+/// [`Error::Parameter`] for options out of range; otherwise as [`overlay()`].
 pub fn of_polygons(shapes: &Shapes, rule: FillRule, options: &Options) -> Result<Shapes> {
     let mut border = Path::new();
     for ring in shapes.rings() {
