@@ -3,17 +3,20 @@
 //!
 //! M. Davis, *Polygonal coverage validation in JTS*, 2022: by edges, without an overlay. An edge of two features must run
 //! the other way in the second one; edges that cross, run along each other in part, or end on one another
-//! have no counterpart. A feature that shares no edge with another one is looked for in it. Gaps are holes
+//! have no counterpart. At common vertices no edge may lead into the other, and a polygon that meets no border of
+//! another feature is looked for in it. Gaps are holes
 //! of the union. Class: object space, exact but for the gaps. Cost: as of [validity](super::validity), and of a union where gaps are
 //! asked for.
 
 use super::rectangle::Prepared;
-use super::validity::{Edge, Meeting, PAIRS_PER_EDGE, crossing, each_pair, edges_of, meeting};
+use super::validity::{
+    Edge, Meeting, PAIRS_PER_EDGE, Way, crossing, each_pair, edges_of, meeting, ways,
+};
 use super::{
     BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions, signed_area,
 };
 use crate::info::{Class, Info};
-use crate::math::{DVec2, Rect};
+use crate::math::{DVec2, Orientation, Rect, in_sector, orient2d};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
@@ -100,6 +103,7 @@ pub fn misfits(features: &[Shapes], gap_width: Option<f64>) -> Result<Vec<Misfit
     let mut found = Found::default();
     layer.compare_edges(&mut found)?;
     layer.compare_directions(&mut found);
+    layer.compare_corners(&mut found);
     layer.look_inside(&mut found);
     if let Some(width) = gap_width {
         layer.find_gaps(width, &mut found)?;
@@ -118,14 +122,16 @@ struct Layer<'a> {
 #[derive(Default)]
 struct Found {
     misfits: Vec<Misfit>,
-    /// Features that share an edge or have a misfit: they need not be looked for in each other.
-    related: BTreeSet<[usize; 2]>,
+    /// Features that overlap: they need not be looked for in each other.
+    overlapping: BTreeSet<[usize; 2]>,
 }
 
 impl Found {
     fn add(&mut self, mismatch: Mismatch, at: DVec2, features: [usize; 2]) {
         let features = sorted(features);
-        self.related.insert(features);
+        if mismatch == Mismatch::Overlap {
+            self.overlapping.insert(features);
+        }
         self.misfits.push(Misfit { mismatch, at: at + 0.0, features });
     }
 
@@ -217,7 +223,6 @@ impl<'a> Layer<'a> {
         for ([a, _], owners) in owners {
             for (i, &(feature, direction)) in owners.iter().enumerate() {
                 for &(other, its) in owners[..i].iter().filter(|(other, _)| *other != feature) {
-                    found.related.insert(sorted([feature, other]));
                     if its == direction {
                         let at = DVec2::from(a.map(f64::from_bits));
                         found.add(Mismatch::Overlap, at, [feature, other]);
@@ -227,7 +232,31 @@ impl<'a> Layer<'a> {
         }
     }
 
-    /// Finds features in others that they share no edge with.
+    /// Finds vertices of two features at which an edge of one leads into the other.
+    fn compare_corners(&self, found: &mut Found) {
+        let of_ring = |ring: usize| {
+            let (feature, turned) = self.rings[ring];
+            let inside_left = move |[at, from, to]: Way| match turned {
+                true => [at, to, from],
+                false => [at, from, to],
+            };
+            ways(self.whole.ring(ring)).map(move |way| (feature, inside_left(way)))
+        };
+        let mut corners: Vec<(usize, Way)> = (0..self.rings.len()).flat_map(of_ring).collect();
+        corners.sort_by_key(|(feature, [at, ..])| (key(*at), *feature));
+        for there in corners.chunk_by(|(_, [p, ..]), (_, [q, ..])| p == q) {
+            for &(feature, [at, from, to]) in there {
+                for &(other, corner) in there.iter().filter(|(other, _)| *other != feature) {
+                    if [from, to].into_iter().any(|end| leads_into(end, corner)) {
+                        found.add(Mismatch::Overlap, at, [feature, other]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds features that have a polygon in another one. What has no edge that crosses the other's or leads into
+    /// it is wholly inside or outside.
     fn look_inside(&self, found: &mut Found) {
         let boxes: Vec<Option<Rect>> = self.features.iter().map(Shapes::bounds).collect();
         let mut order: Vec<(Rect, usize)> =
@@ -239,7 +268,7 @@ impl<'a> Layer<'a> {
             active.retain(|(other, _)| other.max().x >= around.min().x);
             for &(other, feature) in &active {
                 let apart = other.max().y < around.min().y || other.min().y > around.max().y;
-                if apart || found.related.contains(&sorted([feature, next])) {
+                if apart || found.overlapping.contains(&sorted([feature, next])) {
                     continue;
                 }
                 for (inner, outer) in [(next, feature), (feature, next)] {
@@ -279,6 +308,14 @@ impl<'a> Layer<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether an edge from a corner to `end` leads between its sides, to the left of the way through it, and not along them.
+fn leads_into(end: DVec2, [at, from, to]: Way) -> bool {
+    let along = |side: DVec2| {
+        orient2d(at, side, end) == Orientation::Collinear && (side - at).dot(end - at) > 0.0
+    };
+    !along(from) && !along(to) && in_sector(at, to, end, from)
 }
 
 fn has_same_ends(p: &Edge, q: &Edge) -> bool {
@@ -349,6 +386,26 @@ mod tests {
         let within = [(Mismatch::Overlap, (1.0, 1.0), [0, 1])];
         assert_eq!(found(&[feature(&[LEFT]), inside.clone()]), within);
         assert_eq!(found(&[inside, feature(&[LEFT])]), within);
+    }
+
+    #[test]
+    fn overlaps_are_found_where_no_edges_cross() {
+        // Through two corners of the square, and back around it.
+        let through = [(4.0, 0.0), (9.0, 9.0), (0.0, 4.0)];
+        let ends = [(0.0, 4.0), (4.0, 0.0)].map(|at| (Mismatch::Overlap, at, [0, 1]));
+        assert_eq!(found(&[feature(&[LEFT]), feature(&[&through])]), ends);
+        let back: Vec<(f64, f64)> = through.into_iter().rev().collect();
+        assert_eq!(found(&[feature(&[&back]), feature(&[LEFT])]), ends);
+        // A neighbour that shares an edge, and has a second polygon inside.
+        let mut two = feature(&[&[(4.0, 0.0), (9.0, 2.0), (4.0, 4.0)]]);
+        two.append(&feature(&[&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0)]]));
+        assert_eq!(found(&[feature(&[LEFT]), two]), [(Mismatch::Overlap, (1.0, 1.0), [0, 1])]);
+        // Around a corner that three share, and with a corner in a corner: nothing.
+        let rest = [
+            feature(&[&[(4.0, 0.0), (8.0, 0.0), (8.0, 4.0), (4.0, 4.0)]]),
+            feature(&[&[(0.0, 4.0), (4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (0.0, 8.0)]]),
+        ];
+        assert_eq!(found(&[&[feature(&[LEFT])], &rest[..]].concat()), []);
     }
 
     #[test]

@@ -1,0 +1,291 @@
+//! Whether polygons are valid, exactly; and if not, what is wrong and where.
+//!
+//! Valid is what the OGC's Simple Features (ISO 19125-1, 2004, 6.1.11) call so, whichever way rings run: rings that
+//! neither cross nor touch themselves, that touch one another in single points only, holes within their outer ring and
+//! not in one another, polygons outside one another, and the inside of each polygon in one piece. All
+//! decisions are made by exact predicates.
+//!
+//! Edges are compared within horizontal slabs, in the order of their left ends. Cost: O(n √n) for n edges of usual data,
+//! O(n²) where most of them overlap in both axes; that is cut off at some thousand comparisons per edge.
+
+mod edges;
+mod nesting;
+#[cfg(test)]
+mod tests;
+mod touches;
+
+pub(super) use edges::{Edge, Meeting, crossing, each_pair, edges_of, meeting};
+pub(super) use touches::{Way, ways};
+
+use super::Shapes;
+use crate::info::{Class, Info};
+use crate::math::DVec2;
+use crate::{Error, Result};
+use nesting::{each_misplaced, nests};
+use touches::{Touches, ways_touch};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "validity",
+    title: "Validity of polygons by exact predicates",
+    authors: "Open Geospatial Consortium",
+    year: 2004,
+    source: "ISO 19125-1, Simple feature access, 6.1.11",
+    class: Class::ObjectSpace,
+    cost: "O(n √n) for n edges of usual data",
+    limits: "some thousand comparisons per edge",
+};
+
+/// So many pairs of edges are looked at per edge, at most.
+pub(super) const PAIRS_PER_EDGE: usize = 4096;
+
+/// What two edges may have in common, beside consecutive ones their common vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Touching {
+    /// Nothing.
+    No,
+    /// A vertex of both.
+    AtVertices,
+    /// Where they are of different rings, a point that is a vertex of one of them: what the OGC allows.
+    AtPoints,
+}
+
+/// What is wrong with polygons.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Fault {
+    /// A ring has less than three different points.
+    FewPoints,
+    /// Two edges cross, or a ring passes through another where they touch.
+    Crossing,
+    /// Two edges run along each other: spikes, doubled rings, rings with a common side.
+    Overlap,
+    /// A ring touches itself.
+    SelfTouch,
+    /// A hole lies outside its polygon's outer ring.
+    HoleOutside,
+    /// A hole lies in another hole of its polygon.
+    HoleInHole,
+    /// A polygon lies in another one.
+    PolygonInPolygon,
+    /// Touching rings cut the inside of a polygon in two.
+    Divided,
+}
+
+impl Fault {
+    /// Returns the words for it, as a message says them.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::FewPoints => "a ring has less than three different points",
+            Self::Crossing => "edges cross",
+            Self::Overlap => "edges run along each other",
+            Self::SelfTouch => "a ring touches itself",
+            Self::HoleOutside => "a hole lies outside its outer ring",
+            Self::HoleInHole => "a hole lies in another hole",
+            Self::PolygonInPolygon => "a polygon lies in another",
+            Self::Divided => "touching rings divide the inside",
+        }
+    }
+
+    /// Returns its name, as programs read it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FewPoints => "few-points",
+            Self::Crossing => "crossing",
+            Self::Overlap => "overlap",
+            Self::SelfTouch => "self-touch",
+            Self::HoleOutside => "hole-outside",
+            Self::HoleInHole => "hole-in-hole",
+            Self::PolygonInPolygon => "polygon-in-polygon",
+            Self::Divided => "divided",
+        }
+    }
+}
+
+/// A fault and its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flaw {
+    /// What is wrong.
+    pub fault: Fault,
+    /// A point of it: of crossings the nearest to it, of rings a vertex.
+    pub at: DVec2,
+    /// The two rings, by their index over all polygons; twice the same where it is one.
+    pub rings: [usize; 2],
+}
+
+/// Returns whether all rings are simple and, but for what is allowed, apart from one another, holes lie in
+/// their outer rings and polygons outside one another. `false` too where that takes too many comparisons.
+///
+/// With [`Touching::AtPoints`], polygons whose inside is [divided](Fault::Divided) pass.
+pub fn is_valid(shapes: &Shapes, touching: Touching) -> bool {
+    edges_are_apart(shapes, touching) && nests(shapes)
+}
+
+/// Returns what is wrong with polygons, sorted by rings and places; empty where they are valid. Points that come
+/// twice in a row are no fault.
+///
+/// Crossings and touches of one pair of rings come once per place. Where edges cross or overlap, it is not
+/// looked at how rings lie in each other.
+///
+/// ```
+/// use durer::clip::polygon::{Shapes, validity::{Fault, flaws}};
+/// use durer::math::DVec2;
+///
+/// let bow = [(0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 4.0)].map(DVec2::from);
+/// let flaws = flaws(&Shapes::from_rings([bow]))?;
+/// assert_eq!((flaws[0].fault, flaws[0].at), (Fault::Crossing, DVec2::splat(2.0)));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::NonFinite`] for a coordinate that is not finite, [`Error::Limit`] where it takes more than some thousand
+/// comparisons per edge.
+pub fn flaws(shapes: &Shapes) -> Result<Vec<Flaw>> {
+    if let Some(index) = shapes.points().iter().position(|p| !p.is_finite()) {
+        return Err(Error::NonFinite { what: "point", index });
+    }
+    let (shapes, mut found) = without_repeats(shapes);
+    let edges = edges_of(&shapes);
+    let pairs = edges.len().saturating_mul(PAIRS_PER_EDGE);
+    let size = |ring: usize| shapes.ring_range(ring).len();
+    let mut touches = Touches::default();
+    let all = each_pair(&edges, pairs, |p, q| {
+        match meeting(p, q) {
+            Meeting::Apart => {}
+            Meeting::Crossing => found.push(p.flaw(q, Fault::Crossing, crossing(p, q))),
+            Meeting::Overlap(at) => found.push(p.flaw(q, Fault::Overlap, at)),
+            Meeting::Touch(at) if p.ring != q.ring => touches.add(p, q, at),
+            Meeting::Touch(_) if are_neighbours(p, q, size(p.ring)) => {}
+            Meeting::Touch(at) => found.push(p.flaw(q, Fault::SelfTouch, at)),
+        }
+        true
+    });
+    if !all {
+        let (value, limit) = (edges.len() as u64, PAIRS_PER_EDGE as u64);
+        return Err(Error::Limit { what: "comparisons of edges", value, limit });
+    }
+    found.extend(touches.passages(&shapes));
+    if found.iter().all(|f| f.fault == Fault::SelfTouch) {
+        found.extend(touches.divisions(&shapes));
+        each_misplaced(&shapes, |flaw| {
+            found.push(flaw);
+            true
+        });
+    }
+    sort(&mut found);
+    Ok(found)
+}
+
+/// Sorts flaws and leaves each place of each pair of rings once.
+fn sort(flaws: &mut Vec<Flaw>) {
+    let place = |p: DVec2, q: DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
+    flaws.sort_by(|a, b| a.rings.cmp(&b.rings).then(place(a.at, b.at)).then(a.fault.cmp(&b.fault)));
+    flaws.dedup_by(|a, b| a == b);
+}
+
+/// The shapes without points that come twice in a row, and the rings that are none then.
+fn without_repeats(shapes: &Shapes) -> (Shapes, Vec<Flaw>) {
+    let (mut kept, mut few) = (Shapes::new(), Vec::new());
+    for polygon in shapes.polygons() {
+        for ring in polygon.ring_indices() {
+            let mut points = shapes.ring(ring).to_vec();
+            points.dedup();
+            while points.len() > 1 && points.first() == points.last() {
+                points.pop();
+            }
+            let mut different: Vec<DVec2> = Vec::new();
+            points.iter().for_each(|p| {
+                if different.len() < 3 && !different.contains(p) {
+                    different.push(*p);
+                }
+            });
+            if different.len() < 3 {
+                let at = points.first().copied().unwrap_or_default();
+                few.push(Flaw { fault: Fault::FewPoints, at, rings: [ring; 2] });
+                points.clear();
+            }
+            kept.push_ring(points);
+        }
+        kept.end_polygon();
+    }
+    (kept, few)
+}
+
+/// Returns whether no two edges cross, overlap or, but for what is allowed, touch. `false` too for rings of less than three
+/// points, for points that come twice in a row, and where it takes too many comparisons.
+pub fn edges_are_apart(shapes: &Shapes, touching: Touching) -> bool {
+    each_fault(shapes, touching, |_| false)
+}
+
+/// Returns the points, by their indices, at the ends of edges that are not apart, each once; `None` where it
+/// takes too many comparisons.
+pub(super) fn faults(shapes: &Shapes, touching: Touching) -> Option<Vec<usize>> {
+    let mut points = Vec::new();
+    let all = each_fault(shapes, touching, |ends| {
+        points.extend_from_slice(ends);
+        !ends.is_empty()
+    });
+    points.sort_unstable();
+    points.dedup();
+    all.then_some(points)
+}
+
+/// Calls with the points of each fault, with none where it takes too many comparisons, as long as
+/// the answer is yes; returns whether that was to the end.
+fn each_fault(shapes: &Shapes, touching: Touching, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+    for ring in 0..shapes.ring_count() {
+        let range = shapes.ring_range(ring);
+        if range.len() < 3 && !tell(&[range.start]) {
+            return false;
+        }
+    }
+    let edges = edges_of(shapes);
+    if !edges.iter().filter(|e| e.a == e.b).all(|e| tell(&e.ends)) {
+        return false;
+    }
+    let size = |ring: usize| shapes.ring_range(ring).len();
+    let most = edges.len().saturating_mul(PAIRS_PER_EDGE);
+    let mut told = true;
+    let all = each_pair(&edges, most, |p, q| {
+        let apart = match meeting(p, q) {
+            Meeting::Apart => true,
+            Meeting::Crossing | Meeting::Overlap(_) => false,
+            Meeting::Touch(at) => may_touch(p, q, at, size(p.ring), touching),
+        };
+        told = apart || tell(&[p.ends[0], p.ends[1], q.ends[0], q.ends[1]]);
+        told
+    });
+    // Too many comparisons, unless the answer was no.
+    let all = all || told && tell(&[]);
+    all && (touching == Touching::No || each_passage(shapes, tell))
+}
+
+/// Whether two edges may touch in a point.
+fn may_touch(p: &Edge, q: &Edge, at: DVec2, size: usize, touching: Touching) -> bool {
+    match touching {
+        Touching::No => are_neighbours(p, q, size),
+        Touching::AtVertices => [p.a, p.b].contains(&at) && [q.a, q.b].contains(&at),
+        Touching::AtPoints => p.ring != q.ring || are_neighbours(p, q, size),
+    }
+}
+
+/// Whether one edge of a ring of `size` edges follows the other.
+fn are_neighbours(p: &Edge, q: &Edge, size: usize) -> bool {
+    p.ring == q.ring && ((p.index + 1) % size == q.index || (q.index + 1) % size == p.index)
+}
+
+/// Calls with the vertices in which rings do not only touch but pass through each other, as long as the
+/// answer is yes; returns whether that was to the end.
+fn each_passage(shapes: &Shapes, mut tell: impl FnMut(&[usize]) -> bool) -> bool {
+    let of_ring = |ring| shapes.ring_range(ring).zip(ways(shapes.ring(ring)));
+    let mut ways: Vec<(usize, Way)> = (0..shapes.ring_count()).flat_map(of_ring).collect();
+    // Zeros of either sign are one place.
+    let order = |p: &DVec2, q: &DVec2| {
+        (p.x + 0.0).total_cmp(&(q.x + 0.0)).then((p.y + 0.0).total_cmp(&(q.y + 0.0)))
+    };
+    ways.sort_by(|(_, [p, ..]), (_, [q, ..])| order(p, q));
+    ways.chunk_by(|(_, [p, ..]), (_, [q, ..])| p == q).all(|through| {
+        through.iter().enumerate().all(|(i, &(index, way))| {
+            through[..i].iter().all(|&(other, w)| ways_touch(way, w) || tell(&[index, other]))
+        })
+    })
+}
