@@ -1,6 +1,6 @@
 //! Cameras and lights of files, brought from their nodes to the world.
 
-use crate::{Place, Warning};
+use crate::{Model, Place, Warning};
 use durer::math::{DMat4, DVec3, Vec3};
 use durer::scene::{BoundingSphere, Camera, Light, LightKind, NamedCamera, Projection, Scene};
 use std::cell::LazyCell;
@@ -94,6 +94,15 @@ fn camera(lens: &Lens, world: DMat4, behind: impl Fn(DVec3) -> f64) -> Result<Na
     let camera = Camera { eye, target: eye - backward, up, projection, near, far };
     let aspect = lens.aspect.filter(|a| a.is_finite() && *a > 0.0);
     Ok(NamedCamera { name: String::new(), camera, aspect })
+}
+
+/// Tells of lights that do not shine, because [`ReadOptions::own_lights`](crate::ReadOptions) asks for none.
+pub(crate) fn tell_dark(count: usize, model: &mut Model) {
+    if count > 0 {
+        let message =
+            format!("{count} lights of the file do not shine unless its own lights are asked for");
+        model.warn(Place::Whole, message);
+    }
 }
 
 /// A light of a format that says by itself how light falls off with distance.
