@@ -73,8 +73,8 @@ pub enum Command {
     #[command(after_long_help = crate::tiles::EXAMPLES, after_help = "--help shows more, and examples.")]
     Tiles(Box<crate::tiles::TilesArgs>),
     /// Leave out points of map data; borders that neighbours share stay shared
-    #[command(after_long_help = crate::simplify::EXAMPLES, after_help = "--help shows more, and examples.")]
-    Simplify(Box<crate::simplify::SimplifyArgs>),
+    #[command(after_long_help = crate::regions::SIMPLIFY, after_help = "--help shows more, and examples.")]
+    Simplify(Box<crate::regions::SimplifyArgs>),
     /// Make polygons that reach a distance farther than features do, or less far
     #[command(after_long_help = crate::regions::BUFFER, after_help = "--help shows more, and examples.")]
     Buffer(Box<crate::regions::BufferArgs>),

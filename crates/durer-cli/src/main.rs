@@ -33,7 +33,6 @@ mod resources;
 mod section;
 mod shape;
 mod sides;
-mod simplify;
 mod staging;
 mod thumbnailer;
 mod tiles;
@@ -138,7 +137,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Fix(args) => on_threads(&args.files.running, || regions::fix(&args)),
         Command::Check(args) => on_threads(&args.running, || regions::check(&args)),
         Command::Tiles(args) => on_threads(&args.running, || tiles::run(&args)),
-        Command::Simplify(args) => on_threads(&args.running, || simplify::run(&args)),
+        Command::Simplify(args) => on_threads(&args.files.running, || regions::simplify(&args)),
         Command::Warp(args) => on_threads(&args.running, || warp::run(&args)),
         Command::Draw(args) => on_threads(&args.running, || draw::run(&args)),
         Command::Fill(args) => on_threads(&args.running, || fill::run(&args)),

@@ -90,9 +90,9 @@ pub struct Cut {
     pub repaired: bool,
     /// Whether a polygon of the mask was smaller than a cell of the grid there.
     pub lost: bool,
-    /// How many points of polygons are not where edges cross or vertices were, but on the grid.
+    /// Points of polygons that stay on the grid, not where edges cross or vertices were.
     pub snapped: usize,
-    /// How many lines have no length, so that nothing is left of them.
+    /// Lines without length, of which nothing is left.
     pub flat: usize,
 }
 
@@ -100,7 +100,7 @@ pub struct Cut {
 #[derive(Debug, Default)]
 pub struct Made {
     pub area: Area,
-    /// Whether those were not valid.
+    /// Whether the others were not valid.
     pub repaired: bool,
     /// As of [`Cut`].
     pub snapped: usize,
@@ -202,7 +202,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// What the mask does not come near is kept or dropped whole; valid polygons go by the rectangle clip,
+    /// Keeps or drops whole what the mask does not come near; cuts valid polygons by the rectangle clip,
     /// all others by the overlay.
     fn production(&self, geometry: &Geometry, area: &Area, bounds: &Rect) -> Result<Cut> {
         let keeps = self.rules.keep_valid(&area.shapes);

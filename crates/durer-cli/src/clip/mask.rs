@@ -49,7 +49,7 @@ impl Mask {
         self.polygons.bounds().is_some_and(|own| own.overlaps(bounds))
     }
 
-    /// Whether a box lies wholly inside (true) or outside (false); `None` where its border comes near.
+    /// Returns whether a box is wholly inside; `None` where the mask's border comes near.
     pub fn side(&self, bounds: &Rect) -> Option<bool> {
         if !self.meets(bounds) {
             return Some(false);

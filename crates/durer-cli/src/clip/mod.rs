@@ -85,6 +85,9 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
+/// What is said where features that are joined have different ordinates.
+pub const MIXED: &str = "heights and measures that some features have and others lack are 0 there";
+
 const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles; without them features are only \
                        converted to another format, chosen by --where and the like, or brought to --to-crs";
 
@@ -222,6 +225,9 @@ fn tell(
     }
     if report.flat > 0 {
         found.push(format!("left out: {} lines without length", report.flat));
+    }
+    if report.mixed {
+        found.push(MIXED.to_owned());
     }
     if report.given.features == 0 {
         found.push("there is no feature in it".to_owned());
@@ -475,7 +481,7 @@ impl Job<'_> {
                 let made = area.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 self.report.repaired += u64::from(made.repaired);
                 self.report.snapped += made.snapped as u64;
-                all.append(&made.area);
+                self.report.mixed |= all.append(&made.area);
             }
         }
         let op = self.args.cutting.op;

@@ -30,6 +30,9 @@ pub struct Report {
     pub repaired: u64,
     /// Points of polygons that are not exactly where edges cross, because rings would cross there.
     pub snapped: u64,
+    /// Whether some features that were joined lack heights or measures that others have.
+    #[serde(skip)]
+    pub mixed: bool,
     /// Features with edges that may be meant to go across the 180th meridian.
     #[serde(skip)]
     pub long_ways: u64,

@@ -52,18 +52,26 @@ impl Area {
         self.shapes.end_polygon();
     }
 
-    /// Adds the polygons of another area; heights and measures are kept where both have the same.
-    pub fn append(&mut self, other: &Self) {
-        if self.shapes.is_empty() {
-            *self = other.clone();
-            return;
+    /// Adds the polygons of another area. Heights and measures that one of both lacks are 0 there; returns whether
+    /// that is so.
+    pub fn append(&mut self, other: &Self) -> bool {
+        if self.shapes.is_empty() || other.shapes.is_empty() {
+            if self.shapes.is_empty() {
+                self.clone_from(other);
+            }
+            return false;
+        }
+        let mixed = self.dimensions != other.dimensions;
+        self.dimensions = self.dimensions.with(other.dimensions);
+        if self.dimensions != Dimensions::Xy {
+            self.zm.resize(self.shapes.points().len(), Zm::default());
+            self.zm.extend_from_slice(&other.zm);
         }
         self.shapes.append(&other.shapes);
-        if self.dimensions == other.dimensions {
-            self.zm.extend_from_slice(&other.zm);
-        } else {
-            (self.dimensions, self.zm) = (Dimensions::Xy, Vec::new());
+        if self.dimensions != Dimensions::Xy {
+            self.zm.resize(self.shapes.points().len(), Zm::default());
         }
+        mixed
     }
 
     /// A polygon, or several, or nothing.

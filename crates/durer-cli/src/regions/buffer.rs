@@ -105,7 +105,7 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
         |feature: &Feature, geometry: &Geometry| buffer(geometry, feature.fill_rule, &options);
     if !args.dissolve {
         let geometry = |f: &Feature, g: &Geometry| Ok((Area::flat(one(f, g)?).into_geometry(), ()));
-        return job.each(geometry, |_, _, ()| {});
+        return job.each(geometry, |_, feature, _, ()| feature.fill_rule = FillRule::EvenOdd);
     }
     let mut all = Shapes::new();
     loop {
@@ -120,6 +120,10 @@ pub fn run(args: &BufferArgs) -> Result<(), Failure> {
         }
     }
     let whole = joined(&Area::flat(all)).map_err(|e| job.fail(e))?;
+    let given = job.report.given.features;
+    if whole.shapes.is_empty() && given > 0 {
+        job.report.warnings.push(format!("nothing is left of {given} features"));
+    }
     let features = whole.into_geometry().map(Feature::of_geometry).into_iter().collect();
     job.write(features)
 }

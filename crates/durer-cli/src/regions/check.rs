@@ -26,6 +26,8 @@ A polygon is valid as the OGC's Simple Features say: rings neither cross nor tou
 in points only, holes lie in their outer ring, the inside is in one piece. A layer is a coverage where no two \
 features overlap and neighbours have the same points on the border that they share.
 
+What had to be mended or left out to read the file counts as `reading`.
+
 Exit codes: 0 nothing is wrong; 1 something is, or the file cannot be read; 2 wrong use.";
 
 /// The options of `durer check`.
@@ -128,6 +130,11 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     }
     messages.warnings(&name, reader.warnings());
     report.warnings = reader.warnings().iter().map(ToString::to_string).collect();
+    // What was mended or left out while reading is not as it should be either.
+    let mended = reader.warnings().len() as u64 + reader.further_warnings();
+    if mended > 0 {
+        report.counts.insert("reading", mended);
+    }
     report.valid = report.counts.is_empty();
     drop(messages);
     if args.json {
@@ -157,8 +164,9 @@ impl Report {
         }
     }
 
+    /// The faults that have a place.
     fn faults_counted(&self) -> u64 {
-        self.counts.values().sum()
+        self.counts.iter().filter(|(kind, _)| **kind != "reading").map(|(_, n)| n).sum()
     }
 
     /// Adds the lines that have no length.

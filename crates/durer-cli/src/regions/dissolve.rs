@@ -1,7 +1,7 @@
 //! `durer dissolve`.
 
 use super::{FilesArgs, Job};
-use crate::clip::{Area, Rules, joined};
+use crate::clip::{Area, MIXED, Rules, joined};
 use crate::failure::Failure;
 use clap::Args;
 use durer_formats::geo::{Feature, Geometry, Member, Points};
@@ -47,7 +47,7 @@ struct Group {
 pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
     let mut job = Job::new(&args.files)?;
     let (mut groups, mut places) = (Vec::new(), BTreeMap::new());
-    let mut missing = args.by.clone();
+    let (mut missing, mut mixed) = (args.by.clone(), false);
     loop {
         let features = job.batch(super::BATCH)?;
         if features.is_empty() {
@@ -74,15 +74,18 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
             let repaired = made.as_ref().is_some_and(|made| made.repaired);
             *job.report.repaired.get_or_insert(0) += u64::from(repaired);
             if let Some(made) = made {
-                group.area.append(&made.area);
+                mixed |= group.area.append(&made.area);
             }
             if let Some(geometry) = &feature.geometry {
-                group.add(geometry);
+                mixed |= group.add(geometry);
             }
         }
     }
     if job.report.given.features > 0 && !missing.is_empty() {
         job.report.warnings.push(format!("no feature has the field {}", missing.join(", ")));
+    }
+    if mixed {
+        job.report.warnings.push(MIXED.to_owned());
     }
     let repaired = job.report.repaired.unwrap_or(0);
     if repaired > 0 {
@@ -101,15 +104,22 @@ fn value(own: &[Member], name: &str) -> Member {
 }
 
 impl Group {
-    /// Adds the lines and points of a geometry.
-    fn add(&mut self, geometry: &Geometry) {
+    /// Adds the lines and points of a geometry; returns whether these points have other ordinates.
+    fn add(&mut self, geometry: &Geometry) -> bool {
         match geometry {
-            Geometry::Point(points) | Geometry::MultiPoint(points) => self.points.append(points),
+            Geometry::Point(points) | Geometry::MultiPoint(points) => {
+                let (dimensions, first) = (self.points.dimensions, self.points.is_empty());
+                self.points.append(points);
+                return !first && points.dimensions != dimensions;
+            }
             Geometry::LineString(line) => self.lines.push(line.clone()),
             Geometry::MultiLineString(lines) => self.lines.extend(lines.iter().cloned()),
-            Geometry::Collection(parts) => parts.iter().for_each(|part| self.add(part)),
+            Geometry::Collection(parts) => {
+                return parts.iter().fold(false, |mixed, part| self.add(part) | mixed);
+            }
             Geometry::Polygon(_) | Geometry::MultiPolygon(_) => {}
         }
+        false
     }
 
     fn into_feature(mut self) -> durer::Result<Feature> {

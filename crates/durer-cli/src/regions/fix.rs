@@ -41,7 +41,8 @@ pub fn run(args: &FixArgs) -> Result<(), Failure> {
         let geometry = fixed(geometry, &Rules { fill, grid: None }, &mut changed)?;
         Ok((geometry, changed))
     };
-    let note = |report: &mut super::Report, number: u64, changed: bool| {
+    let note = |report: &mut super::Report, feature: &mut Feature, number: u64, changed: bool| {
+        feature.fill_rule = FillRule::EvenOdd;
         if changed {
             let count = report.repaired.get_or_insert(0);
             *count += 1;

@@ -1,15 +1,17 @@
-//! Commands that make other features of features: `durer buffer`, `durer dissolve`, `durer fix`; and `durer check`, which
-//! says what is wrong with them.
+//! Commands that make other features of features: `durer simplify`, `durer buffer`, `durer dissolve`, `durer fix`; and
+//! `durer check`, which says what is wrong with them.
 
 mod buffer;
 mod check;
 mod dissolve;
 mod fix;
+mod simplify;
 
 pub use buffer::{BufferArgs, EXAMPLES as BUFFER, run as buffer};
 pub use check::{CheckArgs, EXAMPLES as CHECK, run as check};
 pub use dissolve::{DissolveArgs, EXAMPLES as DISSOLVE, run as dissolve};
 pub use fix::{EXAMPLES as FIX, FixArgs, run as fix};
+pub use simplify::{EXAMPLES as SIMPLIFY, SimplifyArgs, run as simplify};
 
 use crate::args::RunningArgs;
 use crate::clip::Counts;
@@ -21,6 +23,7 @@ use clap::{Args, ValueHint};
 use durer_formats::geo::{Feature, GeoFormat, Geometry};
 use rayon::prelude::*;
 use serde::Serialize;
+use simplify::Simplified;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -64,6 +67,9 @@ struct Report {
     /// Features that were changed because they were not valid.
     #[serde(skip_serializing_if = "Option::is_none")]
     repaired: Option<u64>,
+    /// What `durer simplify` says.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    simplified: Option<Simplified>,
     warnings: Vec<String>,
     total_seconds: f64,
     peak_memory_bytes: Option<u64>,
@@ -79,6 +85,8 @@ struct Job<'a> {
     reader: Source,
     fields: Fields,
     report: Report,
+    /// Features of which nothing is left.
+    gone: u64,
     messages: Messages,
     start: Instant,
 }
@@ -102,7 +110,7 @@ impl<'a> Job<'a> {
             ..Report::default()
         };
         let fields = Fields::new(&args.fields);
-        Ok(Self { args, to, reader, fields, report, messages, start })
+        Ok(Self { args, to, reader, fields, report, gone: 0, messages, start })
     }
 
     fn fail(&self, what: impl std::fmt::Display) -> Failure {
@@ -130,7 +138,7 @@ impl<'a> Job<'a> {
     fn each<N: Send>(
         mut self,
         change: impl Fn(&Feature, &Geometry) -> durer::Result<(Option<Geometry>, N)> + Sync,
-        mut note: impl FnMut(&mut Report, u64, N),
+        mut note: impl FnMut(&mut Report, &mut Feature, u64, N),
     ) -> Result<(), Failure> {
         let mut writer = None;
         loop {
@@ -151,13 +159,14 @@ impl<'a> Job<'a> {
                 let changed = changed.map_err(|e| self.fail(format!("feature {number}: {e}")))?;
                 if let Some((geometry, noted)) = changed {
                     feature.geometry = geometry;
-                    feature.fill_rule = Default::default();
-                    note(&mut self.report, number, noted);
+                    note(&mut self.report, &mut feature, number, noted);
                 }
-                if feature.geometry.is_some() || !had {
-                    self.report.out.add(feature.geometry.as_ref());
-                    writer.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
+                if feature.geometry.is_none() && had {
+                    self.gone += 1;
+                    continue;
                 }
+                self.report.out.add(feature.geometry.as_ref());
+                writer.write(&feature).map_err(|e| failure(&self.args.output, &e))?;
             }
         }
         self.end(writer)
@@ -192,7 +201,12 @@ impl<'a> Job<'a> {
         let own = std::mem::take(&mut self.report.warnings);
         let none =
             (self.report.given.features == 0).then(|| "there is no feature in it".to_owned());
-        let own: Vec<String> = own.into_iter().chain(self.fields.told()).chain(none).collect();
+        let gone = self.gone;
+        let gone =
+            (gone > 0).then(|| format!("{gone} features have nothing left and are left out"));
+        let odd = self.report.simplified.as_ref().and_then(Simplified::told);
+        let more = [self.fields.told(), none, odd, gone].into_iter().flatten();
+        let own: Vec<String> = own.into_iter().chain(more).collect();
         own.iter().for_each(|warning| messages.warning(&name, warning));
         let read = self.reader.warnings().iter().map(ToString::to_string);
         self.report.warnings = told.into_iter().chain(read).chain(own).collect();

@@ -31,7 +31,9 @@ fn buffers_have_the_area_that_they_should() {
     let shrunk = "buffer in.geojson --where n=2 --distance=-1 -o out.geojson --json";
     assert_eq!(folder.must(shrunk).json()["out"]["area"], 4.0);
     let gone = "buffer in.geojson --where n=2 --distance=-2 -o out.geojson --json";
-    assert_eq!(folder.must(gone).json()["out"]["features"], 0);
+    let gone = folder.must(gone);
+    assert_eq!(gone.json()["out"]["features"], 0);
+    assert!(gone.err.contains("1 features have nothing left and are left out"), "{}", gone.err);
     let line = "buffer in.geojson --where n=5 --distance 2 --cap butt -o out.geojson --json";
     assert_eq!(folder.must(line).json()["out"]["area"], 40.0);
     assert_eq!(features(&folder, "out.geojson")[0]["properties"]["n"], 5);
@@ -56,6 +58,11 @@ fn features_with_one_value_become_one() {
     assert!(told.err.contains("1 features are not valid"), "{}", told.err);
     let told = folder.must("dissolve in.geojson --by owner -o out.geojson --json");
     assert!(told.err.contains("no feature has the field owner"), "{}", told.err);
+    assert!(told.err.contains("some features have and others lack"), "{}", told.err);
+    assert_eq!(
+        features(&folder, "out.geojson")[0]["geometry"]["geometries"][0]["coordinates"][0][0][0][2],
+        7
+    );
     // One feature of all: polygons and the line. What overlaps counts once.
     assert_eq!(told.json()["out"]["area"], 8.0 + 34.0);
 }
@@ -100,4 +107,9 @@ fn faults_are_told_with_their_places() {
     let ended = folder.must("check good.geojson --coverage --gap-width 1");
     assert_eq!(ended.out, b"good.geojson: 1 features, nothing is wrong\n");
     assert_eq!(folder.run("check good.geojson --gap-width 1").code, 2);
+    // What was mended while reading is not as it should be.
+    let open =
+        r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4]],[[1,1],[2,1],[1,1],[1,1]]]}"#;
+    folder.write("open.geojson", open);
+    folder.run("check open.geojson").fails(1, "reading");
 }

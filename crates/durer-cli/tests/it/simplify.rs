@@ -57,6 +57,8 @@ fn shares_streams_and_drops() {
     assert!(!text(&folder, "big.wkt").contains("5 1"));
     folder.must("simplify parcels.wkt --each --tolerance 0.5 -o each.wkt");
     folder.must("simplify parcels.wkt --tolerance 0.5 -o all.wkt");
+    folder.must("simplify parcels.wkt --where a=1 --tolerance 0.5 -o chosen.wkt");
+    assert_eq!(text(&folder, "chosen.wkt"), "");
     assert_eq!(folder.read("each.wkt"), folder.read("all.wkt"));
     folder.write("empty.wkt", "");
     let ended = folder.must("simplify empty.wkt --from wkt --keep 5 -o empty.geojson");
