@@ -1,5 +1,9 @@
 //! What can be said on the command line.
 
+mod choices;
+
+pub use choices::{Cull, Samples, Shading, Shadows, ToneMap, UpAxis};
+
 use crate::config::ConfigArgs;
 use crate::drawing::args::DrawingArgs;
 use crate::encoding::EncodingArgs;
@@ -10,11 +14,11 @@ use crate::sides::{Sides, sides};
 use crate::staging::StageArgs;
 use crate::values::{self, Algorithm, Size};
 use crate::{color, lights};
-use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use durer::math::{DVec2, DVec3, Rect};
 use durer::pipeline::{self, Background, Exposure};
-use durer::scene::{self, Light};
+use durer::scene::Light;
 use durer::view::layout::Layout;
 use durer::view::projection::NamedView;
 use std::path::PathBuf;
@@ -449,158 +453,4 @@ pub struct RunningArgs {
     /// All warnings, and what was done
     #[arg(short, long)]
     pub verbose: bool,
-}
-
-/// `--aa`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Samples {
-    /// One, at the centre: no anti-aliasing
-    #[value(name = "1")]
-    One,
-    /// Four
-    #[value(name = "4")]
-    Four,
-    /// Sixteen
-    #[value(name = "16")]
-    Sixteen,
-    /// Sixty-four: by the A-buffer
-    #[value(name = "64")]
-    SixtyFour,
-}
-
-/// `--shadows`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Shadows {
-    /// No shadows
-    None,
-    /// By maps of what each light sees
-    Map,
-    /// By rays to the lights; with the algorithm ray
-    Rays,
-}
-
-/// `--shading`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Shading {
-    /// One intensity per face
-    Flat,
-    /// Intensities at the vertices, interpolated
-    Gouraud,
-    /// Normals interpolated, Blinn's highlights
-    Phong,
-    /// glTF's formula
-    MetallicRoughness,
-    /// The base colour as it is
-    Unlit,
-}
-
-/// `--tone-map`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum ToneMap {
-    /// Colours up to white as they are; brighter ones keep their hue and grow paler
-    None,
-    /// Nearly as they are up to 0.8, then compressed; for pictures of goods
-    KhronosNeutral,
-    /// The look of film
-    Aces,
-    /// Soft; bright colours grow pale
-    Agx,
-}
-
-/// `--cull`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Cull {
-    /// No faces
-    None,
-    /// Faces seen from behind
-    Back,
-    /// Faces seen from behind whose material is single-sided, as glTF has it
-    Material,
-}
-
-/// `--up-axis`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum UpAxis {
-    /// glTF, most OBJ and PLY files
-    Y,
-    /// STL, 3MF
-    Z,
-    /// Seen from +z
-    X,
-    /// Seen from +z, as pictures whose rows count downwards
-    #[value(name = "-y")]
-    NegY,
-    /// Seen from -y
-    #[value(name = "-z")]
-    NegZ,
-    /// Seen from +z
-    #[value(name = "-x")]
-    NegX,
-}
-
-impl From<Samples> for pipeline::Samples {
-    fn from(samples: Samples) -> Self {
-        match samples {
-            Samples::One => Self::One,
-            Samples::Four => Self::Four,
-            // The A-buffer counts sub-pixels, not samples.
-            Samples::Sixteen | Samples::SixtyFour => Self::Sixteen,
-        }
-    }
-}
-
-impl From<Shadows> for pipeline::Shadows {
-    fn from(shadows: Shadows) -> Self {
-        match shadows {
-            Shadows::None => Self::None,
-            Shadows::Map => Self::Map,
-            Shadows::Rays => Self::Rays,
-        }
-    }
-}
-
-impl From<Shading> for pipeline::Shading {
-    fn from(shading: Shading) -> Self {
-        match shading {
-            Shading::Flat => Self::Flat,
-            Shading::Gouraud => Self::Gouraud,
-            Shading::Phong => Self::Phong,
-            Shading::MetallicRoughness => Self::MetallicRoughness,
-            Shading::Unlit => Self::Unlit,
-        }
-    }
-}
-
-impl From<ToneMap> for pipeline::ToneMap {
-    fn from(map: ToneMap) -> Self {
-        match map {
-            ToneMap::None => Self::None,
-            ToneMap::KhronosNeutral => Self::KhronosNeutral,
-            ToneMap::Aces => Self::Aces,
-            ToneMap::Agx => Self::Agx,
-        }
-    }
-}
-
-impl From<Cull> for pipeline::Cull {
-    fn from(cull: Cull) -> Self {
-        match cull {
-            Cull::None => Self::None,
-            Cull::Back => Self::Back,
-            Cull::Material => Self::Material,
-        }
-    }
-}
-
-impl From<UpAxis> for scene::UpAxis {
-    fn from(axis: UpAxis) -> Self {
-        match axis {
-            UpAxis::Y => Self::Y,
-            UpAxis::Z => Self::Z,
-            UpAxis::X => Self::X,
-            UpAxis::NegY => Self::NegY,
-            UpAxis::NegZ => Self::NegZ,
-            UpAxis::NegX => Self::NegX,
-        }
-    }
 }
