@@ -364,7 +364,7 @@ pub struct LookArgs {
     pub exposure: Option<Exposure>,
     /// Surroundings that mirrors show: `studio`, `none`, or a panorama in a Radiance file (.hdr)
     ///
-    /// In a studio stand bright screens, which metals and clear coats mirror; `none` leaves but a sky over
+    /// In a studio stand bright screens, which metals and what is smooth mirror; `none` leaves but a sky over
     /// the ground. A panorama (equirectangular) lights the model too, in place of the default light and
     /// beside the file's or --light.
     #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment::environment)]

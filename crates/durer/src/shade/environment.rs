@@ -3,7 +3,7 @@
 //! Mirrors show nothing where there is nothing around them. By itself the surrounding is a hemisphere of
 //! sky over one of ground, in closed form: a function of the height over the horizon alone, a slope from
 //! nadir to zenith and a soft step at the horizon, both of which can be blurred for rough surfaces without
-//! any table. In place of it metals and clear layers may mirror a [`Studio`], and everything a
+//! any table. In place of it metals, smooth plastics and clear layers may mirror a [`Studio`], and everything a
 //! [`Panorama`], which then is the light from all around too.
 
 use super::lane::{Lane, Vec3Lane};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// What surrounds a scene, as a picture's options name it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Surroundings {
-    /// Metals and clear layers mirror a studio; it goes with the camera where the lights do.
+    /// Metals, smooth plastics and clear layers mirror a studio; it goes with the camera where the lights do.
     #[default]
     Studio,
     /// Nothing but the sky over the ground that lights make.
@@ -50,7 +50,7 @@ pub enum Mirrored {
     /// Sky and ground.
     #[default]
     Sky,
-    /// Metals and clear layers a studio, other things sky and ground.
+    /// Metals, smooth plastics and clear layers a studio, other things sky and ground.
     Studio(Studio),
     /// A panorama, to which matte surfaces owe light too.
     Panorama {
@@ -89,13 +89,13 @@ impl Environment {
         Vec3Lane::new(k * self.ambient.x, k * self.ambient.y, k * self.ambient.z)
     }
 
-    /// What a mirror shows in the unit direction `r`; `alpha` is its roughness, squared. `clear`: it is of
-    /// metal or a clear layer, and shows a studio where there is one.
+    /// What a mirror shows in the unit direction `r`; `alpha` is its roughness, squared. `lamps`: how bright the
+    /// screens of a studio are, for metal, what is smooth and clear layers; `None` shows no studio.
     #[inline(always)]
-    pub fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, clear: bool) -> Vec3Lane<L> {
-        let k = match &self.mirrored {
-            Mirrored::Studio(studio) if clear => studio.radiance(r, alpha),
-            Mirrored::Panorama { panorama, axes } => {
+    pub fn reflection<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, lamps: Option<L>) -> Vec3Lane<L> {
+        let k = match (&self.mirrored, lamps) {
+            (Mirrored::Studio(studio), Some(lamps)) => studio.radiance(r, alpha, lamps),
+            (Mirrored::Panorama { panorama, axes }, _) => {
                 let seen = panorama.reflection(turned(r, axes), alpha).times_all(self.radiance);
                 return seen.plus(Vec3Lane::splat(alpha, self.ambient));
             }

@@ -159,7 +159,7 @@ impl PreparedLights {
     pub(crate) fn mirrored(&self, direction: Vec3) -> Option<Vec3> {
         let environment = &self.environment;
         environment.is_furnished().then(|| {
-            let seen = environment.reflection(direction.into(), 0.0, true);
+            let seen = environment.reflection(direction.into(), 0.0, Some(1.0));
             tone::display(self.tone.of(seen)).into()
         })
     }

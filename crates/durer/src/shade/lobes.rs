@@ -148,7 +148,8 @@ impl Lobes {
         lights: &PreparedLights,
     ) -> Vec3Lane<L> {
         let alpha = substance.roughness * substance.roughness;
-        let behind = lights.environment.reflection(frame.view.reversed(), alpha, true);
+        let lamps = Some(alpha.splat(1.0));
+        let behind = lights.environment.reflection(frame.view.reversed(), alpha, lamps);
         let metallic = substance.metallic.at_least(0.0).at_most(1.0);
         behind.times(substance.base).scale(metallic.one_minus() * self.through)
     }

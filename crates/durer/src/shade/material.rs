@@ -19,6 +19,10 @@ use crate::scene::{AlphaMode, Material, Scene, ShadingModel};
 use fearless_simd::{Simd, f32x16};
 use fearless_simd_macros::simd;
 
+/// Dielectrics up to this roughness mirror what metals do. What rougher ones mirror is so soft that it cannot
+/// be told from the sky, which takes less time.
+const SMOOTH: f32 = 0.4;
+
 /// Whether a formula takes Phong's inputs.
 fn by_phong(shading: Shading) -> bool {
     !matches!(shading, Shading::MetallicRoughness | Shading::Unlit)
@@ -81,7 +85,7 @@ pub struct PreparedMaterial<'a> {
     specular: Vec3,
     /// Phong's parameters without textures.
     phong: Colors,
-    /// Whether it is a metal, if only in places, or has a clear layer or goes through.
+    /// Whether it is a metal, if only in places, or smooth, or has a clear layer or goes through.
     mirrors: bool,
     /// What the metallic-roughness model has besides.
     lobes: Option<Lobes>,
@@ -113,7 +117,7 @@ impl<'a> PreparedMaterial<'a> {
             emissive: m.emissive,
             specular: m.specular,
             phong: phong_of(m),
-            mirrors: metallic > 0.0 || Lobes::of(m).is_some(),
+            mirrors: metallic > 0.0 || roughness <= SMOOTH || Lobes::of(m).is_some(),
             lobes: Lobes::of(m),
             base_color_slot: slot(m.base_color_texture, base_usage),
             metallic_roughness_slot: slot(m.metallic_roughness_texture, Usage::Data),

@@ -60,9 +60,13 @@ pub(super) struct Substance<L> {
     pub roughness: L,
     /// Part of the ambient light that gets there.
     pub occlusion: L,
-    /// Whether the material shows what surrounds the scene clearly: metals and clear layers.
+    /// Whether the material shows what surrounds the scene clearly: metals, what is smooth, clear layers.
     pub mirrors: bool,
 }
+
+/// By how much brighter screens are mirrored by dielectrics than by metals: those show four hundredths of them,
+/// and metals what they would burn out with.
+const BRIGHTER: f32 = 1.5;
 
 /// What all lights have in common at one point.
 struct Point<L> {
@@ -174,7 +178,8 @@ fn surroundings<L: Lane>(
     let through = (reflected * layers.dielectric_gain).one_minus();
     let environment = &lights.environment;
     let around = environment.diffuse(n).times(p.diffuse).scale(through);
-    around.plus(environment.reflection(mirrored, p.alpha, substance.mirrors).times(specular))
+    let lamps = substance.mirrors.then(|| metallic.one_minus() * BRIGHTER + 1.0);
+    around.plus(environment.reflection(mirrored, p.alpha, lamps).times(specular))
 }
 
 /// The part of one light's colour that leaves towards the eye; π is contained in the light's unit.

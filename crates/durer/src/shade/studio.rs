@@ -63,10 +63,12 @@ const BOXES: [SoftBox; 4] = [
     },
 ];
 
-/// Light of the floor at the horizon, of the wall more than that, and from nadir to zenith besides.
-const FLOOR: f32 = 0.3;
-const WALL: f32 = 0.5;
-const SLOPE: f32 = 0.18;
+/// Light of the floor at the horizon, of the wall more than that; from nadir to zenith besides, and towards
+/// both of them, so that round things show that they are round.
+const FLOOR: f32 = 0.15;
+const WALL: f32 = 0.45;
+const SLOPE: f32 = 0.15;
+const POLES: f32 = 0.55;
 /// Half the width of borders in a perfect mirror, and by how much it grows with roughness.
 const SHARPEST: f32 = 0.035;
 const SPREAD: f32 = 1.1;
@@ -84,28 +86,31 @@ impl Studio {
         Self { axes: world_axes(up) }
     }
 
-    /// Light from the unit direction `r` as a mirror of roughness √`alpha` shows it; about 1 in the mean.
+    /// Light from the unit direction `r` as a mirror of roughness √`alpha` shows it; about 1 in the mean where
+    /// its screens are as bright as metals mirror them, `lamps` = 1.
     #[inline(always)]
-    pub(super) fn radiance<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> L {
+    pub(super) fn radiance<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, lamps: L) -> L {
         alpha.apart(
             #[inline(always)]
-            || self.light(r, alpha),
+            || self.light(r, alpha, lamps),
         )
     }
 
     #[inline(always)]
-    fn light<L: Lane>(&self, r: Vec3Lane<L>, alpha: L) -> L {
+    fn light<L: Lane>(&self, r: Vec3Lane<L>, alpha: L, lamps: L) -> L {
         let r = turned(r, &self.axes);
         let one = alpha.splat(1.0);
         let horizon = step(r.y * (one / (alpha * SPREAD + 0.22)));
         let slope = r.y / (alpha * 0.5 + 1.0);
-        let mut sum = horizon * WALL + slope * SLOPE + FLOOR;
+        // A cosine lobe keeps a quarter of what the square differs from its mean, a third.
+        let poles = r.y * r.y * (alpha * -0.75 + 1.0) + alpha * 0.25;
+        let mut sum = horizon * WALL + slope * SLOPE + poles * POLES + FLOOR;
         let sharpness = one / (alpha * SPREAD + SHARPEST);
         let front = one / (alpha + 0.25);
         for SoftBox { to, sides: [across, along], half, light } in BOXES {
             let shape = band(r.dot_all(across), half[0], sharpness)
                 * band(r.dot_all(along), half[1], sharpness);
-            sum = sum + shape * step(r.dot_all(to) * front) * light;
+            sum = sum + shape * step(r.dot_all(to) * front) * lamps * light;
         }
         sum
     }
@@ -139,7 +144,7 @@ mod tests {
     }
 
     fn radiance(r: Vec3, alpha: f32) -> f32 {
-        Studio::of_world(UpAxis::Y).radiance(r.into(), alpha)
+        Studio::of_world(UpAxis::Y).radiance(r.into(), alpha, 1.0)
     }
 
     #[test]
