@@ -37,6 +37,10 @@ pub const INFO: Info = Info {
     limits: "only what the picture shows takes light away",
 };
 
+/// From so much light on nothing is taken away: a flat floor seen from aside misses a hundredth by the steps of
+/// its depth.
+const OPEN: f32 = 0.98;
+
 /// How occlusion is found and shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
@@ -48,7 +52,8 @@ pub struct Options {
 }
 
 /// Darkens a picture by the occlusion of what it shows. `depth` is its window depth, 1 where nothing is,
-/// `normal` the unit normals in the world, both at the pixels' centres.
+/// `normal` the unit normals in the world, both at the pixels' centres. Light is taken away by the square of what gets
+/// there, as painters do: where things touch it is dark, and open surfaces stay as they are.
 ///
 /// The same bytes at every SIMD level and for any number of threads.
 pub fn apply(
@@ -61,7 +66,8 @@ pub fn apply(
     let light = occlusion(view, depth, normal, options.radius, level);
     for (color, light) in color.data_mut().iter_mut().zip(light.data()) {
         if *light < 1.0 {
-            let left = 1.0 - options.strength * (1.0 - light);
+            let open = (light / OPEN).min(1.0);
+            let left = 1.0 - options.strength * (1.0 - open * open);
             for c in &mut color[..3] {
                 *c = encode_srgb8(decode_srgb8(*c) * left);
             }
