@@ -5,9 +5,9 @@ use crate::Limits;
 use durer::math::DAffine2;
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
-use durer::raster::paint::{Canvas, MaskKind, Paint};
+use durer::raster::paint::{Blend, Canvas, MaskKind, Paint};
 use std::collections::BTreeSet;
-use usvg::{BlendMode, Group, Node};
+use usvg::{Group, Node};
 
 /// Groups, clip paths, masks, patterns and drawings within images may be nested so deep, all together.
 const MAX_DEPTH: u32 = 200;
@@ -66,27 +66,24 @@ impl<'a> Painter<'a> {
         });
     }
 
-    /// A group within its clip path, its mask and its opacity.
+    /// A group within its clip path and its mask, with its opacity and blend mode.
     fn group(&mut self, group: &Group, map: DAffine2) {
         let map = map * paint::affine(group.transform());
         if !group.filters().is_empty() {
             self.warn("filters are not drawn; what they apply to is drawn without them");
         }
-        if group.blend_mode() != BlendMode::Normal {
-            let name = group.blend_mode().to_string();
-            self.warn(format!("blend mode `{name}` is not drawn; `normal` is used in its place"));
-        }
+        let blend = paint::blend(group.blend_mode());
         let clips = group.clip_path().map_or(0, |clip| self.clip(clip, map))
             + group.mask().map_or(0, |mask| self.mask(mask, map));
         let opacity = f64::from(group.opacity().get());
         match single_path(group) {
             _ if !group.should_isolate() => self.nodes(group, map),
             // What paints each pixel once needs no layer.
-            Some(path) => self.path(path, map, opacity),
-            None => {
+            Some(path) if blend == Blend::Normal => self.path(path, map, opacity),
+            _ => {
                 self.canvas.push_group();
                 self.nodes(group, map);
-                self.canvas.pop(opacity);
+                self.canvas.pop_blended(opacity, blend);
             }
         }
         (0..clips).for_each(|_| self.canvas.pop(1.0));

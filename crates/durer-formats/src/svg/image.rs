@@ -3,7 +3,7 @@
 use crate::{Error, Limits, Place, Result};
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::{Paint, Pattern, Spread};
+use durer::raster::paint::{Filter, Paint, Pattern, Spread};
 use durer::target::Pixels;
 use std::sync::Arc;
 
@@ -30,27 +30,27 @@ pub(super) fn paint(
     let cost = decoded.data.len() as u64 * 4;
     let mut image = Pixels::from_data(decoded.width, decoded.height, decoded.data)?;
     let size = DVec2::new(node.size().width().into(), node.size().height().into());
-    let smooth = match node.rendering_mode() {
-        usvg::ImageRendering::OptimizeQuality | usvg::ImageRendering::Smooth => true,
-        usvg::ImageRendering::OptimizeSpeed
-        | usvg::ImageRendering::HighQuality
-        | usvg::ImageRendering::CrispEdges
-        | usvg::ImageRendering::Pixelated => {
-            node.rendering_mode() == usvg::ImageRendering::HighQuality
+    let filter = match node.rendering_mode() {
+        usvg::ImageRendering::OptimizeQuality | usvg::ImageRendering::HighQuality => {
+            Filter::Bicubic
         }
+        usvg::ImageRendering::Smooth => Filter::Bilinear,
+        usvg::ImageRendering::OptimizeSpeed
+        | usvg::ImageRendering::CrispEdges
+        | usvg::ImageRendering::Pixelated => Filter::Nearest,
     };
-    if smooth {
+    if filter != Filter::Nearest {
         image = reduced(image, size, pixel_from_node);
     }
     let pixels = DVec2::new(image.width().into(), image.height().into());
     let (image, transform) = (Arc::new(image), DAffine2::from_scale(size / pixels));
-    let pattern = Pattern { image, transform, spread: Some(Spread::Pad), smooth };
+    let pattern = Pattern { image, transform, spread: Some(Spread::Pad), filter };
     let frame = Path::rectangle(0.0, 0.0, size.x, size.y);
     Ok((Paint::Pattern(Arc::new(pattern)), frame, cost))
 }
 
 /// The image halved, in each direction, until it has less than twice the pixels that it will cover:
-/// mixing four neighbours then misses none.
+/// mixing neighbours then misses none.
 fn reduced(mut image: Pixels<[u8; 4]>, size: DVec2, pixel_from_node: DAffine2) -> Pixels<[u8; 4]> {
     let seen = size
         * DVec2::new(

@@ -2,13 +2,16 @@
 
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
-use durer::raster::paint::{Canvas, Gradient, Paint, Pattern, Shape, Spread};
+use durer::raster::paint::{Blend, Canvas, Filter, Gradient, Paint, Pattern, Shape, Spread};
 use durer::target::Pixels;
 use std::sync::Arc;
 use usvg::tiny_skia_path::{self, PathSegment};
 
 /// Tiles of patterns have at most so many pixels a side; larger ones are painted coarser.
 const MAX_TILE: f64 = 4096.0;
+
+/// Sides of tiles that are so near to whole pixels are whole.
+const WHOLE: f64 = 1e-3;
 
 pub(super) fn affine(t: usvg::Transform) -> DAffine2 {
     let at = |x: f32, y: f32| DVec2::new(x.into(), y.into());
@@ -34,6 +37,29 @@ pub(super) fn path(data: &tiny_skia_path::Path) -> Path {
 pub(super) fn rectangle(rect: usvg::NonZeroRect) -> Path {
     let side = |v: f32| f64::from(v);
     Path::rectangle(side(rect.x()), side(rect.y()), side(rect.width()), side(rect.height()))
+}
+
+pub(super) fn blend(mode: usvg::BlendMode) -> Blend {
+    use usvg::BlendMode as Mode;
+    match mode {
+        Mode::Normal => Blend::Normal,
+        Mode::Multiply => Blend::Multiply,
+        Mode::Screen => Blend::Screen,
+        Mode::Overlay => Blend::Overlay,
+        Mode::Darken => Blend::Darken,
+        Mode::Lighten => Blend::Lighten,
+        Mode::ColorDodge => Blend::ColorDodge,
+        Mode::ColorBurn => Blend::ColorBurn,
+        Mode::HardLight => Blend::HardLight,
+        Mode::SoftLight => Blend::SoftLight,
+        Mode::Difference => Blend::Difference,
+        Mode::Exclusion => Blend::Exclusion,
+        Mode::Hue => Blend::Hue,
+        Mode::Saturation => Blend::Saturation,
+        Mode::Color => Blend::Color,
+        Mode::Luminosity => Blend::Luminosity,
+        Mode::PlusLighter => Blend::PlusLighter,
+    }
 }
 
 /// Colours and gradients; `None` for a pattern.
@@ -81,10 +107,12 @@ pub(super) struct Tile {
     pub pixel_from_content: DAffine2,
     /// From the tile's pixels to the space of the path.
     path_from_pixel: DAffine2,
+    filter: Filter,
 }
 
 impl Tile {
-    /// A tile with as many pixels as it will cover; `None` where it covers nothing.
+    /// A tile with as many pixels as it will cover where those are whole ones, else with four times as many a
+    /// side, which are then averaged; `None` where it covers nothing.
     pub fn new(pattern: &usvg::Pattern, pixel_from_path: DAffine2) -> Option<Self> {
         let path_from_pattern = affine(pattern.transform());
         let seen = (pixel_from_path * path_from_pattern).matrix2;
@@ -94,7 +122,10 @@ impl Tile {
         if !pixels.is_finite() || pixels.min_element() <= 0.0 {
             return None;
         }
-        let pixels = pixels.round().clamp(DVec2::ONE, DVec2::splat(MAX_TILE));
+        let is_upright = seen.x_axis.y == 0.0 && seen.y_axis.x == 0.0;
+        let fits = is_upright && (pixels - pixels.round()).abs().max_element() < WHOLE;
+        let (finer, filter) = if fits { (1.0, Filter::Bilinear) } else { (4.0, Filter::Area) };
+        let pixels = (pixels * finer).round().clamp(DVec2::ONE, DVec2::splat(MAX_TILE));
         let corner = DVec2::new(rect.x().into(), rect.y().into());
         let path_from_pixel = path_from_pattern
             * DAffine2::from_translation(corner)
@@ -104,6 +135,7 @@ impl Tile {
             height: pixels.y as u32,
             pixel_from_content: DAffine2::from_scale(pixels / size),
             path_from_pixel,
+            filter,
         })
     }
 
@@ -113,6 +145,6 @@ impl Tile {
         canvas.render(&mut image).ok()?;
         let (image, transform) = (Arc::new(image), self.path_from_pixel);
         let spread = Some(Spread::Repeat);
-        Some(Paint::Pattern(Arc::new(Pattern { image, transform, spread, smooth: true })))
+        Some(Paint::Pattern(Arc::new(Pattern { image, transform, spread, filter: self.filter })))
     }
 }

@@ -7,7 +7,7 @@ use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::{FillRule, Overlap};
 use durer::raster::line::wide::{Cap, Join, Stroke, outline};
 use durer::raster::paint::{
-    Blending, Canvas, Gradient, MaskKind, Options, Paint, Pattern, Shape, Spread,
+    Blend, Blending, Canvas, Filter, Gradient, MaskKind, Options, Paint, Pattern, Shape, Spread,
 };
 use durer::target::Pixels;
 use durer::trace::NoTrace;
@@ -183,6 +183,43 @@ fn a_group_is_one_layer() {
     assert_eq!(rendered(&c, 20, WHITE).get(1, 1), Some([1, 2, 3, 255]));
 }
 
+/// A square of one colour on another one, blended as a group.
+fn blended(blend: Blend, layer: Paint, below: [u8; 4], options: Options) -> [u8; 4] {
+    let mut canvas = Canvas::new(4, 4, options).unwrap();
+    canvas.push_group();
+    canvas.fill(&Path::rectangle(0.0, 0.0, 4.0, 4.0), FillRule::NonZero, &layer, 1.0);
+    canvas.pop_blended(0.5, blend);
+    rendered(&canvas, 4, below).get(1, 1).unwrap()
+}
+
+#[test]
+fn groups_blend_with_what_is_below() {
+    let below = [51, 102, 204, 255];
+    let by = |blend| blended(blend, color(153, 128, 26, 255), below, Options::default());
+    // Half of each figure, half of the backdrop.
+    assert_eq!(by(Blend::Normal), [102, 115, 115, 255]);
+    assert_eq!(by(Blend::Multiply), [41, 77, 113, 255]);
+    assert_eq!(by(Blend::Screen), [112, 141, 207, 255]);
+    assert_eq!(by(Blend::Difference), [76, 64, 191, 255]);
+    assert_eq!(by(Blend::PlusLighter), [128, 166, 217, 255]);
+    let linear = Options { blending: Blending::Linear, ..Options::default() };
+    let all = blended(Blend::Multiply, color(255, 255, 255, 255), below, linear);
+    assert_eq!(all, below);
+}
+
+#[test]
+fn where_nothing_is_below_layers_keep_their_colour() {
+    for blend in [Blend::Multiply, Blend::Hue, Blend::ColorBurn, Blend::PlusLighter] {
+        let found = blended(blend, color(200, 40, 0, 255), [0; 4], Options::default());
+        assert_eq!(found, [199, 40, 0, 128], "{blend:?}");
+    }
+    // A backdrop that covers half of it takes half of the colour.
+    let found =
+        blended(Blend::Multiply, color(0, 255, 0, 255), [255, 0, 0, 128], Options::default());
+    assert_eq!(found[3], 192);
+    assert!(found[0].abs_diff(85) <= 1 && found[1].abs_diff(84) <= 2, "{found:?}");
+}
+
 #[test]
 fn gradients_pad_repeat_and_reflect() {
     let shape = Shape::Linear { start: DVec2::new(10.0, 0.0), end: DVec2::new(20.0, 0.0) };
@@ -267,8 +304,12 @@ fn clearing_is_filling_before() {
 fn patterns_repeat() {
     let image = Pixels::from_data(2, 1, vec![[255, 0, 0, 255], [0, 255, 0, 255]]).unwrap();
     let transform = DAffine2::from_scale(DVec2::splat(4.0));
-    let pattern =
-        Pattern { image: Arc::new(image), transform, spread: Some(Spread::Repeat), smooth: false };
+    let pattern = Pattern {
+        image: Arc::new(image),
+        transform,
+        spread: Some(Spread::Repeat),
+        filter: Filter::Nearest,
+    };
     let mut c = canvas(20);
     let paint = Paint::Pattern(Arc::new(pattern));
     c.fill(&Path::rectangle(0.0, 0.0, 20.0, 20.0), FillRule::NonZero, &paint, 1.0);
@@ -561,7 +602,7 @@ fn images_end_repeat_or_turn_at_their_border() {
     let image = Arc::new(Pixels::from_data(2, 1, vec![[10, 0, 0, 255], [20, 0, 0, 255]]).unwrap());
     let row = |spread| {
         let transform = DAffine2::from_translation(DVec2::new(3.0, 0.0));
-        let pattern = Pattern { image: image.clone(), transform, spread, smooth: false };
+        let pattern = Pattern { image: image.clone(), transform, spread, filter: Filter::Nearest };
         let mut c = canvas(8);
         let all = Path::rectangle(0.0, 0.0, 8.0, 8.0);
         c.fill(&all, FillRule::NonZero, &Paint::Pattern(Arc::new(pattern)), 1.0);

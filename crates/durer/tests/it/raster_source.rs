@@ -3,7 +3,9 @@
 use durer::curve::Path;
 use durer::math::{DAffine2, DVec2};
 use durer::raster::coverage::{Face, FillRule, fill_partition};
-use durer::raster::paint::{Blending, Canvas, Gradient, Options, Paint, Pattern, Shape, Spread};
+use durer::raster::paint::{
+    Blending, Canvas, Filter, Gradient, Options, Paint, Pattern, Shape, Spread,
+};
 use durer::target::Pixels;
 use durer::trace::NoTrace;
 use std::sync::Arc;
@@ -72,8 +74,12 @@ fn gradients_without_extent_have_the_last_colour() {
 fn clear_pixels_of_an_image_lend_no_colour() {
     let image = Pixels::from_data(2, 1, vec![[200, 40, 0, 255], [0, 255, 255, 0]]).expect("size");
     let transform = DAffine2::from_scale(DVec2::splat(20.0));
-    let pattern =
-        Pattern { image: Arc::new(image), transform, spread: Some(Spread::Pad), smooth: true };
+    let pattern = Pattern {
+        image: Arc::new(image),
+        transform,
+        spread: Some(Spread::Pad),
+        filter: Filter::Bilinear,
+    };
     let picture = square(&Paint::Pattern(Arc::new(pattern)), Options::default());
     let mut alphas = Vec::new();
     for x in 0..40 {
@@ -85,6 +91,44 @@ fn clear_pixels_of_an_image_lend_no_colour() {
     }
     assert_eq!((alphas[5], alphas[35]), (255, 0));
     assert!(alphas.windows(2).all(|w| w[0] >= w[1]) && alphas[20].abs_diff(124) < 4, "{alphas:?}");
+}
+
+/// A picture of 40 × 40 with an image of one row, of this many pixels per pixel of the image.
+fn enlarged(row: &[u8], by: f64, filter: Filter) -> Vec<u8> {
+    let data = row.iter().map(|v| [*v, *v, *v, 255]).collect();
+    let image = Arc::new(Pixels::from_data(row.len() as u32, 1, data).expect("size"));
+    let transform = DAffine2::from_scale(DVec2::splat(by));
+    let pattern = Pattern { image, transform, spread: Some(Spread::Pad), filter };
+    let picture = square(&Paint::Pattern(Arc::new(pattern)), Options::default());
+    picture.row(20).iter().map(|c| c[0]).collect()
+}
+
+#[test]
+fn mitchell_s_filter_keeps_ramps_and_overshoots_at_steps() {
+    let ramp = enlarged(&[40, 60, 80, 100, 120, 140, 160, 180, 200, 220], 4.0, Filter::Bicubic);
+    let line = |x: usize| 40.0 + ((x as f64 + 0.5) / 4.0 - 0.5) * 20.0;
+    for (x, v) in ramp.iter().enumerate().take(33).skip(8) {
+        assert!((f64::from(*v) - line(x)).abs() <= 0.5, "{x}: {v}");
+    }
+    let step = enlarged(&[100, 100, 100, 100, 100, 200, 200, 200, 200, 200], 4.0, Filter::Bicubic);
+    assert!(step[13..19].iter().any(|v| *v < 100) && step[21..27].iter().any(|v| *v > 200));
+    // At a pixel's centre its neighbours have 1/18 each, on both sides the same.
+    let weights = [1.0 / 18.0, 16.0 / 18.0, 1.0 / 18.0];
+    let image = [0, 0, 0, 0, 180, 0, 0, 0];
+    let odd = enlarged(&image, 5.0, Filter::Bicubic);
+    let found = [odd[17], odd[22], odd[27]].map(f64::from);
+    assert!(found.iter().zip(weights).all(|(f, w)| (f - 180.0 * w).abs() <= 0.51), "{found:?}");
+}
+
+#[test]
+fn areas_are_means_of_what_a_pixel_covers() {
+    let row: Vec<u8> = (0..160).map(|i| if i % 16 < 6 { 0 } else { 240 }).collect();
+    let found = enlarged(&row, 0.25, Filter::Area);
+    // Periods of four pixels: black, half black, white, white; an eighth of a texel each side is mixed in.
+    for (i, v) in found.iter().enumerate().take(36).skip(4) {
+        let wanted = [0.0, 120.0, 240.0, 240.0][i % 4];
+        assert!((f64::from(*v) - wanted).abs() <= 8.0, "{i}: {v}");
+    }
 }
 
 #[test]

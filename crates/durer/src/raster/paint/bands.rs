@@ -10,7 +10,7 @@ use super::color::Space;
 use super::command::{Item, Line, Prepared, sort_into_bands};
 use super::outline::{Drawn, Filler};
 use super::source::Source;
-use super::{Canvas, Color, MaskKind};
+use super::{Blend, Canvas, Color, MaskKind};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::{Sink, unpacked};
 use crate::raster::coverage::{self, convex};
@@ -146,7 +146,7 @@ impl<'a, P: Space> Painter<'a, P> {
                 }
                 Prepared::PopClip => drop(self.clips.pop()),
                 Prepared::PushGroup => self.push_group(base.len()),
-                Prepared::PopGroup { opacity } => self.pop_group(*opacity, base),
+                Prepared::PopGroup { opacity, blend } => self.pop_group(*opacity, *blend, base),
                 Prepared::BeginMask => self.push_group(base.len()),
                 Prepared::EndMask { kind } => self.end_mask(*kind),
             }
@@ -243,7 +243,7 @@ impl<'a, P: Space> Painter<'a, P> {
     }
 
     /// Lays the last layer over the one below it, within the clip paths that are open.
-    fn pop_group(&mut self, opacity: u8, base: &mut [P]) {
+    fn pop_group(&mut self, opacity: u8, blend: Blend, base: &mut [P]) {
         let Some(layer) = self.layers.pop() else { return };
         let below = self.layers.last_mut().map_or(base, |l| l.as_mut_slice());
         self.floors.pop();
@@ -251,7 +251,7 @@ impl<'a, P: Space> Painter<'a, P> {
         for (i, (pixel, below)) in layer.iter().zip(below.iter_mut()).enumerate() {
             if *pixel != P::CLEAR {
                 let mask = clip.map_or(255, |c| c[i]);
-                *below = pixel.scaled(opacity).over(mask, *below);
+                *below = blend.over(*pixel, opacity, mask, *below);
             }
         }
         self.spare.push(layer);

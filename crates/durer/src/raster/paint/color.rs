@@ -21,6 +21,10 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn load(color: [u8; 4]) -> Self;
     /// To straight 8-bit sRGB.
     fn store(self) -> [u8; 4];
+    /// To straight colour and opacity 0 … 1, mixed as this space mixes.
+    fn to_unit(self) -> [f32; 4];
+    /// From straight colour and opacity 0 … 1 of this space.
+    fn from_unit(color: [f32; 4]) -> Self;
     /// In-place forms of [`Space::load`] and [`Space::store`].
     fn premultiplied(self) -> Self {
         self
@@ -43,6 +47,8 @@ pub(crate) trait Space: Copy + Send + Sync + PartialEq + 'static {
     fn scaled(self, coverage: u8) -> Self;
     /// `self` over `below`, after `self` has been scaled by the coverage.
     fn over(self, coverage: u8, below: Self) -> Self;
+    /// The sum of both, at most what is opaque and white.
+    fn plus(self, other: Self) -> Self;
     /// One colour over eight pixels, each with its coverage 0 … 255.
     fn color_over<S: Simd>(simd: S, color: Self, coverage: u32x8<S>, below: &mut [Self; 8]);
     /// One colour over four pixels, their coverage in the bytes of a number, the first in the lowest.
@@ -70,6 +76,18 @@ fn div255(x: u32) -> u32 {
 /// Brightness of red, green and blue 0 … 255 (ITU-R BT.709), times 2¹⁶, with a half for rounding.
 fn luminance([r, g, b]: [u32; 3]) -> u32 {
     r * 13_933 + g * 46_871 + b * 4_732 + (1 << 15)
+}
+
+/// The straight colour 0 … 1 of a premultiplied one whose channels are at most `full`.
+fn unit([r, g, b, alpha]: [f32; 4], full: f32) -> [f32; 4] {
+    let straight = |c: f32| if alpha > 0.0 { (c / alpha).min(1.0) } else { 0.0 };
+    [straight(r), straight(g), straight(b), alpha / full]
+}
+
+/// The premultiplied channels, half a step up, of a straight colour 0 … 1.
+fn scaled_unit([r, g, b, alpha]: [f32; 4], full: f32) -> [f32; 4] {
+    let part = |c: f32| c * alpha * full + 0.5;
+    [part(r), part(g), part(b), alpha * full + 0.5]
 }
 
 /// A pixel of sRGB bytes, premultiplied.
@@ -106,6 +124,14 @@ impl Space for Srgb {
         }
         let whole = |c: u8| ((u32::from(c) * 255 + alpha / 2) / alpha).min(255) as u8;
         [whole(self[0]), whole(self[1]), whole(self[2]), self[3]]
+    }
+
+    fn to_unit(self) -> [f32; 4] {
+        unit(self.map(f32::from), 255.0)
+    }
+
+    fn from_unit(color: [f32; 4]) -> Self {
+        scaled_unit(color, 255.0).map(|c| c as u8)
     }
 
     #[inline(always)]
@@ -147,6 +173,10 @@ impl Space for Srgb {
         std::array::from_fn(|i| {
             div255(u32::from(self[i]) * coverage + u32::from(below[i]) * through).min(255) as u8
         })
+    }
+
+    fn plus(self, other: Self) -> Self {
+        std::array::from_fn(|i| self[i].saturating_add(other[i]))
     }
 
     #[inline(always)]
@@ -307,6 +337,14 @@ impl Space for Linear {
         [whole(r), whole(g), whole(b), ((alpha + 128) / 257) as u8]
     }
 
+    fn to_unit(self) -> [f32; 4] {
+        unit(self.0.map(f32::from), 65_535.0)
+    }
+
+    fn from_unit(color: [f32; 4]) -> Self {
+        Self(scaled_unit(color, 65_535.0).map(|c| c as u16))
+    }
+
     fn is_opaque(self) -> bool {
         self.0[3] == 65_535
     }
@@ -331,6 +369,10 @@ impl Space for Linear {
             let behind = (u32::from(below.0[i]) * through + 32_767) / 65_535;
             (u32::from(source.0[i]) + behind).min(65_535) as u16
         }))
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i].saturating_add(other.0[i])))
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::color::{Space, premultiply};
 use super::outline::{Drawn, Lists, Outline};
 use super::source::{self, Source};
-use super::{Color, MaskKind, Paint};
+use super::{Blend, Color, MaskKind, Paint};
 use crate::math::DAffine2;
 use crate::raster::coverage::{self, convex::Strip};
 
@@ -54,7 +54,7 @@ impl Open {
         let (first, second) = match self {
             Self::Clip => (Some(Prepared::PopClip), None),
             Self::Everything => (None, None),
-            Self::Group => (Some(Prepared::PopGroup { opacity: 255 }), None),
+            Self::Group => (Some(Prepared::PopGroup { opacity: 255, blend: Blend::Normal }), None),
             Self::Mask => {
                 (Some(Prepared::EndMask { kind: MaskKind::Alpha }), Some(Prepared::PopClip))
             }
@@ -109,6 +109,7 @@ pub(super) enum Command {
     PushGroup,
     PopGroup {
         opacity: f64,
+        blend: Blend,
     },
     BeginMask,
     EndMask {
@@ -129,8 +130,9 @@ impl Command {
             }
             Self::PopClip => Prepared::PopClip,
             Self::PushGroup => Prepared::PushGroup,
-            Self::PopGroup { opacity } => {
-                Prepared::PopGroup { opacity: (opacity.clamp(0.0, 1.0) * 255.0 + 0.5) as u8 }
+            Self::PopGroup { opacity, blend } => {
+                let opacity = (opacity.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+                Prepared::PopGroup { opacity, blend: *blend }
             }
             Self::BeginMask => Prepared::BeginMask,
             Self::EndMask { kind } => Prepared::EndMask { kind: *kind },
@@ -145,7 +147,7 @@ pub(super) enum Prepared<'a, P> {
     PushClip { outline: Drawn<'a>, how: coverage::Options },
     PopClip,
     PushGroup,
-    PopGroup { opacity: u8 },
+    PopGroup { opacity: u8, blend: Blend },
     BeginMask,
     EndMask { kind: MaskKind },
 }

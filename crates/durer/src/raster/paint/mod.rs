@@ -5,12 +5,14 @@
 //! same for any number of threads.
 
 mod bands;
+mod blend;
 mod color;
 mod command;
 mod outline;
 mod source;
 
-pub use source::{Color, Gradient, Paint, Pattern, Shape, Spread};
+pub use blend::Blend;
+pub use source::{Color, Filter, Gradient, Paint, Pattern, Shape, Spread};
 
 use std::sync::{Mutex, PoisonError};
 
@@ -300,11 +302,17 @@ impl Canvas {
     /// Ends the clip path, mask or group opened last; the layer of a group is laid over what is below it
     /// with the given opacity 0 … 1. Without anything open nothing happens.
     pub fn pop(&mut self, opacity: f64) {
+        self.pop_blended(opacity, Blend::Normal);
+    }
+
+    /// [`Canvas::pop`], where the colours of a group's layer blend with those below it in the layer that the
+    /// group was started on. Groups are isolated: what is within blends with what the group shows alone.
+    pub fn pop_blended(&mut self, opacity: f64, blend: Blend) {
         if self.open.last() == Some(&Open::Mask) {
             self.end_mask(MaskKind::Alpha);
         }
         match self.open.pop() {
-            Some(Open::Group) => self.commands.push(Command::PopGroup { opacity }),
+            Some(Open::Group) => self.commands.push(Command::PopGroup { opacity, blend }),
             Some(Open::Clip | Open::Mask) => self.commands.push(Command::PopClip),
             Some(Open::Everything) | None => {}
         }

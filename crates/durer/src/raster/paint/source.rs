@@ -66,8 +66,24 @@ pub struct Pattern {
     pub transform: DAffine2,
     /// What is outside the image: the pixels at its border, or the image again; `None` = nothing.
     pub spread: Option<Spread>,
-    /// Whether four pixels are mixed, instead of taking the nearest.
-    pub smooth: bool,
+    /// How colours between its pixels are found.
+    pub filter: Filter,
+}
+
+/// How the colours between the pixels of an image are found. Colours count as much as they are opaque.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// The nearest pixel.
+    Nearest,
+    /// A mixture of the four pixels around.
+    #[default]
+    Bilinear,
+    /// A mixture of the sixteen pixels around, for what is enlarged: D. Mitchell, A. Netravali, *Reconstruction
+    /// Filters in Computer Graphics*, SIGGRAPH 1988, with B = C = 1/3.
+    Bicubic,
+    /// The mean of sixteen bilinear mixtures spread evenly over the pixel that is painted, for images with
+    /// about four times as many pixels a side as are painted.
+    Area,
 }
 
 /// What a path is painted with.
@@ -206,7 +222,8 @@ impl<P: Space> Source<P> {
             Self::Image(image) => {
                 let Image { pattern, image_from_pixel, opacity } = &**image;
                 for (point, pixel) in centers(image_from_pixel, x, y).zip(out) {
-                    *pixel = premultiply_f(texel(pattern, point), *opacity);
+                    let color = image_color(pattern, point, image_from_pixel);
+                    *pixel = premultiply_f(color, *opacity);
                 }
             }
         }
@@ -296,27 +313,91 @@ fn within(at: i64, n: i64, pattern: &Pattern) -> Option<u32> {
     u32::try_from(at).ok()
 }
 
-/// The pattern's straight colour in 0 … 255 at a point in its pixels.
-fn texel(pattern: &Pattern, p: DVec2) -> [f64; 4] {
-    let size = (i64::from(pattern.image.width()), i64::from(pattern.image.height()));
-    let at = |x: f64, y: f64| {
-        let place = [(x as i64, size.0), (y as i64, size.1)].map(|(at, n)| within(at, n, pattern));
-        let [Some(x), Some(y)] = place else { return [0.0; 4] };
-        pattern.image.get(x, y).unwrap_or([0; 4]).map(f64::from)
-    };
-    if !pattern.smooth {
-        return at(p.x.floor(), p.y.floor());
+/// The pattern's straight colour in 0 … 255 at a point in its pixels; the map gives the size of a pixel
+/// that is painted there.
+fn image_color(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
+    match pattern.filter {
+        Filter::Nearest => {
+            let at = p.floor();
+            pixel(pattern, at.x, at.y)
+        }
+        Filter::Bilinear => bilinear(pattern, p).straight(),
+        Filter::Bicubic => bicubic(pattern, p),
+        Filter::Area => {
+            let mut sum = Mixture::default();
+            for part in 0..16 {
+                let (x, y) = (f64::from(part % 4), f64::from(part / 4));
+                let aside = DVec2::new((x - 1.5) / 4.0, (y - 1.5) / 4.0);
+                let at = p + image_from_pixel.transform_vector2(aside);
+                sum.add(&bilinear(pattern, at), 1.0 / 16.0);
+            }
+            sum.straight()
+        }
     }
+}
+
+/// The straight colour of a pixel of a pattern, or of what is outside its image.
+fn pixel(pattern: &Pattern, x: f64, y: f64) -> [f64; 4] {
+    let size = (i64::from(pattern.image.width()), i64::from(pattern.image.height()));
+    let place = [(x as i64, size.0), (y as i64, size.1)].map(|(at, n)| within(at, n, pattern));
+    let [Some(x), Some(y)] = place else { return [0.0; 4] };
+    pattern.image.get(x, y).unwrap_or([0; 4]).map(f64::from)
+}
+
+fn bilinear(pattern: &Pattern, p: DVec2) -> Mixture {
     let (q, f) = ((p - 0.5).floor(), (p - 0.5) - (p - 0.5).floor());
-    let corners = [at(q.x, q.y), at(q.x + 1.0, q.y), at(q.x, q.y + 1.0), at(q.x + 1.0, q.y + 1.0)];
     let weights = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y];
-    // Colours count as much as they are opaque.
-    let alpha: f64 = (0..4).map(|i| corners[i][3] * weights[i]).sum();
-    let channel = |c: usize| {
-        let sum: f64 = (0..4).map(|i| corners[i][c] * corners[i][3] * weights[i]).sum();
-        if alpha > 0.0 { sum / alpha } else { 0.0 }
-    };
-    [channel(0), channel(1), channel(2), alpha]
+    let mut sum = Mixture::default();
+    for (corner, weight) in weights.into_iter().enumerate() {
+        let (x, y) = (q.x + (corner % 2) as f64, q.y + (corner / 2) as f64);
+        sum.add(&Mixture::of(pixel(pattern, x, y)), weight);
+    }
+    sum
+}
+
+fn bicubic(pattern: &Pattern, p: DVec2) -> [f64; 4] {
+    let (q, f) = ((p - 0.5).floor(), (p - 0.5) - (p - 0.5).floor());
+    let (across, down) = (mitchell(f.x), mitchell(f.y));
+    let mut sum = Mixture::default();
+    for (y, of_row) in (-1..3).zip(down) {
+        for (x, of_column) in (-1..3).zip(across) {
+            let color = pixel(pattern, q.x + f64::from(x), q.y + f64::from(y));
+            sum.add(&Mixture::of(color), of_row * of_column);
+        }
+    }
+    sum.straight()
+}
+
+/// The weights of the four pixels in a row around a point that is `f` of the way from the second to the third.
+fn mitchell(f: f64) -> [f64; 4] {
+    let (near, far) = (
+        |x: f64| ((7.0 * x - 12.0) * x * x + 16.0 / 3.0) / 6.0,
+        |x: f64| (((-7.0 / 3.0 * x + 12.0) * x - 20.0) * x + 32.0 / 3.0) / 6.0,
+    );
+    [far(1.0 + f), near(f), near(1.0 - f), far(2.0 - f)]
+}
+
+/// Colours that are mixed: red, green and blue times opacity, and opacity.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mixture([f64; 4]);
+
+impl Mixture {
+    fn of([r, g, b, a]: [f64; 4]) -> Self {
+        Self([r * a, g * a, b * a, a])
+    }
+
+    fn add(&mut self, other: &Self, weight: f64) {
+        self.0.iter_mut().zip(other.0).for_each(|(sum, part)| *sum += part * weight);
+    }
+
+    /// The straight colour, within 0 … 255.
+    fn straight(self) -> [f64; 4] {
+        let [r, g, b, a] = self.0;
+        if a <= 0.0 {
+            return [0.0; 4];
+        }
+        [r / a, g / a, b / a, a].map(|c| c.clamp(0.0, 255.0))
+    }
 }
 
 fn premultiply_f<P: Space>(color: [f64; 4], opacity: f64) -> P {
