@@ -51,6 +51,18 @@ fn tolerance_boundary_and_several_seeds() {
     }
 }
 
+#[test]
+fn wholly_transparent_pixels_are_one_colour() {
+    let folder = Folder::new();
+    let colors = [[255, 0, 0, 0], [0, 0, 255, 0], [9, 9, 9, 0], [9, 9, 9, 1], [0, 0, 0, 0]];
+    let (rgba, eight) = (png::ColorType::Rgba, png::BitDepth::Eight);
+    folder.write("a.png", row(rgba, eight, None, &colors.concat(), 5));
+    assert_eq!(pixels(&folder, "--at 0,0 --color red"), [3]);
+    let found = Picture::decode(&folder.read("b.png"));
+    assert_eq!((found.pixel(2, 0), found.pixel(3, 0)), (&[255, 0, 0, 255][..], &[9, 9, 9, 1][..]));
+    assert_eq!(pixels(&folder, "--at 0,0 --color red --tolerance 9"), [5]);
+}
+
 /// A PNG of one row.
 fn row(
     color: png::ColorType,

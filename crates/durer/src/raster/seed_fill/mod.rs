@@ -86,12 +86,17 @@ pub trait PixelValue: Copy {
     type Level: Copy + Ord + Default;
     /// The largest difference of a channel.
     fn difference(self, other: Self) -> Self::Level;
+    /// Whether it is 0, with which a channel of opacity shows nothing.
+    fn is_zero(self) -> bool;
 }
 
 impl PixelValue for bool {
     type Level = u8;
     fn difference(self, other: Self) -> u8 {
         u8::from(self != other) * 255
+    }
+    fn is_zero(self) -> bool {
+        !self
     }
 }
 
@@ -102,6 +107,10 @@ impl PixelValue for u8 {
         // Many at a time, where abs_diff would be computed in 32 bits.
         self.max(other) - self.min(other)
     }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self == 0
+    }
 }
 
 impl PixelValue for u16 {
@@ -110,13 +119,25 @@ impl PixelValue for u16 {
     fn difference(self, other: Self) -> u16 {
         self.max(other) - self.min(other)
     }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self == 0
+    }
 }
 
+/// Four channels are a colour with straight alpha: two of them that are wholly transparent look the same, whatever
+/// their colours are.
 impl<T: PixelValue, const N: usize> PixelValue for [T; N] {
     type Level = T::Level;
     #[inline]
     fn difference(self, other: Self) -> T::Level {
-        self.iter().zip(other).map(|(a, b)| (*a).difference(b)).max().unwrap_or_default()
+        let most = self.iter().zip(other).map(|(a, b)| (*a).difference(b)).max();
+        let are_clear = N == 4 && self[N - 1].is_zero() && other[N - 1].is_zero();
+        if are_clear { T::Level::default() } else { most.unwrap_or_default() }
+    }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.iter().all(|channel| channel.is_zero())
     }
 }
 
