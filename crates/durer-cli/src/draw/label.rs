@@ -1,9 +1,11 @@
 //! Labels of a map: where they go, and their outlines.
 
+use super::along::{self, Run};
 use super::layers::Style;
 use super::places::{self, Fit, Land, NEARLY, Places};
 use crate::failure::Failure;
 use durer::clip::polygon::{Polygon, Shapes, rectangle};
+use durer::curve::Path;
 use durer::curve::text::{Font, TextLine};
 use durer::math::{DAffine2, DVec2, Rect};
 use durer::raster::coverage::FillRule;
@@ -39,6 +41,8 @@ const LETTERS: f64 = 0.73;
 pub struct Label {
     pub text: String,
     pub anchor: Anchor,
+    /// Those of small numbers are placed first.
+    pub rank: f64,
     /// The number of its layer.
     pub layer: usize,
 }
@@ -53,6 +57,8 @@ pub struct Anchor {
     size: f64,
     /// The area in which there may be other places.
     area: Option<Shapes>,
+    /// The line along which it may run.
+    line: Vec<DVec2>,
 }
 
 impl Anchor {
@@ -141,10 +147,10 @@ impl Parts<'_> {
         let mut area = Shapes::new();
         largest.rings().for_each(|ring| area.push_ring(ring.iter().copied()));
         area.end_polygon();
-        Some(Anchor { at, beside: false, size, area: Some(area) })
+        Some(Anchor { at, beside: false, size, area: Some(area), line: Vec::new() })
     }
 
-    /// In the middle of the longest line.
+    /// On the longest line, in its middle.
     fn longest_line(&self) -> Option<Anchor> {
         let length = |l: &[DVec2]| l.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
         let seen = self.lines.iter().filter(|l| l.iter().any(|p| self.seen.contains(*p)));
@@ -154,7 +160,7 @@ impl Parts<'_> {
             let piece = pair[0].distance(pair[1]);
             if piece >= left && piece > 0.0 {
                 let at = pair[0].lerp(pair[1], left / piece);
-                return Some(Anchor { at, beside: false, size, area: None });
+                return Some(Anchor { at, beside: false, size, area: None, line: line.clone() });
             }
             left -= piece;
         }
@@ -163,7 +169,7 @@ impl Parts<'_> {
 
     fn first_point(&self) -> Option<Anchor> {
         let at = self.points.iter().copied().find(|p| self.seen.contains(*p))?;
-        Some(Anchor { at, beside: true, size: 0.0, area: None })
+        Some(Anchor { at, beside: true, size: 0.0, area: None, line: Vec::new() })
     }
 }
 
@@ -192,11 +198,19 @@ pub struct Drawn {
     pub missing: BTreeSet<char>,
 }
 
+/// What there is on a map besides labels.
+pub struct Ground<'a> {
+    /// The viewport.
+    pub seen: &'a Rect,
+    pub land: &'a Land,
+    /// Boxes of markers, on which no label stands.
+    pub markers: &'a [Rect],
+}
+
 /// Draws as many labels as find room, each in the font that has most of its letters, the first of those.
 pub fn draw(
     canvas: &mut Canvas,
-    seen: &Rect,
-    land: &Land,
+    ground: &Ground<'_>,
     labels: Vec<Label>,
     styles: &[&Style],
     fonts: &Fonts,
@@ -212,11 +226,12 @@ pub fn draw(
         let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
         let line = font.line(&label.text, style.label_size);
         let missing = label.text.chars().filter(|c| !font.has(*c)).collect();
-        planned.push(Planned::new(label, line, missing, style, land));
+        planned.push(Planned::new(label, line, missing, style, ground.land));
     }
     // The sort is stable: what is equal stays in the order of the file.
     planned.sort_by(Planned::order);
-    let mut placer = Placer::new(*seen);
+    let mut placer = Placer::new(*ground.seen);
+    ground.markers.iter().for_each(|marker| placer.reserve(*marker));
     let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
     for layer in planned.chunk_by(|a, b| a.label.layer == b.label.layer) {
         let style = styles[layer[0].label.layer];
@@ -229,14 +244,13 @@ pub fn draw(
                     placer.place([heart]);
                 }
             }
-            let corners = &planned.corners;
-            let boxes = corners.iter().filter_map(|corner| taken(*corner, &planned.line, style));
+            let boxes = planned.spots.iter().map(|spot| planned.taken(spot, style));
             let counts = &mut drawn.counts[planned.label.layer];
-            match placer.place(boxes).and_then(|number| corners.get(number)) {
-                Some(corner) => {
+            match placer.place_parts(boxes).and_then(|number| planned.spots.get(number)) {
+                Some(spot) => {
                     counts.0 += 1;
                     drawn.missing.extend(&planned.missing);
-                    write(canvas, &planned.line, *corner, style)
+                    write(canvas, &planned.outlines(spot, style), style)
                         .map_err(|e| Failure::Usage(e.to_string()))?;
                 }
                 None => counts.1 += 1,
@@ -257,8 +271,17 @@ struct Planned {
     held: f64,
     /// Whether its area has no neighbours.
     alone: bool,
-    /// Starts of the base line, the best first.
-    corners: Vec<DVec2>,
+    /// Where it may stand, the best first.
+    spots: Vec<Spot>,
+}
+
+/// A place for a label.
+#[derive(Debug, Clone, PartialEq)]
+enum Spot {
+    /// Upright, with the start of its base line here.
+    At(DVec2),
+    /// Along a line.
+    Along(Run),
 }
 
 impl Planned {
@@ -266,23 +289,55 @@ impl Planned {
         let anchor = &label.anchor;
         let size = DVec2::new(line.advance.max(1.0), LETTERS * style.label_size);
         let Some(area) = &anchor.area else {
-            let corners = beside(anchor.at, anchor.beside, &line, style);
-            return Self { label, line, missing, fit: Fit::Over, held: 0.0, alone: false, corners };
+            let runs = along::runs(&anchor.line, size.x, style.label_size);
+            let upright = beside(anchor.at, anchor.beside, &line, style);
+            let spots = runs.into_iter().map(Spot::Along).chain(upright.into_iter().map(Spot::At));
+            let spots = spots.collect();
+            return Self { label, line, missing, fit: Fit::Over, held: 0.0, alone: false, spots };
         };
         let halo = DVec2::splat(2.0 * HALO * style.label_size);
         let poles = anchor.poles(area, (size.x / size.y).clamp(1.0, 8.0));
         let gap = APART * style.label_size + 0.5 * style.stroke_width;
         let Places { fit, held, alone, middles } =
             places::around(area, &poles, size + halo, gap, land);
-        let corner = |middle: DVec2| middle + DVec2::new(-size.x, size.y) / 2.0;
-        let corners = middles.into_iter().map(corner).collect();
-        Self { label, line, missing, fit, held, alone, corners }
+        let spot = |middle: DVec2| Spot::At(middle + DVec2::new(-size.x, size.y) / 2.0);
+        let spots = middles.into_iter().map(spot).collect();
+        Self { label, line, missing, fit, held, alone, spots }
     }
 
-    /// Upper layers first; then what its area holds, what it nearly holds, and what is larger.
+    /// The room that it takes at a place, in boxes.
+    fn taken(&self, spot: &Spot, style: &Style) -> Vec<Rect> {
+        match spot {
+            Spot::At(corner) => taken(*corner, &self.line, style).into_iter().collect(),
+            Spot::Along(run) => {
+                let half = (0.5 * LETTERS + HALO) * style.label_size;
+                let middles = self.line.glyphs.iter().map(|g| (g.start + g.end) / 2.0);
+                let halves = self.line.glyphs.iter().map(|g| half.max((g.end - g.start) / 2.0));
+                let around = |(at, half): (DVec2, f64)| Rect::new(at - half, at + half).ok();
+                let at = middles.filter_map(|along| run.place(along));
+                at.zip(halves).filter_map(around).collect()
+            }
+        }
+    }
+
+    /// Its outlines at a place.
+    fn outlines(&self, spot: &Spot, style: &Style) -> Path {
+        match spot {
+            Spot::At(corner) => self.line.path.transformed(DAffine2::from_translation(*corner)),
+            Spot::Along(run) => {
+                self.line.along(&run.line, run.start, 0.5 * LETTERS * style.label_size)
+            }
+        }
+    }
+
+    /// Upper layers first; then what its area holds, what has the smaller rank, what its area nearly holds, and what is
+    /// larger.
     fn order(&self, other: &Self) -> Ordering {
         let nearly = |label: &Self| label.fit == Fit::Over && label.held >= NEARLY;
-        let layers = other.label.layer.cmp(&self.label.layer).then(self.fit.cmp(&other.fit));
+        let held = |label: &Self| label.fit != Fit::Held;
+        let layers = other.label.layer.cmp(&self.label.layer).then(held(self).cmp(&held(other)));
+        let layers = layers.then(self.label.rank.total_cmp(&other.label.rank));
+        let layers = layers.then(self.fit.cmp(&other.fit));
         let size = other.label.anchor.size.total_cmp(&self.label.anchor.size);
         layers.then(nearly(other).cmp(&nearly(self))).then(size)
     }
@@ -314,14 +369,12 @@ fn taken(corner: DVec2, line: &TextLine, style: &Style) -> Option<Rect> {
     Rect::new(min, max).ok()
 }
 
-fn write(canvas: &mut Canvas, line: &TextLine, at: DVec2, style: &Style) -> durer::Result<()> {
-    canvas.set_transform(DAffine2::from_translation(at));
+fn write(canvas: &mut Canvas, outlines: &Path, style: &Style) -> durer::Result<()> {
     if let Some(halo) = style.label_halo {
         let width = 2.0 * HALO * style.label_size;
         let stroke = Stroke { width, join: Join::Round, ..Stroke::default() };
-        canvas.stroke(&line.path, &stroke, &Paint::Color(halo), 1.0)?;
+        canvas.stroke(outlines, &stroke, &Paint::Color(halo), 1.0)?;
     }
-    canvas.fill(&line.path, FillRule::NonZero, &Paint::Color(style.label_color), 1.0);
-    canvas.set_transform(DAffine2::IDENTITY);
+    canvas.fill(outlines, FillRule::NonZero, &Paint::Color(style.label_color), 1.0);
     Ok(())
 }

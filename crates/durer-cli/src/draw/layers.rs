@@ -14,6 +14,14 @@ pub struct Ink(pub Option<[u8; 4]>);
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Dashes(pub Vec<f64>);
 
+/// The property by which labels are placed first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Priority {
+    pub field: String,
+    /// Whether large numbers come first, as of people, and not small ones, as of ranks.
+    pub largest_first: bool,
+}
+
 /// `--marker`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Marker {
@@ -39,6 +47,7 @@ pub struct Style {
     pub marker_size: f64,
     /// The property that labels show.
     pub label: Option<String>,
+    pub label_priority: Option<Priority>,
     pub label_size: f64,
     pub label_color: [u8; 4],
     pub label_halo: Option<[u8; 4]>,
@@ -55,6 +64,7 @@ impl Default for Style {
             marker: Marker::Circle,
             marker_size: 6.0,
             label: None,
+            label_priority: None,
             label_size: 12.0,
             label_color: [0x22, 0x22, 0x22, 255],
             label_halo: Some([255; 4]),
@@ -107,10 +117,17 @@ struct LayerArgs {
     marker_size: Vec<f64>,
     /// Label features by this property
     ///
-    /// Within areas, at the middle of lines, beside points. Labels do not overlap: those of upper
-    /// layers come first, then those of larger features; what finds no room is left out.
+    /// Within areas, along lines, beside points. Labels overlap neither each other nor markers: those of upper
+    /// layers come first, then those that --label-priority says, then those of larger features; what finds no room is
+    /// left out.
     #[arg(long, value_name = "FIELD")]
     label: Vec<String>,
+    /// Place labels with small numbers of this property first, or `-FIELD`: with large ones [default: LABELRANK,
+    /// where features have it]
+    ///
+    /// Labels that lie wholly within their area hinder no other and come before all.
+    #[arg(long, value_name = "FIELD", allow_hyphen_values = true, value_parser = priority)]
+    label_priority: Vec<Priority>,
     /// The size of labels in pixels [default: 12]
     #[arg(long, value_name = "PX", allow_hyphen_values = true, value_parser = values::positive)]
     label_size: Vec<f64>,
@@ -132,6 +149,15 @@ fn ink(text: &str) -> Result<Ink, String> {
         "none" => Ok(Ink(None)),
         color => color::bytes(color).map(|c| Ink(Some(c))).map_err(|e| format!("{e}; or none")),
     }
+}
+
+fn priority(text: &str) -> Result<Priority, String> {
+    let (field, largest_first) = match text.strip_prefix('-') {
+        Some(field) => (field, true),
+        None => (text, false),
+    };
+    let named = Priority { field: field.to_owned(), largest_first };
+    if field.is_empty() { Err("a property's name is missing".to_owned()) } else { Ok(named) }
 }
 
 fn dashes(text: &str) -> Result<Dashes, String> {
@@ -205,6 +231,7 @@ fn apply(matches: &ArgMatches, place: Range<usize>, style: &mut Style) -> bool {
         "marker": Marker => |marker| style.marker = marker;
         "marker_size": f64 => |size| style.marker_size = size;
         "label": String => |field| style.label = Some(field);
+        "label_priority": Priority => |by| style.label_priority = Some(by);
         "label_size": f64 => |size| style.label_size = size;
         "label_color": [u8; 4] => |color| style.label_color = color;
         "label_halo": Ink => |ink| style.label_halo = ink.0;

@@ -1,8 +1,9 @@
 //! A map of layers.
 
+use super::borders::Borders;
 use super::joined::Joined;
-use super::label::{Anchor, Label};
-use super::layers::{Marker, Style};
+use super::label::{Anchor, Ground, Label};
+use super::layers::{Marker, Priority, Style};
 use super::places::Land;
 use super::report::MapCounts;
 use super::{Given, Job, MAP_SIDE, fonts, frame, sides};
@@ -24,6 +25,9 @@ const MARGIN: f64 = 0.02;
 /// Points of a line that are nearer to the one before in pixels are left out: an edge through a pixel changes its
 /// coverage by less than 0.1/255 for it.
 const NEAR: f64 = 1.0 / 4096.0;
+
+/// Natural Earth's property of how important a label is: small numbers first.
+const LABELRANK: &str = "LABELRANK";
 
 /// So many names of properties are listed where a label's is not there.
 const LISTED: usize = 12;
@@ -52,7 +56,9 @@ impl Job<'_> {
         let screen = WindowToViewport::new(&window, &viewport, Aspect::Fit, YAxis::Down);
         let (seen, counts) = (seen(&viewport)?, MapCounts::default());
         let land = Contours::new();
-        let mut map = Map { canvas, screen, seen, counts, land, joined: None, solid: false };
+        let (joined, borders, marked) = (None, None, Vec::new());
+        let mut map =
+            Map { canvas, screen, seen, counts, land, joined, borders, marked, solid: false };
         map.canvas.push_clip(&frame(&viewport), FillRule::NonZero);
         let (mut labels, mut land) = (Vec::new(), Vec::new());
         for (index, (layer, features)) in given.iter().zip(&layers).enumerate() {
@@ -65,8 +71,10 @@ impl Job<'_> {
                 map.canvas.push_group();
             }
             map.joined = joins(style).then(Joined::default);
+            map.borders = shares(style).then(<(Borders, Path)>::default);
             features.iter().try_for_each(|f| map.feature(f, style)).map_err(usage)?;
             map.fill_joined(style);
+            map.stroke_borders(style).map_err(usage)?;
             if std::mem::take(&mut map.solid) {
                 let message = "what has more than 100,000 dashes and gaps is drawn solid";
                 self.messages.warning(&name, message);
@@ -76,9 +84,16 @@ impl Job<'_> {
                 map.canvas.pop(style.opacity);
             }
             if let Some(field) = &style.label {
-                let mut own = map.labels(features, field, index);
+                let mut own = map.labels(features, field, style, index);
                 if own.is_empty() && !features.iter().any(|f| has(f, field)) {
-                    return Err(Failure::Data(format!("{name}: {}", no_field(features, field))));
+                    let why = no_field(features, "label", field);
+                    return Err(Failure::Data(format!("{name}: {why}")));
+                }
+                if let Some(by) = &style.label_priority
+                    && !features.iter().any(|f| has(f, &by.field))
+                {
+                    let why = no_field(features, "label-priority", &by.field);
+                    return Err(Failure::Data(format!("{name}: {why}")));
                 }
                 labels.append(&mut own);
             }
@@ -96,8 +111,8 @@ impl Job<'_> {
             self.messages.progress.stage(|| "placing labels".to_owned());
             let styles: Vec<&Style> = given.iter().map(|g| &g.layer.style).collect();
             let land = Land::new(land, &map.seen).map_err(usage)?;
-            let drawn =
-                super::label::draw(&mut map.canvas, &map.seen, &land, labels, &styles, &fonts)?;
+            let ground = Ground { seen: &map.seen, land: &land, markers: &map.marked };
+            let drawn = super::label::draw(&mut map.canvas, &ground, labels, &styles, &fonts)?;
             for (layer, placed) in self.report.layers.iter_mut().zip(drawn.counts) {
                 if let Some(counts) = &mut layer.map {
                     (counts.labels, counts.labels_left_out) = placed;
@@ -170,7 +185,7 @@ fn has(feature: &Feature, field: &str) -> bool {
     properties(feature).is_some_and(|p| p.contains_key(field))
 }
 
-fn no_field(features: &[Feature], field: &str) -> String {
+fn no_field(features: &[Feature], option: &str, field: &str) -> String {
     let mut known: Vec<String> = Vec::new();
     for name in features.iter().filter_map(properties).flat_map(|p| p.into_iter().map(|m| m.0)) {
         if known.len() <= LISTED && !known.contains(&name) {
@@ -181,7 +196,7 @@ fn no_field(features: &[Feature], field: &str) -> String {
         known[LISTED] = "…".to_owned();
     }
     let there = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-    format!("--label {field}: no feature has this property; there are: {there}")
+    format!("--{option} {field}: no feature has this property; there are: {there}")
 }
 
 /// What a label says: text, numbers, true and false; nothing for null and what has parts.
@@ -206,6 +221,10 @@ struct Map {
     land: Contours,
     /// The layer's areas so far, where they are painted as one.
     joined: Option<Joined>,
+    /// The borders of the layer's areas, where they are drawn once for all of them.
+    borders: Option<(Borders, Path)>,
+    /// Boxes of all markers.
+    marked: Vec<Rect>,
     /// Whether something has so many dashes that it is drawn without.
     solid: bool,
 }
@@ -215,6 +234,24 @@ struct Map {
 fn joins(style: &Style) -> bool {
     let bare = style.stroke.is_none_or(|c| c[3] == 0) || style.stroke_width == 0.0;
     bare && style.fill.is_some_and(|c| c[3] == 255)
+}
+
+/// Whether borders would look different where they are drawn twice.
+fn shares(style: &Style) -> bool {
+    style.stroke_width > 0.0
+        && style.stroke.is_some_and(|c| c[3] > 0 && (c[3] < 255 || !style.dashes.is_empty()))
+}
+
+/// Ranks of features by a property: small ones are placed first.
+fn rank(feature: &Feature, by: &Priority) -> f64 {
+    let value = properties(feature).and_then(|mut known| known.remove(&by.field));
+    let number = match value {
+        Some(serde_json::Value::Number(number)) => number.as_f64(),
+        Some(serde_json::Value::String(text)) => text.trim().parse().ok(),
+        _ => None,
+    };
+    let number = number.filter(|n: &f64| n.is_finite());
+    number.map_or(f64::INFINITY, |n| if by.largest_first { -n } else { n })
 }
 
 impl Map {
@@ -237,9 +274,9 @@ impl Map {
     }
 
     /// A run of positions on the screen, if a part of it may be seen with a pen of this width.
-    fn run(&self, points: &Points, width: f64) -> Option<Vec<DVec2>> {
+    fn run(&self, points: &[DVec2], width: f64) -> Option<Vec<DVec2>> {
         let mut run: Vec<DVec2> = Vec::with_capacity(points.len());
-        for (i, p) in points.xy.iter().enumerate() {
+        for (i, p) in points.iter().enumerate() {
             let p = self.screen.to_screen(*p);
             let near = run.last().is_some_and(|last| last.distance_squared(p) < NEAR * NEAR);
             if !near || i + 1 == points.len() {
@@ -265,7 +302,7 @@ impl Map {
     fn lines(&mut self, lines: &[Points], style: &Style) -> durer::Result<()> {
         let mut path = Path::new();
         for line in lines {
-            if let Some(run) = self.run(line, style.stroke_width) {
+            if let Some(run) = self.run(&line.xy, style.stroke_width) {
                 self.counts.lines += 1;
                 path.extend(&Path::polyline(run));
             }
@@ -282,7 +319,7 @@ impl Map {
 
     fn polygons(&mut self, polygons: &[Vec<Points>], style: &Style) -> durer::Result<()> {
         if let Some(mut joined) = self.joined.take() {
-            let seen = |ring: &Points| self.run(ring, 0.0).is_some();
+            let seen = |ring: &Points| self.run(&ring.xy, 0.0).is_some();
             let on_screen =
                 |ring: &Points| ring.xy.iter().map(|p| self.screen.to_screen(*p)).collect();
             let shown = polygons.iter().filter(|rings| rings.first().is_some_and(seen));
@@ -299,10 +336,10 @@ impl Map {
         }
         let mut path = Path::new();
         for rings in polygons {
-            let outer = rings.first().and_then(|ring| self.run(ring, style.stroke_width));
+            let outer = rings.first().and_then(|ring| self.run(&ring.xy, style.stroke_width));
             let Some(outer) = outer else { continue };
             self.counts.polygons += 1;
-            let holes = rings[1..].iter().filter_map(|r| self.run(r, style.stroke_width));
+            let holes = rings[1..].iter().filter_map(|r| self.run(&r.xy, style.stroke_width));
             for ring in std::iter::once(outer).chain(holes.collect::<Vec<_>>()) {
                 self.land.push(ring.iter().copied(), true);
                 path.extend(&Path::polygon(ring));
@@ -311,7 +348,32 @@ impl Map {
         if let Some(fill) = style.fill {
             self.canvas.fill(&path, FillRule::EvenOdd, &Paint::Color(fill), 1.0);
         }
-        self.stroke(&path, style)
+        match self.borders.take() {
+            Some(borders) => self.add_borders(polygons, style, borders),
+            None => self.stroke(&path, style)?,
+        }
+        Ok(())
+    }
+
+    /// Notes the borders of polygons that no polygon of the layer had before.
+    fn add_borders(
+        &mut self,
+        polygons: &[Vec<Points>],
+        style: &Style,
+        (mut borders, mut path): (Borders, Path),
+    ) {
+        for border in polygons.iter().flatten().flat_map(|ring| borders.take(&ring.xy)) {
+            if let Some(run) = self.run(&border.points, style.stroke_width) {
+                let outline = if border.closed { Path::polygon(run) } else { Path::polyline(run) };
+                path.extend(&outline);
+            }
+        }
+        self.borders = Some((borders, path));
+    }
+
+    /// Draws the borders of a layer that have been noted, over all of its areas.
+    fn stroke_borders(&mut self, style: &Style) -> durer::Result<()> {
+        self.borders.take().map_or(Ok(()), |(_, path)| self.stroke(&path, style))
     }
 
     fn markers(&mut self, points: &Points, style: &Style) -> durer::Result<()> {
@@ -323,6 +385,8 @@ impl Map {
                 continue;
             }
             self.counts.points += 1;
+            let half = DVec2::splat(0.5 * (style.marker_size + style.stroke_width));
+            self.marked.extend(Rect::new(p - half, p + half));
             let path = marker(style.marker, p, style.marker_size * 0.5);
             if let Some(fill) = style.fill.filter(|_| style.marker != Marker::Cross) {
                 self.canvas.fill(&path, FillRule::NonZero, &Paint::Color(fill), 1.0);
@@ -333,11 +397,13 @@ impl Map {
     }
 
     /// What is to be written, and where.
-    fn labels(&self, features: &[Feature], field: &str, layer: usize) -> Vec<Label> {
+    fn labels(&self, features: &[Feature], field: &str, style: &Style, layer: usize) -> Vec<Label> {
+        let known = || Priority { field: LABELRANK.to_owned(), largest_first: false };
+        let by = style.label_priority.clone().unwrap_or_else(known);
         let label = |feature: &Feature| {
             let text = text_of(feature, field)?;
             let anchor = Anchor::of(feature.geometry.as_ref()?, &self.screen, &self.seen)?;
-            Some(Label { text, anchor, layer })
+            Some(Label { text, anchor, rank: rank(feature, &by), layer })
         };
         features.iter().filter_map(label).collect()
     }

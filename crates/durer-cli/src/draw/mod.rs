@@ -1,6 +1,8 @@
 //! `durer draw`.
 
+mod along;
 mod args;
+mod borders;
 mod fonts;
 mod joined;
 mod label;

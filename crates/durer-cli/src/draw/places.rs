@@ -154,6 +154,7 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
     let on = inside.iter().filter(|(share, _)| *share >= MOSTLY).map(|(_, middle)| *middle);
     let partly = inside.iter().filter(|(share, _)| (PARTLY..MOSTLY).contains(share));
     let over = partly.map(|(_, middle)| *middle).chain(poles.iter().copied());
+    let over = over.chain(poles.iter().flat_map(|pole| reaching_out(*pole, size)));
     let fit = match best {
         b if b >= HELD => Fit::Held,
         b if b < MOSTLY => Fit::Tiny,
@@ -166,6 +167,12 @@ pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land
         Fit::Hiding | Fit::Tiny => open.chain(on).chain(over).collect(),
     };
     Places { fit, held: best, alone, middles }
+}
+
+/// Places from which a label still reaches to a point: it begins or ends there, is above it or below it.
+fn reaching_out(point: DVec2, size: DVec2) -> [DVec2; 6] {
+    let (x, y) = ((size.x - size.y) / 2.0, size.y / 2.0);
+    [(x, 0.0), (-x, 0.0), (x, -y), (x, y), (-x, -y), (-x, y)].map(|(x, y)| point + DVec2::new(x, y))
 }
 
 /// Places beside a box: right, left, above, below and at its corners.

@@ -407,3 +407,99 @@ fn wrong_use_and_bad_data_are_told() {
     }
     assert!(!folder.path("a.png").exists());
 }
+
+#[test]
+fn labels_keep_off_markers_and_stand_in_the_middle_of_squares() {
+    let folder = folder();
+    let town = |x: u32| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"n":"Town {x}"}},"geometry":{{"type":"Point","coordinates":[{x},0]}}}}"#
+        )
+    };
+    let towns = [0, 46, 92].map(town).join("\n");
+    folder.write("towns.geojsonl", towns);
+    let dots = |labels: &str| {
+        folder.must(&format!("draw towns.geojsonl -o t.png --size 160x40 --window -10,-12,110,12 --fill red --stroke none --marker-size 8{labels}"));
+        let picture = picture(&folder, "t.png");
+        let at = (0..160).flat_map(|x| (0..40).map(move |y| (x, y)));
+        at.filter(|(x, y)| picture.pixel(*x, *y)[..] == [255, 0, 0]).count()
+    };
+    let all = dots("");
+    assert!(all > 90, "{all}");
+    assert_eq!(dots(" --label n"), all);
+
+    let square = r#"{"type":"Feature","properties":{"n":"square"},"geometry":{"type":"Polygon","coordinates":[[[0,0],[10,0],[10,10],[0,10],[0,0]]]}}"#;
+    folder.write("square.geojson", square);
+    folder.must("draw square.geojson -o s.png --size 200 --label n --label-halo none");
+    let dark = darkest_rows(&picture(&folder, "s.png"), 60..140, 10..190);
+    let middle = (dark.0 + dark.1) / 2;
+    assert!((95..=105).contains(&middle), "{dark:?}");
+}
+
+/// The first and the last row with dark pixels in a part of a picture.
+fn darkest_rows(
+    picture: &Picture,
+    columns: std::ops::Range<u32>,
+    rows: std::ops::Range<u32>,
+) -> (u32, u32) {
+    let dark = |y: &u32| columns.clone().any(|x| picture.pixel(x, *y)[0] < 80);
+    let dark: Vec<u32> = rows.filter(dark).collect();
+    (dark[0], dark[dark.len() - 1])
+}
+
+#[test]
+fn shared_borders_are_dashed_once() {
+    let folder = folder();
+    let square = |x: u32| {
+        let (a, b) = (x, x + 10);
+        format!(
+            r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":[[[{a},0],[{b},0],[{b},7],[{a},7],[{a},0]]]}}}}"#
+        )
+    };
+    folder.write("two.geojsonl", [square(0), square(10)].join("\n"));
+    folder.must("draw two.geojsonl -o d.png --size 420x150 --window -0.5,-0.25,20.5,7.25 --fill white --stroke red --stroke-width 4 --dashes 10,10");
+    let found = picture(&folder, "d.png");
+    let red = |x: u32| (10..140).filter(|y| found.pixel(x, *y)[1] < 128).count() as f64 / 130.0;
+    for x in [10, 210, 410] {
+        assert!((0.4..=0.6).contains(&red(x)), "{x}: {}", red(x));
+    }
+    // So are borders that let light through: they are as dark between two areas as around them.
+    folder.must("draw two.geojsonl -o d.png --size 420x150 --window -0.5,-0.25,20.5,7.25 --fill white --stroke #f008 --stroke-width 4");
+    let found = picture(&folder, "d.png");
+    assert_eq!(found.pixel(210, 70), found.pixel(10, 70));
+}
+
+#[test]
+fn labels_follow_lines_and_ranks_decide_who_comes_first() {
+    let folder = folder();
+    let up = r#"{"type":"Feature","properties":{"n":"Steep"},"geometry":{"type":"LineString","coordinates":[[10,0],[10,100]]}}"#;
+    folder.write("up.geojson", up);
+    folder.must("draw up.geojson -o u.png --size 100x100 --window 0,0,20,100 --label n --label-halo none --stroke none");
+    let found = picture(&folder, "u.png");
+    let dark = |x: u32, y: u32| found.pixel(x, y)[0] < 120;
+    let columns = (0..100).filter(|x| (0..100).any(|y| dark(*x, y))).count();
+    let rows = (0..100).filter(|y| (0..100).any(|x| dark(x, *y))).count();
+    assert!(rows > 25 && columns < 16, "{rows} rows, {columns} columns");
+
+    let town = |name: &str, rank: u32, people: u32| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"n":"{name}","LABELRANK":{rank},"people":{people}}},"geometry":{{"type":"Point","coordinates":[50,50]}}}}"#
+        )
+    };
+    folder.write("towns.geojsonl", [town("MMMMMM", 5, 9), town("i", 2, 1)].join("\n"));
+    let width = |options: &str| {
+        folder.must(&format!("draw towns.geojsonl -o r.png --size 80x20 --window 0,40,80,60 --marker-size 0 --stroke none --label n {options}"));
+        let found = picture(&folder, "r.png");
+        (0..80).filter(|x| (0..20).any(|y| found.pixel(*x, y)[0] < 120)).count()
+    };
+    let narrow = width("");
+    assert!(narrow < 8, "{narrow}");
+    assert_eq!(width("--label-priority LABELRANK"), narrow);
+    assert!(width("--label-priority -people") > 20);
+    let wrong = folder.run("draw towns.geojsonl -o r.png --label n --label-priority height");
+    assert_eq!(wrong.code, 1, "{wrong:?}");
+    assert!(
+        wrong.err.contains("--label-priority height: no feature has this property"),
+        "{wrong:?}"
+    );
+}

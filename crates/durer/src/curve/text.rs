@@ -26,10 +26,66 @@ pub struct TextLine {
     pub path: Path,
     /// Where the next glyph would start.
     pub advance: f64,
+    /// For each glyph where it starts on the base line, where the next one does, and before which element of the
+    /// path its outline ends.
+    pub glyphs: Vec<PlacedGlyph>,
     /// Height of ascenders above the base line, positive.
     pub ascent: f64,
     /// Depth of descenders below the base line, positive.
     pub descent: f64,
+}
+
+/// A glyph of a [`TextLine`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlacedGlyph {
+    /// Its origin on the base line.
+    pub start: f64,
+    /// The origin of a glyph after it, without kerning.
+    pub end: f64,
+    /// How many elements of the line's path belong to it and to those before.
+    pub elements: usize,
+}
+
+impl TextLine {
+    /// Returns the outlines along a polyline: each glyph is turned by the direction at its middle, as SVG's
+    /// `textPath` does. The text's start is `start` along the polyline, its base line `below` that far on its right
+    /// (y down); what comes before the polyline or after it goes straight on.
+    pub fn along(&self, polyline: &[DVec2], start: f64, below: f64) -> Path {
+        let mut out = Path::new();
+        let mut first = 0;
+        for glyph in &self.glyphs {
+            let middle = (glyph.start + glyph.end) * 0.5;
+            let elements = self.path.elements().get(first..glyph.elements).unwrap_or_default();
+            first = glyph.elements;
+            let Some((at, direction)) = place_along(polyline, start + middle) else { continue };
+            let turned = DAffine2::from_cols(direction, direction.perp(), at)
+                * DAffine2::from_translation(DVec2::new(-middle, below));
+            let mut own = Path::new();
+            elements.iter().for_each(|element| {
+                own.push(*element);
+            });
+            out.extend(&own.transformed(turned));
+        }
+        out
+    }
+}
+
+/// The point so far along a polyline, and the unit direction there; `None` where it has no length.
+pub fn place_along(polyline: &[DVec2], mut along: f64) -> Option<(DVec2, DVec2)> {
+    let mut last = None;
+    for pair in polyline.windows(2) {
+        let (way, length) = (pair[1] - pair[0], pair[0].distance(pair[1]));
+        if !(length > 0.0 && length.is_finite()) {
+            continue;
+        }
+        let direction = way / length;
+        if along <= length {
+            return Some((pair[0] + direction * along, direction));
+        }
+        along -= length;
+        last = Some((pair[1], direction));
+    }
+    last.map(|(end, direction)| (end + direction * along, direction))
 }
 
 impl std::fmt::Debug for Font<'_> {
@@ -79,7 +135,10 @@ impl<'a> Font<'a> {
                 let moved = DAffine2::from_translation(DVec2::new(line.advance, 0.0));
                 line.path.extend(&pen.0.transformed(moved));
             }
+            let start = line.advance;
             line.advance += f64::from(glyphs.advance_width(glyph).unwrap_or(0.0));
+            let elements = line.path.elements().len();
+            line.glyphs.push(PlacedGlyph { start, end: line.advance, elements });
             previous = Some(glyph);
         }
         line

@@ -62,7 +62,8 @@ pub struct Interior {
 }
 
 /// The point of a polygon that is farthest from its rings — the inside by the even-odd rule — to within
-/// `options.precision`; `None` where nothing is inside. Points that are not finite are left out.
+/// `options.precision`; `None` where nothing is inside. Of points that are as far, as in long rectangles, the
+/// centre of the largest ring's area is taken, if it is one. Points that are not finite are left out.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -107,7 +108,27 @@ pub fn interior_point(
             search.look_at(square.center + half * DVec2::new(x, y), half, t);
         }
     }
-    search.best
+    let best = search.best?;
+    let center = center_of_largest(&rings).unwrap_or(best.point);
+    let distance = distance_to_border(center, &rings);
+    let is_as_far = distance > 0.0 && distance + precision >= best.distance;
+    Some(if is_as_far { Interior { point: center, distance } } else { best })
+}
+
+/// The centre of the area of the ring that holds the most.
+fn center_of_largest(rings: &[Vec<DVec2>]) -> Option<DVec2> {
+    let centers = rings.iter().filter_map(|ring| {
+        let origin = *ring.first()?;
+        let (mut area, mut sum) = (0.0, DVec2::ZERO);
+        for pair in ring.windows(2) {
+            let (a, b) = (pair[0] - origin, pair[1] - origin);
+            area += a.perp_dot(b);
+            sum += (a + b) * a.perp_dot(b);
+        }
+        Some((area.abs(), origin + sum / (3.0 * area)))
+    });
+    let largest = centers.max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    largest.is_finite().then_some(largest)
 }
 
 struct Search<'a> {

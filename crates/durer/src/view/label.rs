@@ -67,6 +67,26 @@ impl Placer {
         None
     }
 
+    /// Takes the first of the candidates of which all parts are free and within the bounds, as of a label along a
+    /// line; gives its number. Parts of one candidate may overlap.
+    pub fn place_parts(
+        &mut self,
+        candidates: impl IntoIterator<Item = Vec<Rect>>,
+    ) -> Option<usize> {
+        for (number, parts) in candidates.into_iter().enumerate() {
+            if !parts.is_empty() && parts.iter().all(|part| self.is_free(part)) {
+                parts.into_iter().for_each(|part| self.take(part));
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    /// Keeps labels off a place, which others may be kept off too.
+    pub fn reserve(&mut self, place: Rect) {
+        self.take(place);
+    }
+
     fn is_free(&self, candidate: &Rect) -> bool {
         let bounds = &self.bounds;
         let within = bounds.contains(candidate.min()) && bounds.contains(candidate.max());
