@@ -77,6 +77,13 @@ pub struct SurfaceArgs {
     /// What heights are multiplied with, or `auto`: as high as 0.4 of the longer side of the ground
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, default_value = "auto", value_parser = super::exaggeration)]
     pub exaggeration: super::Exaggeration,
+    /// Depth over width of the ground as drawn: a number, `equal` for one scale, or `auto`: equal, or 1 where one
+    /// range is more than five times the other
+    #[arg(long, value_name = "RATIO", allow_hyphen_values = true, default_value = "auto", value_parser = super::aspect)]
+    pub aspect: super::Ratio,
+    /// Heights that are drawn; what is lower or higher is missing, as are poles of 1/x and tan
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = values::range)]
+    pub y_range: Option<[f64; 2]>,
     /// A height that stands for a missing one, beside what the format says
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, value_parser = values::number, conflicts_with = "formula")]
     pub no_data: Option<f64>,
@@ -137,6 +144,9 @@ pub struct PlotLookArgs {
     /// Fill the cells, with the colours of --color-map, or with the background's
     #[arg(long)]
     pub fill: bool,
+    /// Leave out the bar that tells the heights of colours
+    #[arg(long)]
+    pub no_color_bar: bool,
     /// Colour of lines and labels
     #[arg(long, value_name = "COLOR", default_value = "black", value_parser = color::color)]
     pub ink: Vec4,

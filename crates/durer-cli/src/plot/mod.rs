@@ -32,6 +32,8 @@ use std::time::Instant;
 
 /// More lines than this in a family are a dark area on paper; a finer file is resampled.
 const MOST_LINES: usize = 100;
+/// `--aspect auto`: where one side of the ground is more than so many times the other, both are drawn alike.
+const MOST_LENGTHY: f64 = 5.0;
 /// `--exaggeration auto`: height over the longer side of the ground.
 const AUTO_HEIGHT: f64 = 0.4;
 /// Where a formula is evaluated unless told.
@@ -70,6 +72,26 @@ pub fn exaggeration(text: &str) -> Result<Exaggeration, String> {
         _ => {
             values::positive(text).map(Exaggeration::Factor).map_err(|e| format!("{e}; or `auto`"))
         }
+    }
+}
+
+/// `--aspect`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ratio {
+    /// By the extent of the ground.
+    Auto,
+    /// One scale for x and z.
+    Equal,
+    /// As told.
+    Of(f64),
+}
+
+/// `auto`, `equal`, or a number above 0.
+pub fn aspect(text: &str) -> Result<Ratio, String> {
+    match text {
+        "auto" => Ok(Ratio::Auto),
+        "equal" => Ok(Ratio::Equal),
+        _ => values::positive(text).map(Ratio::Of).map_err(|e| format!("{e}; or `auto`, `equal`")),
     }
 }
 
@@ -172,6 +194,10 @@ impl Surface {
         let wrong = |e: &dyn std::fmt::Display| Failure::Usage(format!("--formula: {e}"));
         let formula = Formula::parse(text).map_err(|e| wrong(&e))?;
         let Size { width, height } = args.surface.samples;
+        if width < 2 || height < 2 {
+            let message = format!("--samples {width}x{height}: a surface has 2x2 points at least");
+            return Err(Failure::Usage(message));
+        }
         let size = [width as usize, height as usize];
         let x = args.surface.x.unwrap_or(FORMULA_RANGE);
         let z = args.surface.z.unwrap_or(FORMULA_RANGE);
@@ -182,6 +208,7 @@ impl Surface {
         if field.range().is_none() {
             return Err(wrong(&"it has no value at any point of the grid"));
         }
+        let field = within(field, args)?;
         Ok(Self { field, name: text.to_owned(), format: "formula".to_owned(), on_map: false })
     }
 
@@ -209,6 +236,7 @@ impl Surface {
         let (old_x, old_z) = (map.field.x_range(), map.field.z_range());
         let field = map.field.with_ranges(x.unwrap_or(old_x), z.unwrap_or(old_z));
         let field = field.map_err(|e| Failure::Usage(format!("--x, --z: {e}")))?;
+        let field = within(field, args)?;
         let read = [field.columns(), field.rows()];
         let field = match args.look.every {
             Some(_) => field,
@@ -219,13 +247,36 @@ impl Surface {
         Ok(Self { field, name, format: map.format, on_map })
     }
 
-    /// What heights are multiplied with so that the plot is neither flat nor a tower.
-    fn auto_exaggeration(&self) -> f64 {
+    /// Depth over width of the ground as drawn; `None` for one scale.
+    fn aspect(&self, ratio: Ratio) -> Option<f64> {
         let extent = |[from, to]: [f64; 2]| to - from;
-        let ground = extent(self.field.x_range()).max(extent(self.field.z_range()));
+        let own = extent(self.field.z_range()) / extent(self.field.x_range());
+        match ratio {
+            Ratio::Of(ratio) => Some(ratio),
+            Ratio::Auto if !(1.0 / MOST_LENGTHY..=MOST_LENGTHY).contains(&own) => Some(1.0),
+            Ratio::Auto | Ratio::Equal => None,
+        }
+    }
+
+    /// What heights are multiplied with so that the plot is neither flat nor a tower.
+    fn auto_exaggeration(&self, aspect: Option<f64>) -> f64 {
+        let extent = |[from, to]: [f64; 2]| to - from;
+        let width = extent(self.field.x_range());
+        let depth = aspect.map_or(extent(self.field.z_range()), |aspect| aspect * width);
+        let ground = width.max(depth);
         let height = self.field.range().map_or(0.0, extent);
         let factor = AUTO_HEIGHT * ground / height;
         if factor.is_finite() && factor > 0.0 { factor } else { 1.0 }
+    }
+}
+
+/// A field without what is beyond `--y-range`.
+fn within(field: HeightField, args: &PlotArgs) -> Result<HeightField, Failure> {
+    let Some([low, high]) = args.surface.y_range else { return Ok(field) };
+    let field = field.map(|y| if (low..=high).contains(&y) { y } else { f64::NAN });
+    match field.range() {
+        Some(_) => Ok(field),
+        None => Err(Failure::Usage(format!("--y-range {low},{high}: no height lies in it"))),
     }
 }
 
@@ -256,9 +307,10 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
         every_column: if along_z { every } else { 0 },
         hidden: look.hidden == Hidden::Dashed,
     };
+    let aspect = surface.aspect(args.surface.aspect);
     let exaggeration = match args.surface.exaggeration {
         Exaggeration::Factor(factor) => factor,
-        Exaggeration::Auto => surface.auto_exaggeration(),
+        Exaggeration::Auto => surface.auto_exaggeration(aspect),
     };
     let names = look.labels.clone().unwrap_or_else(|| ["x", "y", "z"].map(str::to_owned));
     let axes = (!look.no_axes).then_some(Axes { names, z_is_south: surface.on_map });
@@ -269,6 +321,8 @@ fn options(args: &PlotArgs, surface: &Surface) -> Result<plot::Options, Failure>
         eye,
         lines,
         exaggeration,
+        aspect,
+        color_bar: !look.no_color_bar,
         color_map: look.color_map,
         fill: look.fill,
         ink: encode_rgba8(look.ink),

@@ -60,7 +60,7 @@ fn wholly_transparent_pixels_are_one_colour() {
     assert_eq!(pixels(&folder, "--at 0,0 --color red"), [3]);
     let found = Picture::decode(&folder.read("b.png"));
     assert_eq!((found.pixel(2, 0), found.pixel(3, 0)), (&[255, 0, 0, 255][..], &[9, 9, 9, 1][..]));
-    assert_eq!(pixels(&folder, "--at 0,0 --color red --tolerance 9"), [5]);
+    assert_eq!(pixels(&folder, "--at 4,0 --color red --tolerance 9"), [5]);
 }
 
 /// A PNG of one row.

@@ -69,12 +69,27 @@ fn options_of_plots_are_checked() {
         ("plot --formula x --fov 40 --ortho -o a.svg", "cannot be used with"),
         ("plot --formula x --eye 0,0,0 -o a.svg", "the whole surface lies ahead"),
         ("plot --formula x --eye 9,9,9 --azimuth 3 -o a.svg", "cannot be used with"),
+        ("plot --formula x --samples 1x9 -o a.svg", "2x2 points at least"),
+        ("plot --formula x --aspect 0 -o a.svg", "or `auto`, `equal`"),
+        ("plot --formula x --y-range 8,9 -o a.svg", "no height lies in it"),
     ] {
         let ended = folder.run(arguments);
         let code = if arguments.contains("5x5") { 1 } else { 2 };
         assert_eq!(ended.code, code, "{arguments}: {}", ended.err);
         assert!(ended.err.contains(message), "{arguments}: {}", ended.err);
     }
+}
+
+#[test]
+fn points_become_a_surface_and_poles_are_left_out() {
+    let folder = Folder::new();
+    folder.write("p.csv", "x,y,z\n0,0,1\n1,0,2\n0,1,3\n1,1,4\n");
+    let report = folder.must("plot p.csv -o a.svg --json").json();
+    assert_eq!(report["points"], serde_json::json!([2, 2]));
+    assert_eq!(report["heights"], serde_json::json!([1.0, 4.0]));
+    let pole = "plot --formula 1/x --samples 21x5 -o a.svg --json --y-range -3,3";
+    let heights = folder.must(pole).json()["heights"].clone();
+    assert_eq!(heights, serde_json::json!([-2.5, 2.5]));
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod json;
 mod npy;
 mod npz;
 mod picture;
+mod points;
 mod table;
 
 use crate::{Error, Limits, Place, Result, Warning};

@@ -1,21 +1,68 @@
-//! Rows of numbers with commas, semicolons, tabs or blanks between them.
+//! Rows of numbers with commas, semicolons, tabs or blanks between them: heights, or points x, y, z.
 
-use super::{Grid, HeightMapOptions, check_size};
+use super::{Grid, HeightMapOptions, check_size, points};
 use crate::text::{quote, utf8};
 use crate::{Error, Place, Result, Warning, number};
 
-/// Whether text begins with a number, after comments.
+/// Whether text begins with a number or the names of coordinates, after comments.
 pub fn looks_like_one(bytes: &[u8]) -> bool {
     let text = utf8(bytes.get(..4096).unwrap_or(bytes));
     let line = text.split(|b| *b == b'\n').map(<[u8]>::trim_ascii).find(|l| is_row(l));
-    line.is_some_and(|l| number::float(l).is_some())
+    let names =
+        |l: &[u8]| matches!(heading_of(l, separator(l)), Heading::Points | Heading::Latitude);
+    line.is_some_and(|l| number::float(l).is_some() || names(l))
 }
 
 fn is_row(line: &[u8]) -> bool {
     !line.is_empty() && !line.starts_with(b"#")
 }
 
+/// A table of three columns without a heading that has more rows than this is told what a heading would change.
+const LONG: usize = 12;
+
 pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
+    let (mut table, heading) = table(bytes, options)?;
+    if table.columns == 3 && heading == Heading::Latitude {
+        table.heights.as_chunks_mut::<3>().0.iter_mut().for_each(|point| point.swap(0, 1));
+    }
+    let is_list = matches!(heading, Heading::Points | Heading::Latitude);
+    let found = if table.columns == 3 { points::gridded(&table, is_list, options)? } else { None };
+    if let Some(grid) = found.or_else(|| points::with_coordinates(&table)) {
+        return Ok(grid);
+    }
+    let mut grid = table;
+    if heading != Heading::None {
+        let message = "the heading is left out".to_owned();
+        grid.warnings.insert(0, Warning { place: Place::Line(1, 0), message });
+    }
+    if grid.columns == 3 && grid.rows > LONG {
+        let message = format!(
+            "it is read as {} rows of three heights; points x, y, z need a heading that names them",
+            grid.rows
+        );
+        grid.warnings.push(Warning { place: Place::Whole, message });
+    }
+    if grid.columns == 1 && grid.rows == 1 {
+        return Err(Error::whole("one height is no surface; two rows and columns are needed"));
+    }
+    Ok(grid)
+}
+
+/// What a table's first line is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Heading {
+    /// Numbers like the others.
+    None,
+    /// Names of the coordinates of points, x first.
+    Points,
+    /// The same, with the latitude first.
+    Latitude,
+    /// Other words.
+    Words,
+}
+
+/// The numbers of a table. Of a first line whose first cell alone is text that cell is missing.
+fn table(bytes: &[u8], options: &HeightMapOptions) -> Result<(Grid, Heading)> {
     let text = utf8(bytes);
     let mut grid = Grid {
         columns: 0,
@@ -26,16 +73,19 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
         warnings: Vec::new(),
     };
     let separator = separator(&text);
+    let mut heading = None;
     for (index, line) in text.split(|b| *b == b'\n').enumerate() {
         let content = line.trim_ascii();
         if !is_row(content) {
             continue;
         }
         let number = index as u64 + 1;
-        if grid.rows == 0 && grid.warnings.is_empty() && is_heading(content, separator) {
-            let message = "the heading is left out".to_owned();
-            grid.warnings.push(Warning { place: Place::Line(number, 0), message });
-            continue;
+        if grid.rows == 0 && heading.is_none() {
+            let first = heading_of(content, separator);
+            heading = Some(first);
+            if first != Heading::None {
+                continue;
+            }
         }
         row(&mut grid, line, number, separator)?;
         check_size(grid.columns as u64, grid.rows as u64, &options.limits)?;
@@ -43,7 +93,7 @@ pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     if grid.rows == 0 {
         return Err(Error::whole("there is no row of numbers"));
     }
-    Ok(grid)
+    Ok((grid, heading.unwrap_or(Heading::None)))
 }
 
 /// What parts the numbers: a semicolon, tab or comma where the first lines have one, else blanks.
@@ -68,9 +118,27 @@ fn cells(line: &[u8], separator: Option<u8>) -> impl Iterator<Item = (u64, &[u8]
     placed.filter(move |(_, cell)| separator.is_some() || !cell.is_empty())
 }
 
-/// A first line in which some cell is text.
-fn is_heading(line: &[u8], separator: Option<u8>) -> bool {
-    cells(line, separator).any(|(_, cell)| height(cell).is_none())
+/// Names of coordinates, in lower case.
+const X: [&str; 7] = ["x", "lon", "lng", "long", "longitude", "east", "easting"];
+const Y: [&str; 6] = ["y", "lat", "latitude", "north", "northing", "lati"];
+
+/// A name without quotes, in lower case.
+fn name(cell: &[u8]) -> String {
+    String::from_utf8_lossy(cell).trim_matches(['"', ' ', '\'']).to_ascii_lowercase()
+}
+
+/// What a first line is; text in a corner, before numbers alone, names what the first row and column are.
+fn heading_of(line: &[u8], separator: Option<u8>) -> Heading {
+    let words: Vec<bool> = cells(line, separator).map(|(_, cell)| height(cell).is_none()).collect();
+    let names: Vec<String> = cells(line, separator).map(|(_, cell)| name(cell)).collect();
+    let (is_x, is_y) = (|n: &String| X.contains(&n.as_str()), |n: &String| Y.contains(&n.as_str()));
+    match words.split_first() {
+        _ if matches!(&names[..], [x, y, _] if is_x(x) && is_y(y)) => Heading::Points,
+        _ if matches!(&names[..], [y, x, _] if is_x(x) && is_y(y)) => Heading::Latitude,
+        Some((true, others)) if others.len() > 1 && !others.contains(&true) => Heading::None,
+        _ if words.contains(&true) => Heading::Words,
+        _ => Heading::None,
+    }
 }
 
 /// A height; NaN for what stands for a missing one.
@@ -86,6 +154,10 @@ fn height(cell: &[u8]) -> Option<f64> {
 fn row(grid: &mut Grid, line: &[u8], number: u64, separator: Option<u8>) -> Result<()> {
     let before = grid.heights.len();
     for (column, cell) in cells(line.trim_ascii_end(), separator) {
+        if grid.heights.is_empty() && height(cell).is_none() {
+            grid.heights.push(f64::NAN);
+            continue;
+        }
         let value = height(cell).ok_or_else(|| {
             Error::line(number, column, format!("`{}` is not a number", quote(cell)))
         })?;

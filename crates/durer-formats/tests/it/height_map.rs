@@ -61,6 +61,67 @@ fn the_same_heights_in_every_format() {
 }
 
 #[test]
+fn points_x_y_z_are_put_on_a_grid() {
+    // A lattice, in any order: y runs to the north, so the highest is the first row.
+    for (name, text) in [
+        ("a heading", "x,y,z\n0,10,1\n2,10,2\n4,10,3\n4,8,6\n0,8,4\n2,8,nan\n"),
+        ("no heading", "0 8 4\n0 10 1\n2 8 nan\n2 10 2\n4 8 6\n4 10 3\n"),
+        ("latitude first", "lat;lon;height\n10;0;1\n10;2;2\n10;4;3\n8;4;6\n8;0;4\n8;2;\n"),
+    ] {
+        let found = map(text.as_bytes(), "a.csv");
+        assert_eq!(rows(&found), TWO_ROWS, "{name}");
+        let field = &found.field;
+        assert_eq!((field.x_range(), field.z_range()), ([0.0, 4.0], [-10.0, -8.0]), "{name}");
+        assert!(found.on_map && found.warnings.is_empty(), "{name}: {:?}", found.warnings);
+    }
+    // Anywhere: a plane stays one, and what is outside of the points is missing.
+    let mut text = "x,y,z\n".to_owned();
+    for i in 0..200 {
+        let (x, y) = (f64::from(i % 20) + f64::from(i * 7 % 13) * 0.05, f64::from(i / 20));
+        text += &format!("{x},{y},{}\n", 3.0 + 2.0 * x - y);
+    }
+    let found = map(text.as_bytes(), "a.csv");
+    assert!(
+        found.warnings[0].message.contains("200 points are put on a grid of 22 × 22"),
+        "{found:?}"
+    );
+    let field = &found.field;
+    let mut known = 0;
+    for row in 0..field.rows() {
+        for column in 0..field.columns() {
+            let Some(p) = field.point(column, row) else { continue };
+            known += 1;
+            assert!((p.y - (3.0 + 2.0 * p.x + p.z)).abs() < 1e-9, "{p}");
+        }
+    }
+    assert!(known > 400, "{known}");
+    let line = error(b"x,y,z\n0,0,1\n1,1,2\n2,2,3\n");
+    assert!(line.contains("three points x, y, z at least that are not on one line"), "{line}");
+}
+
+#[test]
+fn coordinates_stand_in_the_first_row_and_column() {
+    for text in [",0,2,4\n10,1,2,3\n8,4,,6\n", "y\\x;4;2;0\n8;6;NA;4\n10;3;2;1\n"] {
+        let found = map(text.as_bytes(), "a.csv");
+        assert_eq!(rows(&found), TWO_ROWS, "{text}");
+        assert_eq!(found.field.x_range(), [0.0, 4.0]);
+        assert_eq!(found.field.z_range(), [-10.0, -8.0]);
+    }
+    // Uneven ones are made even.
+    let found = map(b",0,1,4\n0,0,10,40\n1,0,10,40\n2,0,10,40\n", "a.csv");
+    assert!(found.warnings[0].message.contains("not evenly spaced"), "{:?}", found.warnings);
+    assert_eq!(rows(&found)[0], [Some(0.0), Some(20.0), Some(40.0)]);
+}
+
+#[test]
+fn tables_that_may_be_meant_otherwise_are_told() {
+    let long: String = (0..20).map(|i| format!("{i},{},{}\n", i * i, i % 3)).collect();
+    let found = map(long.as_bytes(), "a.csv");
+    assert!(found.warnings[0].message.contains("points x, y, z need a heading"), "{found:?}");
+    assert!(error(b"5\n").contains("one height is no surface"));
+}
+
+#[test]
 fn whole_numbers_of_every_width_are_read() {
     for (kind, data, expected) in [
         ("|i1", vec![0xff, 2], [-1.0, 2.0]),

@@ -1,7 +1,8 @@
 //! Axes on the outer edges of the box around a surface, with ticks and labels.
 
-use super::{Axes, Marks, Options, ticks::ticks};
-use crate::math::{DVec2, DVec3};
+use super::ticks::{offset, short, ticks};
+use super::{Axes, Marks, Options};
+use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Aabb, HeightField};
 use crate::target::drawing::{Anchor, Label, Line, LineClass};
 use crate::view::picture_plane::PicturePlane;
@@ -11,7 +12,9 @@ const TICK: f64 = 0.6;
 /// From a tick to its label, in heights of a letter.
 const GAP: f64 = 0.5;
 /// Width of a letter, in heights: to keep texts apart.
-const LETTER: f64 = 0.85;
+pub const LETTER: f64 = 0.85;
+/// Room between two labels, in heights of a letter.
+const APART: f64 = 0.4;
 /// Room that a label takes along an axis of the ground and along an upright one, in heights of a letter.
 const SPACE: [f64; 2] = [5.0, 3.0];
 
@@ -24,9 +27,10 @@ struct Edge {
     seen: [DVec2; 2],
 }
 
-/// Draws the axes; `scale` is millimetres per plane unit.
+/// Draws the axes of a field that is `seen` with other heights and ranges; `scale` is millimetres per plane unit.
 pub fn draw(
     field: &HeightField,
+    seen_field: &HeightField,
     bounds: &Aabb,
     plane: &PicturePlane,
     axes: &Axes,
@@ -63,22 +67,15 @@ pub fn draw(
         };
         axis(&mut marks, &e, true_range, center, &axes.names[e.k], plane, options, scale);
     }
-    corners(&mut marks, field, &[x, z], plane, options);
+    corners(&mut marks, seen_field, &[x, z], plane);
     marks
 }
 
 /// Upright lines from the ends of the ground's axes up to the surface's own corners.
-fn corners(
-    marks: &mut Marks,
-    field: &HeightField,
-    edges: &[Edge; 2],
-    plane: &PicturePlane,
-    options: &Options,
-) {
+fn corners(marks: &mut Marks, field: &HeightField, edges: &[Edge; 2], plane: &PicturePlane) {
     let (columns, rows) = (field.columns(), field.rows());
     for (column, row) in [(0, 0), (columns - 1, 0), (0, rows - 1), (columns - 1, rows - 1)] {
         let Some(top) = field.point(column, row) else { continue };
-        let top = DVec3::new(top.x, top.y * options.exaggeration, top.z);
         let at_corner = |p: &&DVec3| p.x == top.x && p.z == top.z;
         let ground = edges.iter().flat_map(|e| &e.ends).find(at_corner);
         if let Some(points) = ground.and_then(|g| plane.project_segment(*g, top)) {
@@ -118,25 +115,38 @@ fn axis(
     let out = if across.dot(middle - center) >= 0.0 { across } else { -across };
     let wanted =
         ((length / (SPACE[usize::from(edge.k == 1)] * options.text)) as usize).clamp(2, 10);
-    let (low, high) = (range[0].min(range[1]), range[0].max(range[1]));
-    let mut widest: f64 = 0.0;
-    let flat = low == high;
-    for (value, text) in ticks([low, high], wanted) {
-        let part = if flat { 0.5 } else { (value - range[0]) / (range[1] - range[0]) };
-        let Some(at) = plane.project(edge.ends[0].lerp(edge.ends[1], part.clamp(0.0, 1.0))) else {
-            continue;
+    let base = offset([range[0].min(range[1]), range[0].max(range[1])]);
+    let range = range.map(|end| end - base);
+    let at = |value: f64| {
+        let part =
+            if range[0] == range[1] { 0.5 } else { (value - range[0]) / (range[1] - range[0]) };
+        plane.project(edge.ends[0].lerp(edge.ends[1], part.clamp(0.0, 1.0)))
+    };
+    let labelled = |wanted: usize| -> Vec<(DVec2, Label)> {
+        let ticks = ticks([range[0].min(range[1]), range[0].max(range[1])], wanted);
+        let placed = ticks.into_iter().filter_map(|(value, text)| Some((at(value)?, text)));
+        let with_label = |(at, text): (DVec2, String)| {
+            (at, label(at + out * ((TICK + GAP) * letter), out, text, letter, options.text))
         };
+        placed.map(with_label).collect()
+    };
+    // As many as stand apart; the last of all may stand alone.
+    let fitting = (1..=wanted).rev().map(labelled).find(|placed| stand_apart(placed, letter));
+    let placed = fitting.unwrap_or_else(|| labelled(1).into_iter().take(1).collect());
+    let mut widest: f64 = 0.0;
+    for (at, label) in placed {
         push(marks, [at, at + out * (TICK * letter)]);
-        let width = text.chars().count() as f64 * LETTER;
-        widest = widest.max(reach(out, width));
-        marks.labels.push(label(
-            at + out * ((TICK + GAP) * letter),
-            out,
-            text,
-            letter,
-            options.text,
-        ));
+        widest = widest.max(reach(out, label.text.chars().count() as f64 * LETTER));
+        // At a corner the other axis may have been there first.
+        if is_free(&label, &marks.labels, letter) {
+            marks.labels.push(label);
+        }
     }
+    let name = match base {
+        0.0 => name.to_owned(),
+        b if b > 0.0 => format!("{name} - {}", short(b)),
+        b => format!("{name} + {}", short(-b)),
+    };
     if name.is_empty() {
         return;
     }
@@ -146,11 +156,47 @@ fn axis(
         1 => (edge.seen[1] + DVec2::Y * (GAP * 1.6 * letter), DVec2::Y),
         _ => (middle + out * ((TICK + 2.2 * GAP + widest) * letter), out),
     };
-    let letters = name.to_owned();
-    marks.labels.push(match edge.k {
-        1 => Label { at, text: letters, height, anchor: Anchor::Middle },
-        _ => label(at, out, letters, letter, height),
-    });
+    let mut name = match edge.k {
+        1 => Label { at, text: name, height, anchor: Anchor::Middle },
+        _ => label(at, out, name, letter, height),
+    };
+    // Numbers at the end of an axis push its name on.
+    for _ in 0..8 {
+        if is_free(&name, &marks.labels, letter) {
+            break;
+        }
+        name.at += out * (0.5 * letter);
+    }
+    marks.labels.push(name);
+}
+
+/// The box of a label in the plane; `letter` is the height of a letter there.
+pub fn box_of(label: &Label, letter: f64) -> Option<Rect> {
+    let width = label.text.chars().count() as f64 * LETTER * letter;
+    let left = match label.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => 0.5 * width,
+        Anchor::End => width,
+    };
+    let low = label.at - DVec2::new(left, 0.0);
+    Rect::new(low, low + DVec2::new(width, letter)).ok()
+}
+
+/// Whether a label overlaps no other.
+fn is_free(label: &Label, others: &[Label], letter: f64) -> bool {
+    let Some(own) = box_of(label, letter) else { return true };
+    let mut boxes = others.iter().filter_map(|other| box_of(other, letter));
+    !boxes.any(|other| other.overlaps(&own))
+}
+
+/// Whether each label stands apart from the next.
+fn stand_apart(placed: &[(DVec2, Label)], letter: f64) -> bool {
+    let boxes: Vec<Rect> = placed.iter().filter_map(|(_, l)| box_of(l, letter)).collect();
+    let room = DVec2::splat(APART * letter);
+    boxes.windows(2).all(|pair| {
+        let wider = Rect::new(pair[0].min() - room, pair[0].max() + room);
+        wider.is_ok_and(|wider| !wider.overlaps(&pair[1]))
+    })
 }
 
 /// How far a text of this width reaches in a direction, in heights of a letter.

@@ -5,6 +5,7 @@
 
 mod axes;
 mod cells;
+mod color_bar;
 pub mod color_map;
 pub mod ticks;
 
@@ -34,6 +35,10 @@ pub struct Options {
     pub lines: floating_horizon::Options,
     /// What heights are multiplied with before they are seen; labels tell the true ones.
     pub exaggeration: f64,
+    /// Depth over width of the ground as it is seen; labels tell the true coordinates. `None` has one scale for both.
+    pub aspect: Option<f64>,
+    /// Whether a bar tells which colours stand for which heights, where there is a colour map.
+    pub color_bar: bool,
     /// Colours by height; `None` draws all lines with `ink`, and fills with `paper`.
     pub color_map: Option<ColorMap>,
     /// Whether cells are filled, too: with the colours of the map, lines then are `ink`.
@@ -84,6 +89,13 @@ const SHADES: usize = 32;
 const DASHES: [f64; 2] = [6.0, 4.0];
 /// Hidden lines are this much thinner.
 const HIDDEN_PEN: f64 = 0.6;
+/// Half the height of the box around a level surface, over the longer side of its ground.
+const FLAT_HEIGHT: f64 = 0.1;
+/// Width of the bar of colours, its distance from the plot and its height over that of the page, in heights of a
+/// letter and as a share.
+const BAR: [f64; 3] = [1.4, 2.0, 0.5];
+/// Title letters over those of labels, and lines of a title apart in their heights.
+const TITLE: [f64; 2] = [1.4, 1.5];
 /// Visible pieces shorter than this, in millimetres, are dots that a pen would only blot.
 const SHORTEST: f64 = 0.02;
 
@@ -112,18 +124,28 @@ struct Colored {
 /// and the projection find.
 pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     options.check()?;
-    let seen = field.map(|y| y * options.exaggeration);
+    let seen = as_seen(field, options)?;
     let bounds = seen.bounds().ok_or_else(|| {
         Error::parameter("height field", "without any height", "a surface with heights")
     })?;
+    let bounds = with_height(&bounds);
     let room = (options.page - DVec2::splat(2.0 * MARGIN)).max(DVec2::ONE);
     let fit = FitOptions { lens: options.lens, aspect: room.x / room.y, margin: 0.0 };
     let camera = match options.eye {
-        Some(places) => standing(&bounds, places, options)?,
+        Some(places) => standing(&bounds, places, field, options)?,
         None => fit_box(Some(&bounds), &options.direction, &fit)?,
     };
     let plane = PicturePlane::of_camera(&camera, fit.aspect)?;
-    let layout = Layout::new(&bounds, &plane, options);
+    let mut layout = Layout::new(&bounds, &plane, field, &[], 1.0, options);
+    let mut marks = Marks::default();
+    if let Some(axes) = &options.axes {
+        // How much room labels take follows from the scale, and the scale from that.
+        for _ in 0..4 {
+            marks = axes::draw(field, &seen, &bounds, &plane, axes, options, layout.scale);
+            layout = Layout::new(&bounds, &plane, field, &marks.labels, layout.scale, options);
+        }
+        marks = axes::draw(field, &seen, &bounds, &plane, axes, options, layout.scale);
+    }
     let mut drawing = Drawing { window: None, ..Drawing::default() };
     if options.fill {
         drawing.regions = cells::regions(&seen, &camera, &plane, options)?;
@@ -135,26 +157,55 @@ pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
     }
     let least = SHORTEST / layout.scale;
     lines.retain(|l| l.line.length() >= least);
-    if let Some(axes) = &options.axes {
-        let marks = axes::draw(field, &bounds, &plane, axes, options, layout.scale);
-        let line = |line| Colored { line, layer: "axes", color: options.ink };
-        lines.extend(marks.lines.into_iter().map(line));
-        drawing.labels = marks.labels;
-    }
+    let axis = |line| Colored { line, layer: "axes", color: options.ink };
+    lines.extend(marks.lines.into_iter().map(axis));
+    drawing.labels = marks.labels;
     drawing.lines = lines.iter().map(|l| l.line.clone()).collect();
     if drawing.lines.iter().flat_map(|l| &l.points).any(|p| !p.is_finite()) {
         return Err(Error::NonFinite { what: "projected line", index: 0 });
     }
-    let sheet = layout.sheet(&drawing, &lines, options);
+    let sheet = layout.sheet(&drawing, &lines, field, options);
     Ok(Plot { drawing, sheet, camera })
 }
 
+/// By how much depth is stretched.
+fn stretch(field: &HeightField, options: &Options) -> f64 {
+    let extent = |[from, to]: [f64; 2]| (to - from).abs();
+    let true_aspect = extent(field.z_range()) / extent(field.x_range());
+    let by = options.aspect.map_or(1.0, |aspect| aspect / true_aspect);
+    if by > 0.0 && by.is_finite() { by } else { 1.0 }
+}
+
+/// A field with its heights and depths as they are seen.
+fn as_seen(field: &HeightField, options: &Options) -> Result<HeightField> {
+    let by = stretch(field, options);
+    let seen = field.map(|y| y * options.exaggeration);
+    if by == 1.0 {
+        Ok(seen)
+    } else {
+        seen.with_ranges(field.x_range(), field.z_range().map(|z| z * by))
+    }
+}
+
+/// Bounds with some height, where all heights are one: an upright axis needs it.
+fn with_height(bounds: &Aabb) -> Aabb {
+    let size = bounds.max - bounds.min;
+    let up = if size.y > 0.0 { 0.0 } else { size.x.max(size.z) * FLAT_HEIGHT };
+    Aabb { min: bounds.min - DVec3::Y * up, max: bounds.max + DVec3::Y * up }
+}
+
 /// The camera of an eye that stands somewhere, in coordinates with exaggerated heights.
-fn standing(bounds: &Aabb, places: [DVec3; 2], options: &Options) -> Result<Camera> {
+fn standing(
+    bounds: &Aabb,
+    places: [DVec3; 2],
+    field: &HeightField,
+    options: &Options,
+) -> Result<Camera> {
     let Lens::Perspective { fov_y } = options.lens else {
         return Err(Error::parameter("eye", "in parallel projection", "perspective"));
     };
-    let [eye, target] = places.map(|p| p * DVec3::new(1.0, options.exaggeration, 1.0));
+    let seen = DVec3::new(1.0, options.exaggeration, stretch(field, options));
+    let [eye, target] = places.map(|p| p * seen);
     let sight = (target - eye).normalize_or_zero();
     let depths = bounds.corners().map(|c| (c - eye).dot(sight));
     let near = depths.into_iter().fold(f64::INFINITY, f64::min);
@@ -182,6 +233,8 @@ impl Default for Options {
             eye: None,
             lines: floating_horizon::Options::default(),
             exaggeration: 1.0,
+            aspect: None,
+            color_bar: true,
             color_map: None,
             fill: false,
             ink: [0, 0, 0, 255],
@@ -212,6 +265,7 @@ impl Options {
             }
         };
         positive("exaggeration", self.exaggeration, 1e50, "above 0, at most 1e50")?;
+        positive("aspect", self.aspect.unwrap_or(1.0), 1e6, "above 0, at most 1e6")?;
         positive("pen", self.pen, 100.0, "above 0, at most 100 mm")?;
         positive("text height", self.text, 100.0, "above 0, at most 100 mm")?;
         positive("page", self.page.x.min(self.page.y), 1e5, "20 mm to 100 m")?;
@@ -295,22 +349,33 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(bounds: &Aabb, plane: &PicturePlane, options: &Options) -> Self {
+    /// The largest plot for which its labels, laid out at a scale, the title and the bar of colours have room.
+    fn new(
+        bounds: &Aabb,
+        plane: &PicturePlane,
+        field: &HeightField,
+        labels: &[Label],
+        scale: f64,
+        options: &Options,
+    ) -> Self {
         let corners = bounds.corners().into_iter().filter_map(|c| plane.project(c));
         let frame = Rect::around(corners);
         let (min, max) = frame.map_or((DVec2::ZERO, DVec2::ZERO), |r| (r.min(), r.max()));
-        // Room for the labels at the left, the right, and below; for the title above.
-        let labels = if options.axes.is_some() { options.text } else { 0.0 };
-        let title = if options.title.is_empty() { 0.0 } else { options.text * 3.5 };
-        let (side, below) = (MARGIN + labels * 5.0, MARGIN + labels * 4.0);
-        let above = MARGIN + labels * 2.0 + title;
-        let room = options.page - DVec2::new(2.0 * side, below + above);
+        // By how much labels reach beyond the plot, in millimetres.
+        let boxes = labels.iter().filter_map(|label| axes::box_of(label, options.text / scale));
+        let (mut low, mut high) = (min, max);
+        boxes.for_each(|b| (low, high) = (low.min(b.min()), high.max(b.max())));
+        let (before, after) = ((min - low) * scale, (high - max) * scale);
+        let title = title_lines(options).len() as f64 * options.text * TITLE[0] * TITLE[1];
+        let (left, right) = (MARGIN + before.x, MARGIN + after.x + bar_width(field, options));
+        let (below, above) = (MARGIN + before.y, MARGIN + after.y + title);
+        let room = options.page - DVec2::new(left + right, below + above);
         let room = room.max(options.page * 0.2);
         let size = max - min;
         let ratio = |room: f64, size: f64| if size > 0.0 { room / size } else { f64::INFINITY };
         let scale = ratio(room.x, size.x).min(ratio(room.y, size.y));
         let scale = if scale.is_finite() { scale } else { 1.0 };
-        let middle = DVec2::new(options.page.x * 0.5, above + room.y * 0.5);
+        let middle = DVec2::new(left, above) + room * 0.5;
         let center = (min + max) * 0.5;
         Self { scale, origin: middle - DVec2::new(center.x, -center.y) * scale }
     }
@@ -319,7 +384,13 @@ impl Layout {
         self.origin + DVec2::new(p.x, -p.y) * self.scale
     }
 
-    fn sheet(&self, drawing: &Drawing, lines: &[Colored], options: &Options) -> Sheet {
+    fn sheet(
+        &self,
+        drawing: &Drawing,
+        lines: &[Colored],
+        field: &HeightField,
+        options: &Options,
+    ) -> Sheet {
         let mut sheet = Sheet {
             title: options.title.clone(),
             size: options.page,
@@ -345,6 +416,8 @@ impl Layout {
             name: "labels".to_owned(),
             marks: self.texts(&mut sheet, drawing, options),
         });
+        let marks = color_bar::marks(&mut sheet, field, options);
+        layers.push(SheetLayer { name: "colour-bar".to_owned(), marks });
         sheet.layers = layers.into_iter().filter(|l| !l.marks.is_empty()).collect();
         sheet
     }
@@ -360,11 +433,12 @@ impl Layout {
             let (height, anchor) = (label.height, label.anchor);
             marks.push(Mark::Text { at, text, height, anchor, pen: pen(height) });
         }
-        if !options.title.is_empty() {
-            let height = options.text * 1.4;
+        let height = options.text * TITLE[0];
+        for (line, text) in title_lines(options).into_iter().enumerate() {
+            let down = MARGIN + height * (1.0 + line as f64 * TITLE[1]);
             marks.push(Mark::Text {
-                at: DVec2::new(options.page.x * 0.5, MARGIN + height),
-                text: options.title.clone(),
+                at: DVec2::new(options.page.x * 0.5, down),
+                text,
                 height,
                 anchor: crate::target::drawing::Anchor::Middle,
                 pen: pen(height),
@@ -372,6 +446,30 @@ impl Layout {
         }
         marks
     }
+}
+
+/// The title in lines that fit the page, broken at blanks.
+fn title_lines(options: &Options) -> Vec<String> {
+    let width = options.text * TITLE[0] * axes::LETTER;
+    let most = (((options.page.x - 2.0 * MARGIN) / width) as usize).max(1);
+    let mut lines: Vec<String> = Vec::new();
+    for word in options.title.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// The room of the bar of colours with its labels, millimetres.
+fn bar_width(field: &HeightField, options: &Options) -> f64 {
+    let labels = color_bar::labels(field, options);
+    let widest = labels.iter().map(|(_, text)| text.chars().count()).max();
+    widest.map_or(0.0, |count| (BAR[0] + BAR[1] + 1.0 + count as f64 * axes::LETTER) * options.text)
 }
 
 fn pen_for(pens: &mut Vec<Pen>, colored: &Colored, options: &Options) -> usize {

@@ -33,6 +33,7 @@ mod line_oracle;
 mod line_scenes;
 mod marks;
 mod overlay;
+mod plot;
 mod raster_coverage;
 mod raster_interpolate;
 mod raster_line;

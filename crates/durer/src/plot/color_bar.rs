@@ -1,0 +1,80 @@
+//! A bar that tells which colours stand for which heights.
+
+use super::ticks::{offset, short, ticks};
+use super::{BAR, MARGIN, Options, SHADES, bar_width, index_of};
+use crate::math::DVec2;
+use crate::scene::HeightField;
+use crate::target::drawing::Anchor;
+use crate::target::sheet::{Mark, Pen, Sheet};
+
+/// The heights that it tells, with the share of its length at which they stand from its foot; empty where there is no
+/// bar.
+pub fn labels(field: &HeightField, options: &Options) -> Vec<(f64, String)> {
+    let Some([low, high]) = field.range() else { return Vec::new() };
+    if !options.color_bar || options.color_map.is_none() {
+        return Vec::new();
+    }
+    let base = offset([low, high]);
+    let wanted = (options.page.y * BAR[2] / (4.0 * options.text)).clamp(1.0, 8.0) as usize;
+    let part = |value: f64| if high > low { (value - (low - base)) / (high - low) } else { 0.5 };
+    let ticks = ticks([low - base, high - base], wanted);
+    let mut labels: Vec<_> = ticks.into_iter().map(|(v, text)| (part(v), text)).collect();
+    if base != 0.0 {
+        // Above the bar.
+        let sign = if base > 0.0 { '+' } else { '-' };
+        labels.push((
+            1.0 + 2.0 * options.text / length(options),
+            format!("{sign} {}", short(base.abs())),
+        ));
+    }
+    labels
+}
+
+/// The length of the bar, millimetres.
+fn length(options: &Options) -> f64 {
+    options.page.y * BAR[2]
+}
+
+/// The bar on the right of the page, with its labels.
+pub fn marks(sheet: &mut Sheet, field: &HeightField, options: &Options) -> Vec<Mark> {
+    let (labels, Some(map)) = (labels(field, options), options.color_map) else {
+        return Vec::new();
+    };
+    if labels.is_empty() {
+        return Vec::new();
+    }
+    let (length, width) = (length(options), BAR[0] * options.text);
+    let left = options.page.x - MARGIN - bar_width(field, options) + BAR[1] * options.text;
+    let foot = (options.page.y + length) * 0.5;
+    let at = |part: f64| foot - part * length;
+    let corners = |from: f64, to: f64| {
+        [(left, from), (left + width, from), (left + width, to), (left, to)]
+            .map(|(x, part)| DVec2::new(x, at(part)))
+            .to_vec()
+    };
+    let share = |shade: usize| shade as f64 / SHADES as f64;
+    let mut marks: Vec<Mark> = (0..SHADES)
+        .map(|shade| Mark::Fill {
+            // Up to the end, under those that follow: no seam shows.
+            rings: vec![corners(share(shade), 1.0)],
+            color: map.at(share(shade) + 0.5 / SHADES as f64),
+        })
+        .collect();
+    let pen = |width| Pen { width, color: options.ink, dashes: Vec::new() };
+    let (line, letters) = (pen(options.pen), pen(options.text * 0.1));
+    let line = index_of(&mut sheet.pens, line);
+    let letters = index_of(&mut sheet.pens, letters);
+    marks.push(Mark::Stroke { points: corners(0.0, 1.0), closed: true, pen: line });
+    for (part, text) in labels {
+        let (right, height) = (left + width, at(part));
+        let tick = |x: f64| DVec2::new(x, height);
+        if part <= 1.0 {
+            let points = vec![tick(right), tick(right + 0.5 * options.text)];
+            marks.push(Mark::Stroke { points, closed: false, pen: line });
+        }
+        let at = DVec2::new(right + options.text, height + 0.5 * options.text);
+        let anchor = Anchor::Start;
+        marks.push(Mark::Text { at, text, height: options.text, anchor, pen: letters });
+    }
+    marks
+}
