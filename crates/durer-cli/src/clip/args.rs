@@ -15,6 +15,7 @@ Examples:
   durer clip countries.geojson --window -10,35,30,60 -o europe.geojson
   durer clip roads.geojson --by city.geojson -o roads_in_city.geojson
   durer clip roads.wkt --by lakes.wkt --outside -o dry_roads.wkt
+  durer clip parcels.geojson --cells districts.geojson -o parcels_by_district.geojson
   durer clip parcels.geojson --op union -o built_up.geojson
   durer clip countries.geojson --tiles 4 -o tiles/
   durer clip countries.geojson --window -10,35,30,60 -o europe.svg
@@ -82,11 +83,18 @@ pub struct RegionArgs {
     ///
     /// In degrees, a left border that is larger than the right one, such as 170,-10,-170,10, makes a window across
     /// the 180th meridian, as in RFC 7946; it also holds what goes on beyond 180 degrees.
-    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = region, conflicts_with_all = ["by", "tiles"])]
+    #[arg(long, value_name = "XL,YB,XR,YT", allow_hyphen_values = true, value_parser = region, conflicts_with_all = ["by", "tiles", "cells"])]
     pub window: Option<Window>,
     /// The polygons of a file, all together
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "tiles")]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["tiles", "cells"])]
     pub by: Option<PathBuf>,
+    /// The polygons of a file, each feature by itself: what is cut comes out once for each cell that it lies in, with
+    /// the fields of the cell after its own
+    ///
+    /// A field of the cell whose name the feature has too gets `cell_` before it; cells without fields are told by their
+    /// number in the file, as `cell`.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = ["tiles", "outside", "op", "algorithm"])]
+    pub cells: Option<PathBuf>,
     /// The tiles of a web map at this zoom level, 0 to 24
     ///
     /// Each tile becomes OUT/z/x/y.geojson; where OUT is `-` or ends in .geojsonl, all go into one

@@ -228,7 +228,7 @@ impl Cutter<'_> {
             let lost = self.rules.loses(area, &near);
             return Ok(Cut { geometry: cut.into_geometry(), repaired, lost, ..Cut::default() });
         }
-        let options = coverage::Options { rule: self.rules.fill, mend: !apart };
+        let options = coverage::Options { rule: self.rules.fill, mend: !apart, keep: false };
         let cut = coverage::cut(&area.shapes, self.mask.prepared(), self.op, &options)?;
         let (lost, snapped) = (cut.lost, cut.snapped);
         if cut.whole {
@@ -416,7 +416,7 @@ impl Rules {
             let area = self.snapped(area, clip, op, subject_rule)?;
             return Ok(Made { area, ..Made::default() });
         }
-        let options = coverage::Options { rule: subject_rule, mend };
+        let options = coverage::Options { rule: subject_rule, mend, keep: false };
         let cut = coverage::join(&area.shapes, clip, op, &options)?;
         let snapped = cut.snapped;
         Ok(Made { area: area.cut(cut.shapes, &cut.sources), repaired: false, snapped })

@@ -1,6 +1,7 @@
 //! `durer clip`.
 
 mod args;
+mod cells;
 mod engine;
 mod mask;
 mod mean_value;
@@ -52,6 +53,8 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         (_, Some(path)) => Some(mask::read(path, args, &mut mask_srids, &messages)?),
         _ => None,
     };
+    let cells =
+        args.region.cells.as_ref().map(|path| cells::read(path, args, &messages)).transpose()?;
     let (from, mut reader) = crate::layer::open(&args.input, args.from, args.layer.as_deref())?;
     let to = output_format(args, from)?;
     let shift = Shift::new(&args.systems, &reader.system());
@@ -69,12 +72,13 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     let further = {
         let (messages, reader, report) = (&messages, &mut reader, &mut report);
         let mut job = Job { args, to, messages, reader, report, failed: None, shift, fields };
-        match (args.region.tiles, mask) {
-            (Some(zoom), _) => job.tile(zoom)?,
-            (None, mask) if joins(args) => job.join(mask.as_ref())?,
-            (None, Some(mask)) => job.cut(mask)?,
-            (None, None) if converts(args, from, to) => job.convert()?,
-            (None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
+        match (cells, args.region.tiles, mask) {
+            (Some(cells), ..) => job.cut_by_cells(&cells)?,
+            (None, Some(zoom), _) => job.tile(zoom)?,
+            (None, None, mask) if joins(args) => job.join(mask.as_ref())?,
+            (None, None, Some(mask)) => job.cut(mask)?,
+            (None, None, None) if converts(args, from, to) => job.convert()?,
+            (None, None, None) => return Err(Failure::Usage(NO_MASK.to_owned())),
         }
         [job.fields.told(), job.shift.as_ref().and_then(Shift::told), job.unfit()]
     };
@@ -88,7 +92,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
 /// What is said where features that are joined have different ordinates.
 pub const MIXED: &str = "heights and measures that some features have and others lack are 0 there";
 
-const NO_MASK: &str = "nothing to cut with: give --window, --by or --tiles; without them features are only \
+const NO_MASK: &str = "nothing to cut with: give --window, --by, --cells or --tiles; without them features are only \
                        converted to another format, chosen by --where and the like, or brought to --to-crs";
 
 /// Whether features are to be changed or written otherwise without being cut.
@@ -106,10 +110,11 @@ fn joins(args: &ClipArgs) -> bool {
 fn check(args: &ClipArgs) -> Result<(), Failure> {
     let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
     let region = &args.region;
-    if region.by.as_deref().is_some_and(is_stream) && is_stream(&args.input) {
+    let masks = [&region.by, &region.cells].into_iter().flatten();
+    if masks.into_iter().any(|path| is_stream(path)) && is_stream(&args.input) {
         return usage("`-` is given twice; standard input holds one file");
     }
-    let mask = region.window.is_some() || region.by.is_some();
+    let mask = region.window.is_some() || region.by.is_some() || region.cells.is_some();
     let is_plain = !region.outside
         && args.cutting.op == BooleanOp::Intersection
         && args.cutting.algorithm.is_none();

@@ -1,17 +1,20 @@
 //! `durer fix`.
 
-use super::{FilesArgs, Job};
+use super::{BATCH, FilesArgs, Job, Report};
 use crate::clip::{Area, Rules};
 use crate::failure::Failure;
 use clap::Args;
-use durer::clip::polygon::FillRule;
+use durer::clip::polygon::coverage::matched;
 use durer::clip::polygon::validity::{Touching, is_valid};
+use durer::clip::polygon::{FillRule, Shapes};
 use durer_formats::geo::{Feature, Geometry};
+use rayon::prelude::*;
 
 pub const EXAMPLES: &str = "\
 Examples:
   durer fix parcels.geojson -o valid.geojson
   durer fix outlines.wkt --rule non-zero -o filled.wkt
+  durer fix counties.geojson --coverage -o matched.geojson
 
 Features that are valid come out as they went in. Of the others, polygons that enclose the same points by the rule, \
 with their heights and measures: edges that cross are cut there, spikes and doubled rings vanish. durer check says \
@@ -26,6 +29,12 @@ pub struct FixArgs {
     /// [default: even-odd; of an SVG, what its paths say]
     #[arg(long, value_name = "RULE")]
     pub rule: Option<FillRule>,
+    /// Give neighbours the same points on the borders that they share: a point that one has and the other lacks is added
+    /// to that, where it lies on the border but for the rounding of its coordinates
+    ///
+    /// All features are held in memory. What overlaps or leaves gaps beyond that stays; durer check --coverage tells it.
+    #[arg(long)]
+    pub coverage: bool,
     /// What is read and written.
     #[command(flatten)]
     pub files: FilesArgs,
@@ -35,23 +44,86 @@ pub struct FixArgs {
 pub fn run(args: &FixArgs) -> Result<(), Failure> {
     let mut job = Job::new(&args.files)?;
     job.report.repaired = Some(0);
-    let fix = |feature: &Feature, geometry: &Geometry| {
-        let fill = args.rule.unwrap_or(feature.fill_rule);
-        let mut changed = false;
-        let geometry = fixed(geometry, &Rules { fill, grid: None }, &mut changed)?;
-        Ok((geometry, changed))
-    };
-    let note = |report: &mut super::Report, feature: &mut Feature, number: u64, changed: bool| {
-        feature.fill_rule = FillRule::EvenOdd;
-        if changed {
-            let count = report.repaired.get_or_insert(0);
-            *count += 1;
-            if *count == 1 {
-                report.warnings.push(format!("feature {number} is the first that was repaired"));
-            }
+    if args.coverage {
+        return match_all(job, args);
+    }
+    job.each(|feature, geometry| made(args, feature, geometry), note)
+}
+
+/// A feature's geometry made valid, `None` where nothing of it is left; and whether it was not.
+fn made(
+    args: &FixArgs,
+    feature: &Feature,
+    geometry: &Geometry,
+) -> durer::Result<(Option<Geometry>, bool)> {
+    let fill = args.rule.unwrap_or(feature.fill_rule);
+    let mut changed = false;
+    let geometry = fixed(geometry, &Rules { fill, grid: None }, &mut changed)?;
+    Ok((geometry, changed))
+}
+
+/// Takes note of a feature that is valid now.
+fn note(report: &mut Report, feature: &mut Feature, number: u64, changed: bool) {
+    feature.fill_rule = FillRule::EvenOdd;
+    if changed {
+        let count = report.repaired.get_or_insert(0);
+        *count += 1;
+        if *count == 1 {
+            report.warnings.push(format!("feature {number} is the first that was repaired"));
         }
+    }
+}
+
+/// Makes a file's features valid, and gives neighbours the same points.
+fn match_all(mut job: Job<'_>, args: &FixArgs) -> Result<(), Failure> {
+    let mut all = Vec::new();
+    loop {
+        let features = job.batch(BATCH)?;
+        if features.is_empty() {
+            break;
+        }
+        let fix = |(_, feature): &(u64, Feature)| {
+            feature.geometry.as_ref().map(|geometry| made(args, feature, geometry)).transpose()
+        };
+        let fixed: Vec<_> = features.par_iter().map(fix).collect();
+        for ((number, mut feature), made) in features.into_iter().zip(fixed) {
+            let made = made.map_err(|e| job.fail(format!("feature {number}: {e}")))?;
+            if let Some((geometry, changed)) = made {
+                feature.geometry = geometry;
+                note(&mut job.report, &mut feature, number, changed);
+                if feature.geometry.is_none() {
+                    job.gone += 1;
+                    continue;
+                }
+            }
+            all.push(feature);
+        }
+    }
+    let count = with_matched_points(&mut all);
+    if count > 0 {
+        job.report.warnings.push(format!("{count} features got points that their neighbours have"));
+    }
+    job.write(all)
+}
+
+/// Gives polygons the points that neighbours have on their borders; returns how many features got some.
+fn with_matched_points(features: &mut [Feature]) -> usize {
+    let area = |feature: &Feature| match &feature.geometry {
+        Some(geometry @ (Geometry::Polygon(_) | Geometry::MultiPolygon(_))) => {
+            Area::of_geometry(geometry)
+        }
+        _ => Area::default(),
     };
-    job.each(fix, note)
+    let areas: Vec<Area> = features.iter().map(area).collect();
+    let shapes: Vec<Shapes> = areas.iter().map(|area| area.shapes.clone()).collect();
+    let mut count = 0;
+    for ((feature, area), found) in features.iter_mut().zip(areas).zip(matched(&shapes)) {
+        if let Some(found) = found {
+            feature.geometry = area.cut(found.shapes, &found.sources).into_geometry();
+            count += 1;
+        }
+    }
+    count
 }
 
 /// What is said of features that were made valid on the way.

@@ -2,6 +2,7 @@
 
 use crate::args::RunningArgs;
 use crate::clip::TileCoordinates;
+use crate::layer::FieldArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::simplify::LineSimplifier;
@@ -13,7 +14,7 @@ use std::path::PathBuf;
 pub const EXAMPLES: &str = "\
 Examples:
   durer tiles countries.geojson roads.geojson -o map.pmtiles
-  durer tiles parcels.geojson --zoom 10-16 --select owner,use -o parcels.mbtiles
+  durer tiles parcels.geojson --zoom 10-16 --where 'area>=100' --select owner,use -o parcels.mbtiles
   durer tiles countries.geojson --zoom 0-6 -o tiles/
   durer tiles countries.geojson --zoom 3 -o 'tiles/{z}/{x}/{y}.geojson'
 
@@ -63,16 +64,13 @@ pub struct TilesArgs {
     /// The name of a layer; one for each IN, or one for all [default: the names of the files]
     #[arg(long, value_name = "NAME", help_heading = "Layers")]
     pub layer: Vec<String>,
-    /// The properties to keep, joined by commas [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Layers")]
-    pub select: Option<Vec<String>>,
-    /// The properties to leave out, joined by commas
+    /// The properties to leave out, joined by commas; by their new names where --rename gives some
     #[arg(
         long,
         value_name = "NAMES",
         value_delimiter = ',',
         conflicts_with = "select",
-        help_heading = "Layers"
+        help_heading = "Fields"
     )]
     pub exclude: Vec<String>,
     /// The name of the map [default: that of OUT]
@@ -94,6 +92,9 @@ pub struct TilesArgs {
     /// The format of OUT [default: by its suffix; of a folder mvt]
     #[arg(long, value_name = "FORMAT")]
     pub to: Option<TileFormat>,
+    /// Which features are kept, and which of their fields.
+    #[command(flatten)]
+    pub fields: FieldArgs,
     /// Threads and messages.
     #[command(flatten)]
     pub running: RunningArgs,

@@ -4,7 +4,7 @@ use super::args::TilesArgs;
 use crate::clip::TileCoordinates;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{open, words};
+use crate::layer::{Fields, open, words};
 use crate::messages::Messages;
 use crate::output;
 use durer::clip::polygon::Shapes;
@@ -14,6 +14,7 @@ use durer_formats::geo::{Feature, GeoFormat, Geometry, Points};
 use durer_formats::tiles::{Dictionary, Field, LayerInfo, Value};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A layer.
 #[derive(Debug, Default)]
@@ -97,51 +98,75 @@ const BATCH: usize = 4096;
 pub fn read(args: &TilesArgs, messages: &Messages) -> Result<Layers, Failure> {
     let mut all = Layers::default();
     let names = names(args)?;
+    let mut fields = Fields::new(&args.fields);
     for (path, name) in args.inputs.iter().zip(names) {
         let layer = all.layers.iter().position(|layer| layer.name == name).unwrap_or_else(|| {
             all.layers.push(Layer { name, ..Layer::default() });
             all.layers.len() - 1
         });
-        let shown = display_name(path);
-        let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
-        let (from, mut reader) = open(path, args.from, None)?;
-        if from == GeoFormat::Svg {
-            return Err(Failure::Data(format!("{shown}: an SVG has no places on the earth")));
-        }
-        let (mut doubts, before) = (Doubts::default(), all.read);
-        loop {
-            let mut features = Vec::new();
-            while features.len() < BATCH {
-                let Some(feature) = reader.next_feature().map_err(fail)? else { break };
-                features.push(feature);
-            }
-            if features.is_empty() {
-                break;
-            }
-            let projected: Vec<_> =
-                features.par_iter().map(|f| project(f.geometry.as_ref(), args)).collect();
-            for (feature, projected) in features.iter().zip(projected) {
-                all.read += 1;
-                all.add(args, layer, feature, projected, all.read - before, &mut doubts);
-            }
-            messages.progress.stage(|| format!("{} features", all.read));
-        }
-        messages.warnings(&shown, reader.warnings());
-        let told = reader.warnings().iter().map(|warning| format!("{shown}: {warning}"));
-        all.warnings.extend(told);
-        if all.read == before {
-            doubts.tell(
-                "there is no feature in it".to_owned(),
-                &shown,
-                messages,
-                &mut all.warnings,
-            );
-        }
-        for message in doubts.messages() {
-            doubts.tell(message, &shown, messages, &mut all.warnings);
-        }
+        read_file(&mut all, path, layer, &mut fields, (args, messages))?;
+    }
+    if let Some(message) = fields.told() {
+        let names: Vec<String> = args.inputs.iter().map(|path| display_name(path)).collect();
+        tell(message, &names.join(", "), messages, &mut all.warnings);
     }
     Ok(all)
+}
+
+/// Reads a file into a layer.
+fn read_file(
+    all: &mut Layers,
+    path: &Path,
+    layer: usize,
+    fields: &mut Fields,
+    (args, messages): (&TilesArgs, &Messages),
+) -> Result<(), Failure> {
+    let shown = display_name(path);
+    let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
+    let (from, mut reader) = open(path, args.from, None)?;
+    if from == GeoFormat::Svg {
+        return Err(Failure::Data(format!("{shown}: an SVG has no places on the earth")));
+    }
+    let (mut doubts, before, mut kept) = (Doubts::default(), all.read, 0);
+    loop {
+        let mut features = Vec::new();
+        while features.len() < BATCH {
+            let Some(mut feature) = reader.next_feature().map_err(fail)? else { break };
+            all.read += 1;
+            if fields.apply(&mut feature) {
+                features.push((all.read - before, feature));
+            }
+        }
+        if features.is_empty() {
+            break;
+        }
+        kept += features.len();
+        let project = |(_, f): &(u64, Feature)| project(f.geometry.as_ref(), args);
+        let projected: Vec<_> = features.par_iter().map(project).collect();
+        for ((number, feature), projected) in features.iter().zip(projected) {
+            all.add(args, layer, feature, projected, *number, &mut doubts);
+        }
+        messages.progress.stage(|| format!("{} features", all.read));
+    }
+    messages.warnings(&shown, reader.warnings());
+    all.warnings.extend(reader.warnings().iter().map(|warning| format!("{shown}: {warning}")));
+    let none = match (all.read == before, kept) {
+        (true, _) => Some("there is no feature in it".to_owned()),
+        (false, 0) => {
+            Some(format!("none of its {} features is as --where asks", all.read - before))
+        }
+        _ => None,
+    };
+    for message in none.into_iter().chain(doubts.messages()) {
+        tell(message, &shown, messages, &mut all.warnings);
+    }
+    Ok(())
+}
+
+/// Tells a warning now and in the report.
+fn tell(message: String, name: &str, messages: &Messages, warnings: &mut Vec<String>) {
+    messages.warning(name, &message);
+    warnings.push(format!("{name}: {message}"));
 }
 
 /// The layer of each file.
@@ -170,11 +195,6 @@ impl Doubts {
             self.no_geometry.told("have no geometry; left out"),
         ];
         found.into_iter().flatten().collect()
-    }
-
-    fn tell(&self, message: String, name: &str, messages: &Messages, warnings: &mut Vec<String>) {
-        messages.warning(name, &message);
-        warnings.push(format!("{name}: {message}"));
     }
 }
 
@@ -220,8 +240,7 @@ impl Layer {
         let Some(serde_json::Value::Object(object)) = object else { return Vec::new() };
         let mut properties = Vec::new();
         for (name, value) in object {
-            let wanted = args.select.as_ref().is_none_or(|names| names.contains(&name));
-            if !wanted || args.exclude.contains(&name) {
+            if args.exclude.contains(&name) {
                 continue;
             }
             let Some((value, field)) = typed(value) else { continue };

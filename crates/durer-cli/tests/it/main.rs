@@ -2,6 +2,7 @@
 
 mod algorithms;
 mod clip;
+mod clip_cells;
 mod clip_formats;
 mod clip_shared;
 mod clip_told;

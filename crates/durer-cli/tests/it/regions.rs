@@ -113,3 +113,37 @@ fn faults_are_told_with_their_places() {
     folder.write("open.geojson", open);
     folder.run("check open.geojson").fails(1, "reading");
 }
+
+/// Three countries of Natural Earth's map 1:110 million where they meet: the first has a spike along the border of the
+/// second, which ends some ulp beside that; the second has no point where the first and the third meet on its border.
+const MEETING: &str = r#"{"type":"FeatureCollection","features":[
+{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[[34.25745,10.63009],[33.96162,9.58358],[33.97498,8.68456],[33.963392794971185,9.464285229420625],[33.82496348090751,9.484060845715362],[33.84213085302815,9.981914637215993],[33.72195924818311,10.325262079630193],[33.2,12],[34.5,12],[34.25745,10.63009]]]}},
+{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[[34.25745,10.63009,1],[33.96162,9.58358,2],[33.97498,8.68456,3],[33.8255,8.37916,4],[40,8,5],[40,10,6],[34.25745,10.63009,1]]]}},
+{"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[[33.72195924818311,10.325262079630193],[33.84213085302815,9.981914637215993],[33.82496348090751,9.484060845715362],[33.963392794971185,9.464285229420625],[33.97498,8.68456],[33.8255,8.37916],[32,8],[32,10],[33.72195924818311,10.325262079630193]]]}}]}"#;
+
+#[test]
+fn neighbours_get_the_points_that_they_lack_and_stay_a_coverage_when_cut() {
+    let folder = Folder::new();
+    folder.write("in.geojson", MEETING);
+    folder.write("mask.wkt", "POLYGON ((33 8.2, 36 8.6, 35 11, 32.5 9.5, 33 8.2))");
+    folder.run("check in.geojson --coverage").fails(1, "not valid");
+    let told = folder.must("fix in.geojson --coverage -o out.geojson --json");
+    assert!(told.err.contains("1 features got points that their neighbours have"), "{}", told.err);
+    assert_eq!(told.json()["repaired"], 1);
+    // All three have the point now, the second one with a height of its own, between those of the ends.
+    let out = String::from_utf8(folder.read("out.geojson")).unwrap();
+    let parts: Vec<&str> = out.split("[33.963392794971185,9.464285229420625").collect();
+    assert_eq!(parts.len(), 4, "{out}");
+    assert!(
+        parts[1].starts_with(']') && parts[2].starts_with(",2.13") && parts[3].starts_with(']')
+    );
+    folder.must("check out.geojson --coverage");
+    for side in ["", " --outside"] {
+        folder.must(&format!("clip out.geojson --by mask.wkt{side} -o cut.geojson"));
+        folder.must("check cut.geojson --coverage");
+    }
+    // What matches stays as it is.
+    let again = folder.must("fix out.geojson --coverage -o again.geojson");
+    assert!(!again.err.contains("points that"), "{}", again.err);
+    assert_eq!(folder.read("out.geojson"), folder.read("again.geojson"));
+}

@@ -413,6 +413,35 @@ fn folders_have_a_file_per_tile() {
 }
 
 #[test]
+fn features_and_fields_are_chosen_as_by_other_commands() {
+    let folder = land();
+    let ended = folder.must(
+        "tiles parcels.geojsonl --zoom 0 --where size>0 --select use,size --rename use=kind -o t --json",
+    );
+    let found = decode(&folder.read("t/0/0/0.mvt"), 4096);
+    assert_eq!(found.len(), 1);
+    let expected = [("kind".to_owned(), "wood".into()), ("size".to_owned(), 2.5.into())];
+    assert_eq!(found[0].properties, expected);
+    assert_eq!((&ended.json()["features"], &ended.json()["lost"]), (&3.into(), &0.into()));
+    let document: Value = serde_json::from_slice(&folder.read("t/tiles.json")).unwrap();
+    let fields = serde_json::json!({ "kind": "String", "size": "Number" });
+    assert_eq!(document["vector_layers"][0]["fields"], fields);
+    // Places in the file are those of all features, also behind some that are left out.
+    let ended = folder.must("tiles parcels.geojsonl --zoom 0 --where id=nine --select roof -o u");
+    assert!(ended.err.contains("1 features (the first is feature 3) have ids"), "{}", ended.err);
+    assert!(ended.err.contains("no feature has the field roof; there are"), "{}", ended.err);
+    let ended =
+        folder.must("tiles parcels.geojsonl way.wkt --zoom 0 --where use=wood --exclude size -o v");
+    assert!(
+        ended.err.contains("way.wkt: none of its 2 features is as --where asks"),
+        "{}",
+        ended.err
+    );
+    let found = decode(&folder.read("v/0/0/0.mvt"), 4096);
+    assert_eq!((found.len(), found[0].properties.len()), (1, 2));
+}
+
+#[test]
 fn databases_begin_as_those_of_sqlite() {
     let folder = land();
     folder.must("tiles parcels.geojsonl --zoom 0-3 -o map.mbtiles");

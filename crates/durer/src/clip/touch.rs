@@ -25,8 +25,13 @@ pub(crate) fn are_one(p: DVec2, q: DVec2) -> bool {
 
 /// Whether a point is as good as on the line of an edge, and beside a part of that.
 #[inline]
-pub(crate) fn is_on(p: DVec2, [a, b]: [DVec2; 2], [from, to]: [DVec2; 2]) -> bool {
-    let reach = reach(p);
+pub(crate) fn is_on(p: DVec2, edge: [DVec2; 2], line: [DVec2; 2]) -> bool {
+    is_within(reach(p), p, edge, line)
+}
+
+/// Whether a point is no farther than `reach` from the line of an edge, and beside a part of that.
+#[inline]
+pub(crate) fn is_within(reach: f64, p: DVec2, [a, b]: [DVec2; 2], [from, to]: [DVec2; 2]) -> bool {
     let beside = p.cmpge(a.min(b) - reach).all() && p.cmple(a.max(b) + reach).all();
     beside && is_near_line(p, [from, to], reach)
 }

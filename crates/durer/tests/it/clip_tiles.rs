@@ -54,7 +54,7 @@ fn features() -> impl Strategy<Value = Vec<Feature>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(crate::coverage::cases(200)))]
 
     #[test]
     fn shapes_are_valid_and_within_their_tiles(

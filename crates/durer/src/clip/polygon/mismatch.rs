@@ -8,13 +8,14 @@
 //! of the union. Class: object space, exact but for the gaps. Cost: as of [validity](super::validity), and of a union where gaps are
 //! asked for.
 
-use super::rectangle::Prepared;
+use super::rectangle::{Near, Prepared};
 use super::validity::{
     Edge, Meeting, PAIRS_PER_EDGE, Way, crossing, each_pair, edges_of, meeting, ways,
 };
 use super::{
     BooleanOp, FillRule, Shapes, overlay, overlay::Options as OverlayOptions, signed_area,
 };
+use crate::clip::touch::{is_on, reach};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, Orientation, Rect, in_sector, orient2d};
 use crate::trace::NoTrace;
@@ -329,16 +330,28 @@ fn is_within(p: DVec2, edge: &Edge) -> bool {
 }
 
 /// For each polygon the first of its vertices, or else of the middles of its edges, that is not on the border of the
-/// other feature tells where it is: returns the first such point that is inside.
+/// other feature, where a middle is rounded, tells where it is: returns the first such point that is inside.
 fn first_within(inner: &Shapes, outer: &Prepared) -> Option<DVec2> {
     let around = outer.bounds()?;
     inner.polygons().find_map(|polygon| {
         let ring = polygon.outer();
         let middles =
             ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| *a * 0.5 + *b * 0.5);
-        let free = ring.iter().copied().chain(middles).find(|&p| !outer.has_on_border(p))?;
+        let free = ring.iter().copied().chain(middles).find(|&p| !is_on_border(outer, p))?;
         (around.contains(free) && outer.contains(free)).then_some(free)
     })
+}
+
+/// Whether a point lies on a feature's border, but for the rounding of its coordinates.
+fn is_on_border(of: &Prepared, p: DVec2) -> bool {
+    let reach = 2.0 * reach(p);
+    match Rect::new(p - reach, p + reach) {
+        Ok(around) if of.has_edges_near(&around) => {
+            let near = Near::around(of, &around);
+            near.lines.iter().any(|&edge| is_on(p, edge, edge))
+        }
+        _ => false,
+    }
 }
 
 #[cfg(test)]
@@ -386,6 +399,31 @@ mod tests {
         let within = [(Mismatch::Overlap, (1.0, 1.0), [0, 1])];
         assert_eq!(found(&[feature(&[LEFT]), inside.clone()]), within);
         assert_eq!(found(&[inside, feature(&[LEFT])]), within);
+    }
+
+    /// Lesotho and the hole of South Africa around it, in Natural Earth's map 1:110 million: the middles of their common edges
+    /// are rounded to one side or the other.
+    #[test]
+    fn what_fills_a_hole_does_not_overlap_with_what_is_around() {
+        let lesotho: &[(f64, f64)] = &[
+            (28.978262566857243, -28.95559661226171),
+            (29.32516645683259, -29.257386976846256),
+            (29.018415154748027, -29.74376555757737),
+            (28.84839969250774, -30.070050551068256),
+            (28.29106937023991, -30.2262167294543),
+            (28.107204624145425, -30.54573211031495),
+            (27.749397006956485, -30.645105889612225),
+            (26.999261915807637, -29.875953871379984),
+            (27.532511020627478, -29.24271087007536),
+            (28.074338413207784, -28.851468601193588),
+            (28.541700066855498, -28.64750172293757),
+        ];
+        let around: &[(f64, f64)] = &[(16.0, -35.0), (33.0, -35.0), (33.0, -22.0), (16.0, -22.0)];
+        let features = [feature(&[around, lesotho]), feature(&[lesotho])];
+        assert_eq!(found(&features), []);
+        // In the middle of the country around it is another matter.
+        let moved: Vec<(f64, f64)> = lesotho.iter().map(|(x, y)| (x - 5.0, *y)).collect();
+        assert_eq!(found(&[features[0].clone(), feature(&[&moved])]).len(), 1);
     }
 
     #[test]

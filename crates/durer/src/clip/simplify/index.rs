@@ -15,11 +15,16 @@ const GRID_BITS: u8 = 16;
 pub struct Index {
     /// The points, those near one another together.
     order: Vec<u32>,
+    /// Where they are, in that order, so that those of a box are side by side in memory.
+    at: Vec<DVec2>,
     /// The place of each point in that order.
     place_of: Vec<u32>,
-    left: Vec<bool>,
+    /// Of each box around points a bit for each of them that is left.
+    left: Vec<u16>,
     /// Boxes around points, around those, …; the last level has one.
     levels: Vec<Vec<Box>>,
+    /// Boxes still to be looked into, empty between two calls.
+    open: Vec<(usize, usize)>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -47,12 +52,11 @@ impl Index {
         for (&point, place) in order.iter().zip(0..) {
             place_of[point as usize] = place;
         }
-        let of_point = |&i: &u32| {
-            let p = points[i as usize];
-            Box { min: p, max: p, left: 1 }
-        };
+        let at: Vec<DVec2> = order.iter().map(|&i| points[i as usize]).collect();
+        let of_point = |&p: &DVec2| Box { min: p, max: p, left: 1 };
         let mut level: Vec<Box> =
-            order.chunks(BRANCH).filter_map(|c| Box::around(c.iter().map(of_point))).collect();
+            at.chunks(BRANCH).filter_map(|c| Box::around(c.iter().map(of_point))).collect();
+        let left = at.chunks(BRANCH).map(|c| u16::MAX >> (BRANCH - c.len())).collect();
         let mut levels = Vec::new();
         while level.len() > 1 {
             let above = level.chunks(BRANCH).filter_map(|c| Box::around(c.iter().copied()));
@@ -60,16 +64,18 @@ impl Index {
             levels.push(std::mem::replace(&mut level, above));
         }
         levels.push(level);
-        Self { order, place_of, left: vec![true; points.len()], levels }
+        Self { order, at, place_of, left, levels, open: Vec::new() }
     }
 
     /// Takes a point away.
     pub fn remove(&mut self, point: u32) {
-        let Some(left) = self.left.get_mut(point as usize) else { return };
-        if !std::mem::take(left) {
+        let Some(&place) = self.place_of.get(point as usize) else { return };
+        let mut place = place as usize;
+        let bit = 1 << (place % BRANCH);
+        let Some(left) = self.left.get_mut(place / BRANCH).filter(|left| **left & bit != 0) else {
             return;
-        }
-        let mut place = self.place_of[point as usize] as usize;
+        };
+        *left ^= bit;
         for level in &mut self.levels {
             place /= BRANCH;
             if let Some(around) = level.get_mut(place) {
@@ -79,27 +85,48 @@ impl Index {
     }
 
     /// A point that is left in a closed triangle, beside its corners.
-    pub fn in_triangle(&self, points: &[DVec2], corners: [u32; 3]) -> Option<u32> {
+    pub fn in_triangle(&mut self, points: &[DVec2], corners: [u32; 3]) -> Option<u32> {
         let triangle = Triangle::new(corners.map(|i| points[i as usize]));
-        let mut open = vec![(self.levels.len().checked_sub(1)?, 0)];
+        let mut open = std::mem::take(&mut self.open);
+        let found = self.look(&triangle, corners, &mut open);
+        open.clear();
+        self.open = open;
+        found
+    }
+
+    fn look(
+        &self,
+        triangle: &Triangle,
+        corners: [u32; 3],
+        open: &mut Vec<(usize, usize)>,
+    ) -> Option<u32> {
+        open.push((self.levels.len().checked_sub(1)?, 0));
         while let Some((level, place)) = open.pop() {
-            let Some(around) = self.levels[level].get(place) else { continue };
-            if around.left == 0 || !triangle.may_meet(around) {
+            if level == 0 {
+                let found = self.look_at_points(triangle, corners, place);
+                if found.is_some() {
+                    return found;
+                }
                 continue;
             }
-            let children = place * BRANCH..(place + 1) * BRANCH;
-            if level > 0 {
-                open.extend(children.rev().map(|child| (level - 1, child)));
-                continue;
-            }
-            let children = children.start..children.end.min(self.order.len());
-            let found = self.order[children].iter().copied().find(|&i| {
-                self.left[i as usize]
-                    && !corners.contains(&i)
-                    && triangle.contains(points[i as usize])
-            });
-            if found.is_some() {
-                return found;
+            let below = self.levels.get(level - 1)?;
+            let end = ((place + 1) * BRANCH).min(below.len());
+            let children = (place * BRANCH..end).rev();
+            let may_meet =
+                |&child: &usize| below[child].left > 0 && triangle.may_meet(&below[child]);
+            open.extend(children.filter(may_meet).map(|child| (level - 1, child)));
+        }
+        None
+    }
+
+    /// As [`Index::in_triangle`], of the points of one box.
+    fn look_at_points(&self, triangle: &Triangle, corners: [u32; 3], place: usize) -> Option<u32> {
+        let mut left = self.left.get(place).copied().unwrap_or(0);
+        while left != 0 {
+            let at = place * BRANCH + left.trailing_zeros() as usize;
+            left &= left - 1;
+            if triangle.contains(self.at[at]) && !corners.contains(&self.order[at]) {
+                return Some(self.order[at]);
             }
         }
         None
@@ -144,7 +171,11 @@ impl Triangle {
         if apart.any() {
             return false;
         }
-        // Thin triangles that lie aslant have large boxes: is the whole box beyond the longest side?
+        // Thin triangles that lie aslant have large boxes: is the whole box beyond one of the sides?
+        let larger = (self.max - self.min).cmpgt(around.max - around.min);
+        if !larger.any() {
+            return true;
+        }
         let [a, b, c] = self.corners;
         !self.is_beyond(a, c, b, around)
             && !self.is_beyond(b, c, a, around)

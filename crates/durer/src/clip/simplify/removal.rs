@@ -103,35 +103,65 @@ pub struct Removal<'a, G> {
     pub guard: G,
 }
 
+/// How much a point matters, in bits, and its index.
+type Entry = (u64, u32);
+
 /// Points by how much they matter, then by index.
+///
+/// Only those of the smallest magnitude are in a heap, which so stays in the processor's cache; the others wait unsorted, and
+/// what is out of date by then never gets there.
 #[derive(Default)]
 struct Queue {
-    heap: BinaryHeap<Reverse<(u64, u32)>>,
-    /// What each matters now; entries of the heap that say otherwise are out of date.
+    heap: BinaryHeap<Reverse<Entry>>,
+    /// The largest magnitude in the heap.
+    magnitude: u64,
+    /// Entries of larger magnitudes.
+    later: BTreeMap<u64, Vec<Entry>>,
+    /// What each matters now; entries that say otherwise are out of date.
     now: Vec<f64>,
     /// Points that wait until another one is gone, by that one.
     waiting: BTreeMap<u32, Vec<u32>>,
 }
+
+/// Measures are of one magnitude that have the same bits but for the last ones: a fourth of a power of two.
+const MAGNITUDE_SHIFT: u32 = 50;
 
 impl Queue {
     fn push(&mut self, point: u32, measure: f64, limit: f64) {
         // Of numbers that are not negative the bits are in their order.
         let measure = measure.abs();
         self.now[point as usize] = measure;
-        if measure <= limit {
-            self.heap.push(Reverse((measure.to_bits(), point)));
+        if measure > limit {
+            return;
+        }
+        let entry = (measure.to_bits(), point);
+        let magnitude = entry.0 >> MAGNITUDE_SHIFT;
+        if magnitude <= self.magnitude {
+            self.heap.push(Reverse(entry));
+        } else {
+            self.later.entry(magnitude).or_default().push(entry);
         }
     }
 
     /// The next point and what it matters.
     fn pop(&mut self) -> Option<(u32, f64)> {
         loop {
-            let Reverse((bits, point)) = self.heap.pop()?;
-            if self.now[point as usize].to_bits() == bits {
-                return Some((point, f64::from_bits(bits)));
+            while let Some(Reverse(entry)) = self.heap.pop() {
+                if is_current(&self.now, &entry) {
+                    return Some((entry.1, f64::from_bits(entry.0)));
+                }
             }
+            let (magnitude, entries) = self.later.pop_first()?;
+            self.magnitude = magnitude;
+            let current = entries.into_iter().filter(|entry| is_current(&self.now, entry));
+            self.heap = current.map(Reverse).collect();
         }
     }
+}
+
+/// Whether an entry says what its point matters now.
+fn is_current(now: &[f64], &(bits, point): &Entry) -> bool {
+    now[point as usize].to_bits() == bits
 }
 
 /// What a point matters that is gone.

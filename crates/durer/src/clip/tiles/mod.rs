@@ -4,6 +4,7 @@
 //! [`walk()`] goes down from the world to the tiles of one level and cuts what lies in them on the way;
 //! [`Pyramid`] makes of features what vector tiles have: simplified, on a grid of whole numbers, for many levels.
 
+mod apart;
 mod level;
 pub mod mercator;
 mod piece;

@@ -1,5 +1,6 @@
 //! Geometry in the tiles' plane, and on the tiles' grid.
 
+use super::apart;
 use crate::Result;
 use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay, rectangle};
 use crate::math::{DVec2, I64Vec2, Rect};
@@ -134,7 +135,7 @@ fn nearest(value: f64, origin: i64) -> i64 {
     ((value + 0.5).floor() as i64).saturating_sub(origin)
 }
 
-/// The polygons on the grid, made valid.
+/// The polygons on the grid, made valid: by the overlay where rings cross or touch.
 fn valid(
     shapes: &Shapes,
     snap: impl Fn(DVec2) -> I64Vec2,
@@ -142,18 +143,17 @@ fn valid(
 ) -> Result<Shapes<I64Vec2>> {
     let mut snapped: Shapes<I64Vec2> = Shapes::new();
     for ring in shapes.rings() {
-        let mut ring: Vec<I64Vec2> = ring.iter().copied().map(&snap).collect();
-        ring.dedup();
-        while ring.len() > 1 && ring.first() == ring.last() {
-            ring.pop();
-        }
-        if ring.len() > 2 {
+        // On whole numbers no neighbour needs a point in the middle of a straight border.
+        let ring = apart::cleaned(ring.iter().copied().map(&snap));
+        if !ring.is_empty() {
             snapped.push_ring(ring);
         }
     }
     snapped.end_polygon();
+    if let Some(polygons) = apart::polygons(&snapped, fill) {
+        return Ok(polygons);
+    }
     let none = Shapes::new();
-    // On whole numbers no neighbour needs a point in the middle of a straight border.
     let options = overlay::Options { drop_collinear: true, ..overlay::Options::with_rule(fill) };
     Ok(overlay(&snapped, &none, BooleanOp::Union, &options, &mut NoTrace)?.shapes)
 }

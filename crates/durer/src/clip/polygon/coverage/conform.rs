@@ -6,7 +6,7 @@ use crate::clip::attribute::Source;
 use crate::clip::polygon::rectangle::Near;
 use crate::clip::polygon::rectangle::tree::Tree;
 use crate::clip::polygon::{Shapes, Vertex};
-use crate::clip::touch::{are_one, is_on, reach};
+use crate::clip::touch::{are_one, is_on, is_within, reach};
 use crate::math::{DVec2, Rect};
 use std::ops::Range;
 
@@ -89,13 +89,13 @@ struct Touches {
 
 /// An edge, by the index of its first point.
 #[derive(Debug, Clone, Copy)]
-struct Edge {
-    ends: [DVec2; 2],
-    index: usize,
+pub(super) struct Edge {
+    pub ends: [DVec2; 2],
+    pub index: usize,
 }
 
 impl Edge {
-    fn all(shapes: &Shapes) -> Vec<Self> {
+    pub fn all(shapes: &Shapes) -> Vec<Self> {
         let of_ring = |ring| {
             let (points, start) = (shapes.ring(ring), shapes.ring_range(ring).start);
             let ends = points.iter().zip(points.iter().cycle().skip(1));
@@ -110,12 +110,23 @@ fn around(edges: &[Edge]) -> Option<Rect> {
     Rect::around(edges.iter().flat_map(|edge| edge.ends))
 }
 
-/// Calls with all edges of ours and theirs whose boxes are near each other, and some that are not.
-fn each_near(ours: &[Edge], theirs: &[Edge], mut f: impl FnMut(&Edge, &Edge)) {
+/// A vertex of polygons that are not valid lies on another edge of theirs, or one of a neighbour on its edge, within so many
+/// times the usual reach, 32 to 64 ulp: such vertices are mostly crossings that a program found in f64, several ulp
+/// beside the edges. A larger number would bend borders by more than the coordinates are worth.
+pub(super) const OWN_REACH: f64 = 16.0;
+
+/// Calls with all edges of ours and theirs whose boxes are near each other, within so many times the usual reach, and some
+/// that are not.
+pub(super) fn each_near(
+    ours: &[Edge],
+    theirs: &[Edge],
+    times: f64,
+    mut f: impl FnMut(&Edge, &Edge),
+) {
     let tree = Tree::new(theirs.len(), &|some: Range<usize>| around(&theirs[some]));
     for run in ours.chunks(Tree::RUN) {
         let Some(bounds) = around(run) else { continue };
-        let margin = 2.0 * reach(bounds.max().abs().max(bounds.min().abs()));
+        let margin = 2.0 * times * reach(bounds.max().abs().max(bounds.min().abs()));
         let (low, high) = (bounds.min() - margin, bounds.max() + margin);
         let Ok(near) = Rect::new(low, high) else { continue };
         tree.visit(|node| {
@@ -137,16 +148,17 @@ impl Touches {
     fn between(subject: &Shapes, mask: &Mask) -> Self {
         let mut touches = Self::default();
         let (ours, theirs) = (Edge::all(subject), Edge::all(&mask.near.shapes));
-        each_near(&ours, &theirs, |edge, other| touches.look(edge, other, &mask.near.lines));
+        each_near(&ours, &theirs, 1.0, |edge, other| touches.look(edge, other, &mask.near.lines));
         touches
     }
 
     /// Adds where the subject comes near to itself.
     fn within(&mut self, subject: &Shapes) {
         let edges = Edge::all(subject);
-        each_near(&edges, &edges, |edge, other| {
+        each_near(&edges, &edges, OWN_REACH, |edge, other| {
             let (p, [a, b]) = (edge.ends[0], other.ends);
-            if !are_one(p, a) && !are_one(p, b) && is_on(p, [a, b], [a, b]) {
+            let lies_on = || is_within(OWN_REACH * reach(p), p, [a, b], [a, b]);
+            if !are_one(p, a) && !are_one(p, b) && lies_on() {
                 self.on_self.push((other.index, edge.index));
             }
         });
@@ -244,11 +256,20 @@ fn divide_mask(input: &Shapes, mask: &Mask, touches: &Touches) -> Mask {
 fn divide_subject<'a>(input: &'a Shapes, mask: &Mask, touches: &Touches) -> Subject<'a> {
     let theirs = |&(edge, vertex): &(usize, usize)| (edge, mask.near.shapes.points()[vertex]);
     let own = |&(edge, vertex): &(usize, usize)| (edge, input.points()[vertex]);
-    let mut inserted: Vec<(usize, DVec2)> =
+    let inserted: Vec<(usize, DVec2)> =
         touches.on_subject.iter().map(theirs).chain(touches.on_self.iter().map(own)).collect();
     if inserted.is_empty() {
         return Subject::plain(input);
     }
+    let divided = Some(with_points(input, inserted));
+    Subject { input, divided }
+}
+
+/// The shapes with points on edges, each with the first point of its edge, and where each point comes from.
+pub(super) fn with_points(
+    input: &Shapes,
+    mut inserted: Vec<(usize, DVec2)>,
+) -> (Shapes, Vec<Source>) {
     sort_along(&mut inserted, input, |&p| p);
     let (mut shapes, mut sources) = (Shapes::new(), Vec::new());
     let mut inserted = inserted.into_iter().peekable();
@@ -260,7 +281,7 @@ fn divide_subject<'a>(input: &'a Shapes, mask: &Mask, touches: &Touches) -> Subj
             sources.push(on_edge(input, k, p));
         }
     });
-    Subject { input, divided: Some((shapes, sources)) }
+    (shapes, sources)
 }
 
 fn on_edge(input: &Shapes, edge: usize, p: DVec2) -> Source {

@@ -11,7 +11,10 @@
 //! nothing. Where exact points would make rings cross, those around the fault stay on the grid.
 
 mod conform;
+mod matched;
 mod place;
+
+pub use matched::{Matched, matched};
 
 use super::overlay::{self, overlay};
 use super::rectangle::{Near, Prepared};
@@ -30,6 +33,9 @@ pub struct Options {
     /// Whether the subject's own vertices are looked for on its edges too. Of polygons that are not valid some
     /// lie there but for rounding, and would leave slivers.
     pub mend: bool,
+    /// Whether vertices of the mask stay also where it runs along an edge of the subject on both sides of them: where the mask
+    /// is what is cut, and the subject what it is cut with.
+    pub keep: bool,
 }
 
 /// What is left of polygons.
@@ -73,7 +79,7 @@ pub struct Cut {
 pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, options: &Options) -> Result<Cut> {
     let near = subject.bounds().map(|bounds| Near::around(mask, &bounds)).unwrap_or_default();
     let (subject, mask) = conform::conform(subject, Mask::new(near), options.mend);
-    solve(&subject, &mask, op, options.rule)
+    solve(&subject, &mask, op, options)
 }
 
 /// All of one set of polygons with all of another, of which the second are valid.
@@ -83,10 +89,10 @@ pub fn cut(subject: &Shapes, mask: &Prepared, op: BooleanOp, options: &Options) 
 pub fn join(first: &Shapes, second: &Shapes, op: BooleanOp, options: &Options) -> Result<Cut> {
     let mask = Mask::new(Near::all(second.clone()));
     if !options.mend {
-        return solve(&Subject::plain(first), &mask, op, options.rule);
+        return solve(&Subject::plain(first), &mask, op, options);
     }
     let (first, mask) = conform::conform(first, mask, true);
-    solve(&first, &mask, op, options.rule)
+    solve(&first, &mask, op, options)
 }
 
 /// The grid that [`cut`] and [`join`] decide on: the finest that the overlay takes.
@@ -103,17 +109,17 @@ pub fn finest_grid(bounds: [Option<Rect>; 2]) -> Option<f64> {
     (cell.is_normal() && cell.is_finite()).then_some(cell)
 }
 
-fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, rule: FillRule) -> Result<Cut> {
+fn solve(subject: &Subject, mask: &Mask, op: BooleanOp, chosen: &Options) -> Result<Cut> {
     let bounds = [subject.shapes().bounds(), mask.near.shapes.bounds()];
     let options = overlay::Options {
-        subject_rule: rule,
+        subject_rule: chosen.rule,
         clip_rule: FillRule::EvenOdd,
         grid: finest_grid(bounds),
         origins: true,
         drop_collinear: false,
     };
     let output = overlay(subject.shapes(), &mask.near.shapes, op, &options, &mut NoTrace)?;
-    Ok(place::place(subject, mask, output))
+    Ok(place::place(subject, mask, chosen.keep, output))
 }
 
 #[cfg(test)]

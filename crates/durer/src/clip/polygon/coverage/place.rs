@@ -26,9 +26,9 @@ impl Point {
     }
 }
 
-/// Puts the points of an overlay where the input has them, or its edges cross.
-pub(super) fn place(subject: &Subject, mask: &Mask, output: Output) -> Cut {
-    let placer = Placer { subject, mask };
+/// Puts the points of an overlay where the input has them, or its edges cross; `keep` is that of the options.
+pub(super) fn place(subject: &Subject, mask: &Mask, keep: bool, output: Output) -> Cut {
+    let placer = Placer { subject, mask, keep };
     let points = output.shapes.points().iter().zip(&output.origins);
     let mut points: Vec<Point> = points.map(|(&at, origin)| placer.point(at, origin)).collect();
     let kept = placer.kept(&output, &points);
@@ -43,6 +43,7 @@ pub(super) fn place(subject: &Subject, mask: &Mask, output: Output) -> Cut {
 struct Placer<'a> {
     subject: &'a Subject<'a>,
     mask: &'a Mask,
+    keep: bool,
 }
 
 impl Placer<'_> {
@@ -93,7 +94,8 @@ impl Placer<'_> {
                 let before = if k > range.start { k - 1 } else { range.end - 1 };
                 let at = |k: usize| points[k].place();
                 let drop = at(k) == at(next) && !matches!(points[k].source, Source::Vertex(_))
-                    || self.runs_along(&output.origins[k], &points[k], at(before), at(next));
+                    || !self.keep
+                        && self.runs_along(&output.origins[k], &points[k], at(before), at(next));
                 if drop && left > 3 {
                     kept[k] = false;
                     left -= 1;
