@@ -3,6 +3,7 @@
 use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
 use crate::compare;
+use crate::drawing::report::DrawingReport;
 use crate::drawing::{self, Subject};
 use crate::encoding;
 use crate::environment;
@@ -319,6 +320,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     if let Some(why) = unseen_of_all {
         model.warn(durer_formats::Place::Whole, why);
     }
+    tell_loose_faces(&name, &mut model, &pictures, messages);
     tell_flattened(&name, &mut model, &pictures, messages);
     Ok(ModelReport {
         model: name,
@@ -353,6 +355,21 @@ fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], me
     let message = format!("{count} triangles with a coordinate that is not finite are left out");
     model.warn(durer_formats::Place::Whole, message);
     messages.warnings(name, &model.warnings[known..]);
+}
+
+/// How faces meet is known when their lines have been drawn.
+fn tell_loose_faces(
+    name: &str,
+    model: &mut Model,
+    pictures: &[PictureReport],
+    messages: &Messages,
+) {
+    let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
+    if let Some(message) = drawings.filter_map(DrawingReport::loose_faces).next() {
+        let known = model.warnings.len();
+        model.warn(durer_formats::Place::Whole, message);
+        messages.warnings(name, &model.warnings[known..]);
+    }
 }
 
 /// What is transparent is known when it has been painted.

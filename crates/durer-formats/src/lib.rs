@@ -24,6 +24,7 @@ pub mod hdr;
 pub mod height_map;
 pub mod image;
 pub mod las;
+mod last_digit;
 mod model;
 mod mtl;
 mod number;

@@ -8,6 +8,7 @@
 //! Cost: one pass. Memory: 24 bytes per vertex while reading, and the mesh.
 
 use crate::facets::{self, Attributes, Facets};
+use crate::last_digit::last_digit;
 use crate::model::count_infinite;
 use crate::obj::corners::NONE;
 use crate::text::{Cursor, Tally, quote, utf8};
@@ -95,6 +96,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
         Err(why) if reader.has_something() => reader.warn_of_end(&mut model, why)?,
         other => other?,
     }
+    model.scene.last_digit = last_digit(&text, b"");
     reader.into_model(model)
 }
 

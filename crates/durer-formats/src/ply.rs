@@ -25,6 +25,7 @@ mod splat;
 mod texture;
 mod vertices;
 
+use crate::last_digit::last_digit;
 use crate::{Error, Model, Place, ReadOptions, Resources, Result, text};
 use body::{Ascii, Binary};
 use build::Builder;
@@ -64,6 +65,9 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
         }
     };
     let mut model = finish::finish(builder, &header, resources, options)?;
+    if matches!(header.encoding, Encoding::Ascii) {
+        model.scene.last_digit = last_digit(body, b"");
+    }
     if header.unknown.count > 0 {
         let message =
             format!("{} lines are not of a PLY header and were skipped", header.unknown.count);

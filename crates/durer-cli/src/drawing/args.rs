@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use durer::paper::{self, Page, Pens, Scale};
 use durer::pipeline::{DrawStyle, line_classes};
 use durer::visibility::line::{ClassSet, edge_lines};
+use durer::visibility::object::Weld;
 use durer::visibility::region;
 
 /// Exact drawings: lines and areas, as vectors or painted.
@@ -39,6 +40,13 @@ pub struct DrawingArgs {
     /// does --lines where it leaves out classes.
     #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = stubs)]
     pub stubs: Option<f64>,
+    /// Leave out hidden lines that run within this much of visible ones, in percent of the drawing's larger side
+    /// [default: 0.2; 0 for .geojson and with --stubs 0]
+    ///
+    /// On paper their strokes would run into each other: where a view is nearly along an axis, what is hidden lies
+    /// a hair beside what is seen.
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = stubs)]
+    pub beneath: Option<f64>,
     /// Widths of strokes in millimetres: WIDTH[,CLASS=WIDTH…]
     ///
     /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first is for all that are not named. Classes are those
@@ -64,6 +72,12 @@ pub struct DrawingArgs {
     /// Where lines are drawn in which faces penetrate each other
     #[arg(long, value_name = "WHERE", default_value = "bodies")]
     pub intersections: Intersections,
+    /// How near the borders of faces may lie to each other to be one
+    ///
+    /// `auto` takes what rounding may have moved: a few of the last digits of the file's coordinates. A length, in
+    /// units of the model, closes wider gaps. `none` takes vertices as they are in the file.
+    #[arg(long, value_name = "LENGTH|auto|none", allow_hyphen_values = true, default_value = "auto", value_parser = weld)]
+    pub weld: Weld,
     /// Put lines in an order with short ways for a pen
     #[arg(long)]
     pub pen_order: bool,
@@ -101,12 +115,14 @@ pub const NAMES: &[&str] = &[
     "crease",
     "lines",
     "stubs",
+    "beneath",
     "pen",
     "hatch",
     "merge",
     "fill",
     "smooth",
     "intersections",
+    "weld",
     "pen_order",
     "page",
     "margin",
@@ -129,6 +145,16 @@ fn style() -> impl TypedValueParser<Value = DrawStyle> {
 
 fn parsed<T: std::str::FromStr<Err = durer::Error>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|e: durer::Error| e.to_string())
+}
+
+fn weld(text: &str) -> Result<Weld, String> {
+    match text {
+        "auto" => Ok(Weld::Auto),
+        "none" => Ok(Weld::None),
+        _ => values::not_negative(text)
+            .map(Weld::Within)
+            .map_err(|e| format!("{e}; or auto, or none")),
+    }
 }
 
 /// `--crease`, in degrees.

@@ -31,6 +31,10 @@ const HATCH_SPACING: f64 = 0.7;
 /// The length of stubs on paper, percent of the drawing's larger side.
 const STUBS: f64 = 1.0;
 
+/// How near hidden lines are to visible ones to be left out on paper, percent of the drawing's larger side: 0.36 mm
+/// of 180, a pen's width.
+const BENEATH: f64 = 0.2;
+
 /// Free space on paper, millimetres: on pages, and around drawings without one.
 const PAGE_MARGIN: f64 = 10.0;
 const MARGIN: f64 = 5.0;
@@ -280,6 +284,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
     };
     let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
     let merge = drawing.merge.unwrap_or(if geojson { Merge::Face } else { Merge::Shade });
+    let all = geojson || drawing.stubs == Some(0.0);
     let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
     let viewed = paper || !kind.is_vector();
     let default = hidden_line::Options::default();
@@ -295,8 +300,10 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             hidden: drawing.hidden != Hidden::Drop || geojson,
             intersections: drawing.intersections.into(),
             smooth: drawing.smooth,
+            weld: drawing.weld,
             pen_order: drawing.pen_order,
             stubs: drawing.stubs.unwrap_or(if geojson { 0.0 } else { STUBS }) / 100.0,
+            beneath: drawing.beneath.unwrap_or(if all { 0.0 } else { BENEATH }) / 100.0,
             ..default
         },
         lighting,

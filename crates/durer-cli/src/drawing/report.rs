@@ -4,6 +4,9 @@ use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
 use serde::Serialize;
 
+/// Fewer borders than these are those of sheets.
+const LOOSE: u64 = 12;
+
 /// A drawing's counts and lengths.
 #[derive(Debug, Serialize)]
 pub struct DrawingReport {
@@ -19,6 +22,10 @@ pub struct DrawingReport {
     pub regions: usize,
     /// Their area, squared model units on the picture plane.
     pub region_area: f64,
+    /// Edges of the model's faces, over all views, where lines are drawn.
+    pub edges: u64,
+    /// Those of one face only.
+    pub border_edges: u64,
     /// Lines by class, those that have some.
     pub lines: Vec<ClassReport>,
 }
@@ -66,8 +73,21 @@ impl DrawingReport {
             regions: regions().count(),
             // The sum of no numbers is −0.
             region_area: regions().map(|r| r.area()).sum::<f64>() + 0.0,
+            edges: drawings.iter().map(|d| d.edges.edges).sum(),
+            border_edges: drawings.iter().map(|d| d.edges.borders).sum(),
             lines: LineClass::ALL.iter().filter_map(class).collect(),
         }
+    }
+
+    /// Tells that most edges are borders, where that is so: faces that should meet do not.
+    pub fn loose_faces(&self) -> Option<String> {
+        let Self { edges, border_edges, .. } = *self;
+        (border_edges >= LOOSE && border_edges * 2 > edges).then(|| {
+            format!(
+                "{border_edges} of {edges} edges are borders, of one face only: the faces do not \
+                 meet; --weld LENGTH joins those that lie that near to each other"
+            )
+        })
     }
 
     /// In a few words, for `--verbose`.

@@ -28,6 +28,7 @@ mod smooth;
 #[cfg(test)]
 mod tests;
 
+use crate::last_digit::last_digit;
 use crate::{Model, ReadOptions, Resources, Result, text};
 
 /// Reads an OBJ file: UTF-8 or any 8-bit text, or UTF-16 with a byte-order mark.
@@ -42,6 +43,9 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     let counts = count::count(&text);
     counts.check(&options.limits)?;
     let parsed = parse::parse(&text, &counts, &options.limits)?;
+    let last_digit = last_digit(&text, b"v");
     drop(text);
-    build::build(parsed, resources, options)
+    let mut model = build::build(parsed, resources, options)?;
+    model.scene.last_digit = last_digit;
+    Ok(model)
 }

@@ -1,6 +1,7 @@
 //! STL as text.
 
 use super::{add, check_limit, finished};
+use crate::last_digit::last_digit;
 use crate::model::count_infinite;
 use crate::text::{Cursor, Tally, quote};
 use crate::{Error, Limits, Model, Place, Result, number, place, polygon};
@@ -29,6 +30,7 @@ pub(super) fn read(text: &[u8], limits: &Limits) -> Result<Model> {
         mesh.indices = Some((0..mesh.positions.len() as u32).collect());
         polygon::recut(&mut model, &mut mesh, limits)?;
     }
+    model.scene.last_digit = last_digit(text, b"vertex");
     let infinite = count_infinite(&mesh.positions);
     add(&mut model, mesh, origin);
     finished(model, infinite)

@@ -217,7 +217,11 @@ impl<'a, 'b> Assembly<'a, 'b> {
     fn make(&mut self) -> Result<()> {
         let mut made: HashMap<(Id, Option<u32>, Option<u64>), Made> = HashMap::new();
         let mut repairs = Repairs::default();
+        let mut items: Vec<u64> = Vec::new();
         for p in std::mem::take(&mut self.placements) {
+            if items.last() != Some(&p.item) {
+                items.push(p.item);
+            }
             // Only runs of triangles make a mesh depend on the item.
             let volumes = self.settings.object(p.item).is_some_and(|s| !s.volumes.is_empty());
             let key = (p.object, p.filament, volumes.then_some(p.item));
@@ -229,7 +233,9 @@ impl<'a, 'b> Assembly<'a, 'b> {
             let name = object.map_or("", |o| &o.name);
             let world_from_mesh = p.world_from_object * place::matrix(*origin);
             let instance = |&mesh| Instance { mesh, world_from_mesh, name: name.to_owned() };
-            self.model.scene.instances.extend(meshes.iter().map(instance));
+            let scene = &mut self.model.scene;
+            scene.instances.extend(meshes.iter().map(instance));
+            scene.trees.resize(scene.instances.len(), items.len() as u32);
         }
         warn_of_repairs(self.model, &repairs);
         Ok(())

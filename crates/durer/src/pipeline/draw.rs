@@ -143,13 +143,15 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
         let lines = hidden_line::draw(scene, &view, &how, &mut NoTrace)?;
         drawing.window = lines.window;
         drawing.lines.extend(lines.lines);
+        drawing.edges = lines.edges;
     }
     Ok(drawing)
 }
 
 fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
-    let hidden_line::Options { tolerance, pen_order, .. } = options.lines;
-    wireframe::draw(scene, view, &wireframe::Options { tolerance, pen_order }, &mut NoTrace)
+    let hidden_line::Options { tolerance, pen_order, weld, .. } = options.lines;
+    let how = wireframe::Options { tolerance, pen_order, weld };
+    wireframe::draw(scene, view, &how, &mut NoTrace)
 }
 
 /// What of a section's caps can be seen, to be filled or hatched among lines.

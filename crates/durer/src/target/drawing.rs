@@ -207,6 +207,17 @@ pub struct Drawing {
     pub lines: Vec<Line>,
     /// Text.
     pub labels: Vec<Label>,
+    /// How the faces meet whose lines these are.
+    pub edges: EdgeCount,
+}
+
+/// How the faces of a model meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct EdgeCount {
+    /// All edges.
+    pub edges: u64,
+    /// Those of one triangle only.
+    pub borders: u64,
 }
 
 impl Drawing {

@@ -254,3 +254,39 @@ fn nothing_and_nonsense_are_no_drawing() {
     let wrong = Options { crease: f64::NAN, ..Options::default() };
     assert!(draw(&soup(&[]), &v, &wrong, &mut NoTrace).is_err());
 }
+
+#[test]
+fn edges_that_meet_in_a_corner_end_in_one_point() {
+    let exact = Options { tolerance: 1e-3, ..Options::default() };
+    // Of three edges two go on in each other, but for a part of the tolerance.
+    for to_eye in [DVec3::new(1.0, 1.0, 1e-3), DVec3::new(-1.0, 1.0, -1e-3), ISO] {
+        let seen = view(DVec3::splat(1.0), to_eye, 4.0, false);
+        let cube = soup(&cuboid([0.0; 3], [2.0; 3]));
+        let lines = draw(&cube, &seen, &exact, &mut NoTrace).expect("drawing").lines;
+        for line in lines.iter().filter(|l| !l.closed) {
+            for end in [line.points[0], line.points[line.points.len() - 1]] {
+                let through = lines.iter().filter(|l| l.points.contains(&end)).count();
+                assert!(through > 1, "{to_eye}: {end} of {line:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn hidden_lines_beside_visible_ones_are_left_out_where_that_is_asked_for() {
+    let cube = cuboid([0.0; 3], [2.0; 3]);
+    for off in [1e-7, 1e-5, 1e-4, 1e-3] {
+        let seen = view(DVec3::splat(1.0), DVec3::new(off, -1.3 * off, 1.0), 4.0, false);
+        let drawn = |beneath: f64| {
+            let options = Options { beneath, ..Options::default() };
+            draw(&soup(&cube), &seen, &options, &mut NoTrace).expect("drawing")
+        };
+        let [visible, hidden] = lengths(&drawn(0.002));
+        assert_eq!(hidden, 0.0, "{off}");
+        assert_eq!(visible, lengths(&drawn(0.0))[0]);
+    }
+    assert!(
+        lengths(&drawing(&cube, &view(DVec3::ONE, DVec3::new(1e-3, 0.0, 1.0), 4.0, false)))[1]
+            > 1.0
+    );
+}

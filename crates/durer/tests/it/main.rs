@@ -70,5 +70,6 @@ mod view_warp;
 mod view_window;
 mod visible_regions;
 mod visible_surface;
+mod welding;
 mod wireframe;
 mod z_buffer;

@@ -1,11 +1,11 @@
 //! From pieces to the lines of a drawing: each drawn once, chained, simplified, ordered.
 
 use super::chain::chains;
-use super::overlap::{Piece, drawn_once};
-use super::page::Page;
+use super::overlap::{Near, Piece, drawn_once};
+use super::page::{GridPoint, Page};
 use super::stubs::without_stubs;
 use super::{pen_order, simplify::simplify};
-use crate::target::drawing::Line;
+use crate::target::drawing::{Line, LineClass};
 use crate::{Error, Result};
 
 /// Parts of lines shorter than this many steps come from rounding: 2⁻²² of the page.
@@ -23,6 +23,8 @@ pub(super) struct How {
     pub tolerance: f64,
     /// 0 leaves stubs alone.
     pub stubs: f64,
+    /// How far beside a visible line a hidden one is under it.
+    pub beneath: f64,
     pub pen_order: bool,
 }
 
@@ -37,22 +39,49 @@ impl How {
             }
         };
         part("tolerance", self.tolerance)?;
-        part("stubs", self.stubs)
+        part("stubs", self.stubs)?;
+        part("beneath", self.beneath)
     }
 }
 
+/// The straight pieces that lines are made of.
+#[derive(Debug, Default)]
+pub(super) struct Pieces {
+    pub all: Vec<Piece>,
+    /// Where three sharp edges or more meet, sorted: lines that go through keep that point.
+    pub corners: Vec<GridPoint>,
+}
+
+/// The corners among the ends of lines, which are given with their class and whether they are smooth.
+pub(super) fn corners(
+    lines: impl Iterator<Item = (LineClass, bool, [GridPoint; 2])>,
+) -> Vec<GridPoint> {
+    let sharp = lines.filter(|(class, smooth, _)| *class != LineClass::Wire && !smooth);
+    let mut ends: Vec<GridPoint> = sharp.flat_map(|(_, _, ends)| ends).collect();
+    ends.sort_unstable();
+    ends.chunk_by(|a, b| a == b).filter(|same| same.len() > 2).map(|same| same[0]).collect()
+}
+
 /// The finished lines.
-pub(super) fn arrange(page: &Page, pieces: Vec<Piece>, how: How) -> Vec<Line> {
+pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
+    let Pieces { all, corners } = pieces;
     let steps = how.tolerance * page.extent;
     let close = (steps * CLOSE).max(2.0);
-    let mut pieces = drawn_once(pieces, close, how.stubs * BESIDE * page.extent, SLIVER);
+    let near = Near {
+        close,
+        beside: how.stubs * BESIDE * page.extent,
+        beneath: how.beneath * page.extent,
+        sliver: SLIVER,
+        corners: &corners,
+    };
+    let mut pieces = drawn_once(all, near);
     if how.stubs > 0.0 {
         pieces = without_stubs(pieces, how.stubs * page.extent, close);
     }
     let mut chains = chains(&pieces);
     for chain in &mut chains {
         // Snapping alone moves points by a step.
-        chain.points = simplify(&chain.points, chain.closed, steps.max(1.5));
+        chain.points = simplify(&chain.points, chain.closed, steps.max(1.5), &corners);
         chain.closed &= chain.points.len() > 2;
     }
     chains.retain(|c| c.points.len() > 1 && c.length() >= steps);

@@ -41,93 +41,222 @@ impl Piece {
 /// sides of a corner.
 const PARALLEL: f64 = 0.02;
 
-/// What is left of the pieces where none lies within `close` steps of another along its length;
-/// pieces not longer than `sliver` that a cut leaves are dropped. Creases and silhouettes of round parts
-/// go where they lie `beside` an earlier line, if that is more.
-pub(super) fn drawn_once(
-    mut pieces: Vec<Piece>,
-    close: f64,
-    beside: f64,
-    sliver: f64,
-) -> Vec<Piece> {
+/// How far, as a part of its length, what is left of a piece is turned to end where another does.
+const TURN: f64 = 0.05;
+
+/// How near, in steps, lines are to each other to be drawn once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near<'a> {
+    /// Lines within this lie on each other.
+    pub close: f64,
+    /// Creases and silhouettes of round parts go where they lie within this of an earlier line, if it is more.
+    pub beside: f64,
+    /// Hidden lines go where they lie within this of a visible one, if it is more.
+    pub beneath: f64,
+    /// Pieces not longer than this that a cut leaves are dropped.
+    pub sliver: f64,
+    /// Where sharp edges meet, sorted: hidden lines between two of these may go though they do not run along
+    /// a visible one.
+    pub corners: &'a [GridPoint],
+}
+
+/// What is left of the pieces where none lies on another along its length.
+pub(super) fn drawn_once(mut pieces: Vec<Piece>, how: Near<'_>) -> Vec<Piece> {
     pieces.retain(|p| p.ends[0] != p.ends[1]);
     // The first in rank comes last, and is taken from there.
     pieces.sort_unstable_by_key(|p| Reverse(p.rank()));
-    let Some(table) = Table::new(&pieces, close) else { return pieces };
-    let (mut table, entered) = (table, close);
+    let Some(mut table) = Table::new(&pieces, how.close) else { return pieces };
     let mut kept: Vec<Piece> = Vec::with_capacity(pieces.len());
     let mut near: Vec<u32> = Vec::new();
-    let mut gone: Vec<(f64, f64)> = Vec::new();
+    let mut gone: Vec<Gone> = Vec::new();
     while let Some(piece) = pieces.pop() {
         // All edges of a large mesh are many: what is done gives way to what is kept.
         if pieces.len() < pieces.capacity() / 8 * 7 {
             pieces.shrink_to_fit();
         }
+        let close = if piece.may_end_anywhere() { how.close.max(how.beside) } else { how.close };
+        let beneath = if piece.invisibility > 0 { how.beneath } else { 0.0 };
         near.clear();
-        let close = if piece.may_end_anywhere() { close.max(beside) } else { close };
-        table.cells(&piece.ends, close, |list| near.extend_from_slice(list));
+        table.cells(&piece.ends, close.max(beneath), |list| near.extend_from_slice(list));
         near.sort_unstable();
         near.dedup();
         gone.clear();
-        gone.extend(near.iter().filter_map(|&i| overlap(&piece, &kept[i as usize], close)));
+        for other in near.iter().map(|&i| &kept[i as usize]) {
+            gone.extend(overlap(&piece, other, close));
+            if beneath > 0.0 && other.invisibility == 0 {
+                gone.extend(under(&piece, other, how));
+            }
+        }
         let first = kept.len();
         if gone.is_empty() {
             kept.push(piece);
         } else {
-            gone.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-            rest(&piece, &gone, sliver, &mut kept);
+            gone.sort_unstable_by(|a, b| a.from.0.total_cmp(&b.from.0));
+            rest(&piece, &gone, how.sliver.max(beneath), &mut kept);
         }
         for (i, piece) in kept.iter().enumerate().skip(first) {
-            table.enter(piece.ends, entered, i as u32);
+            table.enter(piece.ends, how.close, i as u32);
         }
     }
     kept
 }
 
-/// Which part of `piece`, in steps from its first end, lies on `other`.
-fn overlap(piece: &Piece, other: &Piece, close: f64) -> Option<(f64, f64)> {
-    let length = piece.length();
-    let [ux, uy] = piece.ends[1].minus(piece.ends[0]).map(|d| d as f64 / length);
-    let ends = other.ends.map(|e| {
-        let [x, y] = e.minus(piece.ends[0]).map(|d| d as f64);
-        (ux * x + uy * y, ux * y - uy * x)
-    });
-    let [a, b] = if ends[0].0 <= ends[1].0 { ends } else { [ends[1], ends[0]] };
-    let (from, to) = (a.0.max(0.0), b.0.min(length));
-    if to - from <= 1.0 {
-        return None;
-    }
-    let aside = |s: f64| (a.1 + (b.1 - a.1) * ((s - a.0) / (b.0 - a.0))).abs();
-    let near = close.min(2.0 + PARALLEL * (to - from));
-    (aside(from) <= near && aside(to) <= near).then_some((from, to))
+/// The part of a piece that lies on another one: where it begins and ends, in steps from its first end,
+/// and the point of the other that lies there, if that one ends there.
+#[derive(Debug, Clone, Copy)]
+struct Gone {
+    from: (f64, Option<GridPoint>),
+    to: (f64, Option<GridPoint>),
 }
 
-/// What the sorted parts leave of a piece.
-fn rest(piece: &Piece, gone: &[(f64, f64)], sliver: f64, kept: &mut Vec<Piece>) {
+/// A piece seen along another: the ends by how far along they lie and how far aside, the nearer first.
+struct Along {
+    length: f64,
+    ends: [(f64, f64, GridPoint); 2],
+}
+
+impl Along {
+    fn new(piece: &Piece, other: &Piece) -> Self {
+        let length = piece.length();
+        let [ux, uy] = piece.ends[1].minus(piece.ends[0]).map(|d| d as f64 / length);
+        let [a, b] = other.ends.map(|e| {
+            let [x, y] = e.minus(piece.ends[0]).map(|d| d as f64);
+            (ux * x + uy * y, ux * y - uy * x, e)
+        });
+        Self { length, ends: if a.0 <= b.0 { [a, b] } else { [b, a] } }
+    }
+
+    /// What both have along the first.
+    fn common(&self) -> Option<Gone> {
+        let ([a, b], length) = (self.ends, self.length);
+        let from = if a.0 > 0.0 { (a.0, Some(a.2)) } else { (0.0, None) };
+        let to = if b.0 < length { (b.0, Some(b.2)) } else { (length, None) };
+        (to.0 - from.0 > 1.0).then_some(Gone { from, to })
+    }
+
+    /// How far the other lies aside of a place.
+    fn aside(&self, s: f64) -> f64 {
+        let [a, b] = self.ends;
+        a.1 + (b.1 - a.1) * ((s - a.0) / (b.0 - a.0))
+    }
+}
+
+/// Which part of `piece` lies on `other`.
+fn overlap(piece: &Piece, other: &Piece, close: f64) -> Option<Gone> {
+    let along = Along::new(piece, other);
+    let common = along.common()?;
+    let near = close.min(2.0 + PARALLEL * (common.to.0 - common.from.0));
+    let is_near = |s: f64| along.aside(s).abs() <= near;
+    (is_near(common.from.0) && is_near(common.to.0)).then_some(common)
+}
+
+/// Which part of `piece` lies under `other`, beside it: what runs along it, and short edges whole. Curves that
+/// pass under it are of short pieces too, but those do not end at corners.
+fn under(piece: &Piece, other: &Piece, how: Near<'_>) -> Option<Gone> {
+    let (along, beneath) = (Along::new(piece, other), how.beneath);
+    let is_edge_within =
+        |p: &GridPoint| distance(*p, other) <= beneath && how.corners.binary_search(p).is_ok();
+    if piece.ends.iter().all(is_edge_within) {
+        return Some(Gone { from: (0.0, None), to: (along.length, None) });
+    }
+    let mut common = along.common()?;
+    let asides = [common.from.0, common.to.0].map(|s| along.aside(s));
+    let parallel = 2.0 + PARALLEL * (common.to.0 - common.from.0);
+    let lies =
+        asides.iter().all(|a| a.abs() <= beneath) && (asides[0] - asides[1]).abs() <= parallel;
+    (common.from.1, common.to.1) = (None, None);
+    lies.then_some(common)
+}
+
+/// What the sorted parts leave of a piece. It ends at the ends of what it lay on, where that turns it by little.
+fn rest(piece: &Piece, gone: &[Gone], sliver: f64, kept: &mut Vec<Piece>) {
     let length = piece.length();
     let at = |s: f64| {
         let [dx, dy] = piece.ends[1].minus(piece.ends[0]).map(|d| d as f64 * (s / length));
         let [x, y] = [dx.round() as i32, dy.round() as i32];
         GridPoint { x: piece.ends[0].x + x, y: piece.ends[0].y + y }
     };
-    let mut keep = |from: f64, to: f64| {
-        let start = if from <= 0.0 { piece.ends[0] } else { at(from) };
-        let end = if to >= length { piece.ends[1] } else { at(to) };
-        if to - from > sliver && start != end {
+    let mut keep = |from: (f64, Option<GridPoint>), to: (f64, Option<GridPoint>)| {
+        let point = |(s, known): (f64, Option<GridPoint>)| {
+            let on = at(s);
+            known.filter(|p| p.distance(on) <= (to.0 - from.0) * TURN).unwrap_or(on)
+        };
+        let start = if from.0 <= 0.0 { piece.ends[0] } else { point(from) };
+        let end = if to.0 >= length { piece.ends[1] } else { point(to) };
+        if to.0 - from.0 > sliver && start != end {
             kept.push(Piece { ends: [start, end], ..*piece });
         }
     };
-    let mut done = 0.0_f64;
-    for &(from, to) in gone {
-        keep(done, from);
-        done = done.max(to);
+    let mut done = (0.0_f64, None);
+    for part in gone {
+        keep(done, part.from);
+        if part.to.0 > done.0 {
+            done = part.to;
+        }
     }
-    keep(done, length);
+    keep(done, (length, None));
+}
+
+/// The distance of a point from a piece.
+pub(super) fn distance(p: GridPoint, piece: &Piece) -> f64 {
+    let ([px, py], [dx, dy]) = (
+        p.minus(piece.ends[0]).map(|d| d as f64),
+        piece.ends[1].minus(piece.ends[0]).map(|d| d as f64),
+    );
+    let t = ((px * dx + py * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+    let (x, y) = (px - t * dx, py - t * dy);
+    (x * x + y * y).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn near(close: f64, sliver: f64) -> Near<'static> {
+        Near { close, beside: 0.0, beneath: 0.0, sliver, corners: &[] }
+    }
+
+    #[test]
+    fn hidden_lines_go_under_visible_ones_beside_them() {
+        let line = |ends: [[i32; 2]; 2], invisibility: u32| Piece {
+            ends: ends.map(|[x, y]| GridPoint { x, y }),
+            class: LineClass::Border,
+            invisibility,
+            smooth: false,
+        };
+        let seen = line([[0, 0], [10_000, 0]], 0);
+        let left = |ends: [[i32; 2]; 2]| {
+            let corners = [[3000, 0], [3000, 180]].map(|[x, y]| GridPoint { x, y });
+            let how = Near { beneath: 200.0, corners: &corners, ..near(2.0, 64.0) };
+            drawn_once(vec![line(ends, 1), seen], how)[1..].to_vec()
+        };
+        // Beside it, and a little longer; from it to what lies beside it; and what is longer by more.
+        assert_eq!(left([[100, 150], [10_100, 150]]), []);
+        assert_eq!(left([[3000, 0], [3000, 180]]), []);
+        assert_eq!(left([[100, 150], [12_000, 150]]), [line([[10_000, 150], [12_000, 150]], 1)]);
+        // Across it, at an angle to it, and further off.
+        for ends in [
+            [[500, -300], [500, 300]],
+            [[0, 0], [5000, 190]],
+            [[0, 300], [9000, 300]],
+            [[4000, 0], [4000, 180]],
+        ] {
+            assert_eq!(left(ends), [line(ends, 1)]);
+        }
+    }
+
+    #[test]
+    fn what_is_cut_off_ends_where_the_other_does() {
+        let line = |ends: [[i32; 2]; 2]| Piece {
+            ends: ends.map(|[x, y]| GridPoint { x, y }),
+            class: LineClass::Border,
+            invisibility: 0,
+            smooth: false,
+        };
+        let (long, short) = (line([[0, 0], [9000, 0]]), line([[5000, 3], [12_000, 5]]));
+        let kept = drawn_once(vec![short, long], near(10.0, 64.0));
+        assert_eq!(kept, [long, line([[9000, 0], [12_000, 5]])]);
+    }
 
     #[test]
     fn slivers_that_a_cut_leaves_are_dropped() {
@@ -138,8 +267,8 @@ mod tests {
             smooth: false,
         };
         let (long, short) = (line(0, 100_000), line(90_000, 100_050));
-        assert_eq!(drawn_once(vec![short, long], 10.0, 0.0, 64.0), [long]);
-        assert_eq!(drawn_once(vec![short, long], 10.0, 0.0, 10.0), [long, line(100_000, 100_050)]);
+        assert_eq!(drawn_once(vec![short, long], near(10.0, 64.0)), [long]);
+        assert_eq!(drawn_once(vec![short, long], near(10.0, 10.0)), [long, line(100_000, 100_050)]);
     }
 
     #[test]
@@ -154,7 +283,7 @@ mod tests {
         let bundle = [line(90_000, 0), line(100_000, 60), line(95_000, 114)];
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let pieces = order.map(|i| bundle[i]).to_vec();
-            assert_eq!(drawn_once(pieces, 100.0, 0.0, 64.0), [bundle[1]], "{order:?}");
+            assert_eq!(drawn_once(pieces, near(100.0, 64.0)), [bundle[1]], "{order:?}");
         }
     }
 }

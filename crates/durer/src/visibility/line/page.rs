@@ -3,13 +3,9 @@
 //! All decisions in the plane are made with integers and are exact; what projects to one place up to
 //! rounding is at one place.
 
-use super::arrange::{How, arrange};
-use super::overlap::Piece;
-use crate::Result;
+use super::arrange::{How, Pieces, arrange};
 use crate::math::{DVec2, DVec3, Rect};
-use crate::scene::Scene;
-use crate::target::drawing::{Drawing, Line};
-use crate::view::View;
+use crate::target::drawing::Line;
 use crate::view::picture_plane::{Borders, PicturePlane, PlanePoint};
 use crate::visibility::object::Faces;
 
@@ -198,33 +194,18 @@ impl Projected {
     }
 }
 
-/// The drawing of the pieces that `pieces` makes of the faces of a scene, if any of them can be seen.
-pub(super) fn draw(
-    scene: &Scene,
-    view: &View,
-    how: How,
-    pieces: impl FnOnce(&Faces, &Projected) -> Vec<Piece>,
-) -> Result<Drawing> {
-    let faces = Faces::new(scene)?;
-    let plane = PicturePlane::new(view);
-    let window = plane.window();
-    let found = on_page(&faces, plane, |projected| pieces(&faces, projected));
-    drop(faces);
-    Ok(Drawing { window, lines: arranged(found, how), ..Drawing::default() })
-}
-
 /// What `pieces` makes of the faces on their page; all but these are let go before lines are made of them.
 pub(super) fn on_page(
     faces: &Faces,
     plane: PicturePlane,
-    pieces: impl FnOnce(&Projected) -> Vec<Piece>,
-) -> Option<(Page, Vec<Piece>)> {
+    pieces: impl FnOnce(&Projected) -> Pieces,
+) -> Option<(Page, Pieces)> {
     let projected = Projected::new(faces, plane)?;
     Some((projected.page, pieces(&projected)))
 }
 
 /// The lines of what [`on_page`] gives.
-pub(super) fn arranged(found: Option<(Page, Vec<Piece>)>, how: How) -> Vec<Line> {
+pub(super) fn arranged(found: Option<(Page, Pieces)>, how: How) -> Vec<Line> {
     found.map(|(page, pieces)| arrange(&page, pieces, how)).unwrap_or_default()
 }
 

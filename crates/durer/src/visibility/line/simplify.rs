@@ -8,10 +8,15 @@
 use super::page::GridPoint;
 
 /// A closed ring counts from the point that lies furthest to the left, then down, and keeps the
-/// point furthest from it as well.
-pub(super) fn simplify(points: &[GridPoint], closed: bool, tolerance: f64) -> Vec<GridPoint> {
+/// point furthest from it as well. Points among the sorted `corners` stay.
+pub(super) fn simplify(
+    points: &[GridPoint],
+    closed: bool,
+    tolerance: f64,
+    corners: &[GridPoint],
+) -> Vec<GridPoint> {
     if !closed {
-        return open(points, tolerance);
+        return open(points, tolerance, corners);
     }
     let Some(start) = (0..points.len()).min_by_key(|&i| points[i]) else { return Vec::new() };
     let mut ring: Vec<GridPoint> =
@@ -20,18 +25,21 @@ pub(super) fn simplify(points: &[GridPoint], closed: bool, tolerance: f64) -> Ve
     let furthest = |i: &usize| ring[*i].distance(ring[0]);
     let middle = (1..ring.len() - 1).max_by(|a, b| furthest(a).total_cmp(&furthest(b)));
     let Some(middle) = middle else { return ring };
-    let mut kept = open(&ring[..=middle], tolerance);
-    kept.extend_from_slice(&open(&ring[middle..], tolerance)[1..]);
+    let mut kept = open(&ring[..=middle], tolerance, corners);
+    kept.extend_from_slice(&open(&ring[middle..], tolerance, corners)[1..]);
     kept.pop();
     kept
 }
 
-fn open(points: &[GridPoint], tolerance: f64) -> Vec<GridPoint> {
+fn open(points: &[GridPoint], tolerance: f64, corners: &[GridPoint]) -> Vec<GridPoint> {
     if points.len() < 3 {
         return points.to_vec();
     }
     let mut keep = vec![false; points.len()];
-    let mut stack = vec![(0, points.len() - 1)];
+    let stays = |i: &usize| *i == points.len() - 1 || corners.binary_search(&points[*i]).is_ok();
+    let mut from = 0;
+    let parts = (1..points.len()).filter(stays).map(|i| (std::mem::replace(&mut from, i), i));
+    let mut stack: Vec<(usize, usize)> = parts.collect();
     while let Some((a, b)) = stack.pop() {
         (keep[a], keep[b]) = (true, true);
         let mut worst = (tolerance, None);
@@ -54,4 +62,20 @@ fn distance(p: GridPoint, a: GridPoint, b: GridPoint) -> f64 {
     let t = if length2 > 0.0 { ((px * bx + py * by) / length2).clamp(0.0, 1.0) } else { 0.0 };
     let (x, y) = (px - t * bx, py - t * by);
     (x * x + y * y).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_stay_however_flat_they_are() {
+        let row: Vec<GridPoint> = [(0, 0), (100, 1), (200, 0), (300, 1), (400, 0)]
+            .map(|(x, y)| GridPoint { x, y })
+            .into();
+        assert_eq!(simplify(&row, false, 2.0, &[]), [row[0], row[4]]);
+        assert_eq!(simplify(&row, false, 2.0, &row[1..2]), [row[0], row[1], row[4]]);
+        let ring = [&row[..], &[GridPoint { x: 200, y: 300 }]].concat();
+        assert_eq!(simplify(&ring, true, 2.0, &row[3..4]), [row[0], row[3], row[4], ring[5]]);
+    }
 }

@@ -7,7 +7,7 @@
 //! that is not far. O(n) for lines that do not crowd.
 
 use super::chain::{Walk, point, walks};
-use super::overlap::Piece;
+use super::overlap::{Piece, distance};
 use super::page::GridPoint;
 use super::table::Table;
 use crate::target::drawing::LineClass;
@@ -333,17 +333,6 @@ impl<'a> Lines<'a> {
 /// A visible line ends in the open, whatever is hidden there.
 fn counts(of: &Piece, other: &Piece) -> bool {
     of.invisibility > 0 || other.invisibility == 0
-}
-
-/// The distance of a point from a piece.
-fn distance(p: GridPoint, piece: &Piece) -> f64 {
-    let ([px, py], [dx, dy]) = (
-        p.minus(piece.ends[0]).map(|d| d as f64),
-        piece.ends[1].minus(piece.ends[0]).map(|d| d as f64),
-    );
-    let t = ((px * dx + py * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-    let (x, y) = (px - t * dx, py - t * dy);
-    (x * x + y * y).sqrt()
 }
 
 #[cfg(test)]

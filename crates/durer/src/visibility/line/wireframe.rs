@@ -4,11 +4,11 @@
 //! Joint Computer Conference, 1963. Object space; O(n log n) for n edges. The picture is ambiguous:
 //! nothing says which side is in front (Necker's cube), and several bodies may have the same one.
 
-use super::arrange::{How, arrange};
+use super::arrange::{How, Pieces, arrange};
 use super::edge_lines::NO_ITEM;
 use super::marks::marks;
 use super::overlap::Piece;
-use super::page::Page;
+use super::page::{Page, Projected, arranged, on_page};
 use crate::Result;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
@@ -16,7 +16,8 @@ use crate::scene::Scene;
 use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
-use crate::visibility::object::{Bodies, Faces, Side};
+use crate::view::picture_plane::PicturePlane;
+use crate::visibility::object::{Bodies, Edges, Faces, Side, Weld};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -38,19 +39,21 @@ pub struct Options {
     pub tolerance: f64,
     /// As in [`super::hidden_line::Options::pen_order`].
     pub pen_order: bool,
+    /// Which vertices are one.
+    pub weld: Weld,
 }
 
 impl Default for Options {
     /// 0.05 pixels in a picture of 1000.
     fn default() -> Self {
-        Self { tolerance: 5e-5, pen_order: false }
+        Self { tolerance: 5e-5, pen_order: false, weld: Weld::Auto }
     }
 }
 
 impl Options {
     fn how(&self) -> How {
-        let Self { tolerance, pen_order } = *self;
-        How { tolerance, stubs: 0.0, pen_order }
+        let Self { tolerance, pen_order, .. } = *self;
+        How { tolerance, stubs: 0.0, beneath: 0.0, pen_order }
     }
 }
 
@@ -70,7 +73,8 @@ pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
         Step::Edge(ends) => Some(piece(ends.map(|p| page.grid_from_plane(p)))),
         Step::Page(_) => None,
     });
-    arrange(page, edges.collect(), options.how())
+    let all = edges.collect();
+    arrange(page, Pieces { all, ..Pieces::default() }, options.how())
 }
 
 fn piece(ends: [super::page::GridPoint; 2]) -> Piece {
@@ -81,7 +85,7 @@ fn piece(ends: [super::page::GridPoint; 2]) -> Piece {
 /// none; edges that lie on each other in the picture are drawn once.
 ///
 /// # Errors
-/// [`crate::Error::Parameter`] for an option out of its range, and what [`Faces::new`] finds.
+/// [`crate::Error::Parameter`] for an option out of its range, and what [`Faces::welded`] finds.
 pub fn draw(
     scene: &Scene,
     view: &View,
@@ -89,25 +93,33 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
     options.how().check()?;
-    super::page::draw(scene, view, options.how(), |faces, projected| {
-        t.step(|| Step::Page(projected.page));
-        let (_, edges) = Bodies::find(faces);
-        let mut pieces = Vec::new();
-        for (ends, _) in edges.iter().filter(|(_, sides)| !inside_polygon(faces, sides)) {
-            let Some(ends) = projected.edge(faces, ends).filter(|e| e[0].at != e[1].at) else {
-                continue;
-            };
-            let ends = ends.map(|v| v.at);
-            t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
-            pieces.push(piece(ends));
-        }
-        for ends in marks(faces, projected) {
-            let ends = ends.map(|v| v.at);
-            t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
-            pieces.push(piece(ends));
-        }
-        pieces
-    })
+    let mut faces = Faces::welded(scene, options.weld)?;
+    let edges = faces.take_edges();
+    let (_, edges) = Bodies::of_edges(&faces, edges);
+    let plane = PicturePlane::new(view);
+    let window = plane.window();
+    let found = on_page(&faces, plane, |projected| pieces(&faces, &edges, projected, t));
+    let edges = edges.count();
+    Ok(Drawing { window, lines: arranged(found, options.how()), edges, ..Drawing::default() })
+}
+
+/// All edges, and the lines and points of the model.
+fn pieces(
+    faces: &Faces,
+    edges: &Edges,
+    projected: &Projected,
+    t: &mut impl Tracer<Step>,
+) -> Pieces {
+    t.step(|| Step::Page(projected.page));
+    let drawn = edges.iter().filter(|(_, sides)| !inside_polygon(faces, sides));
+    let of_edges = drawn.filter_map(|(ends, _)| projected.edge(faces, ends));
+    let mut all = Vec::new();
+    for ends in of_edges.filter(|e| e[0].at != e[1].at).chain(marks(faces, projected)) {
+        let ends = ends.map(|v| v.at);
+        t.step(|| Step::Edge(ends.map(|p| projected.page.plane_from_grid(p))));
+        all.push(piece(ends));
+    }
+    Pieces { all, ..Pieces::default() }
 }
 
 fn inside_polygon(faces: &Faces, sides: &[Side]) -> bool {

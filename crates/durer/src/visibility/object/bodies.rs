@@ -32,7 +32,11 @@ impl Bodies {
     /// Finds the bodies, and gives the edges with them: of two triangles with the same three vertices
     /// only the first counts. O(n α(n)).
     pub fn find(faces: &Faces) -> (Self, Edges) {
-        let mut edges = Edges::new(faces, |_| true);
+        Self::of_edges(faces, Edges::new(faces, |_| true))
+    }
+
+    /// The same where the edges of all triangles are known.
+    pub(in crate::visibility) fn of_edges(faces: &Faces, mut edges: Edges) -> (Self, Edges) {
         if let Some(copy) = copies(faces, &edges) {
             edges = Edges::new(faces, |item| !copy[item as usize]);
             let bodies = Self::new(faces, &edges, |item| !copy[item as usize]);

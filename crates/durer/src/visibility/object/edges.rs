@@ -1,6 +1,7 @@
 //! Which triangles meet at an edge.
 
 use super::Faces;
+use crate::target::drawing::EdgeCount;
 
 /// One triangle at an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -10,6 +11,10 @@ pub struct Side {
 }
 
 impl Side {
+    fn new(item: u32, a: u32, b: u32) -> Self {
+        Self { other: a.max(b), packed: item << 1 | u32::from(a < b) }
+    }
+
     /// The triangle.
     #[inline]
     pub fn item(self) -> u32 {
@@ -38,10 +43,9 @@ impl Edges {
     /// degree: sides are counted into the lists of their smaller vertices and sorted there.
     pub fn new(faces: &Faces, filter: impl Fn(u32) -> bool) -> Self {
         let mut starts = vec![0u32; faces.points().len() + 1];
-        let corners = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)];
         for (item, t) in faces.triangles() {
             if filter(item) {
-                corners(t).iter().for_each(|&(a, b)| starts[a.min(b) as usize] += 1);
+                faces.each_side(item, t, |a, b| starts[a.min(b) as usize] += 1);
             }
         }
         let mut sum = 0;
@@ -53,17 +57,66 @@ impl Edges {
         let mut sides = vec![Side { other: 0, packed: 0 }; sum as usize];
         for item in (0..faces.len() as u32).rev() {
             let Some(t) = faces.triangle(item).filter(|_| filter(item)) else { continue };
-            for (a, b) in corners(t) {
+            faces.each_side(item, t, |a, b| {
                 let start = &mut starts[a.min(b) as usize];
                 *start -= 1;
-                sides[*start as usize] =
-                    Side { other: a.max(b), packed: item << 1 | u32::from(a < b) };
-            }
+                sides[*start as usize] = Side::new(item, a, b);
+            });
         }
         for w in starts.windows(2) {
             sides[w[0] as usize..w[1] as usize].sort_unstable();
         }
         Self { starts, sides }
+    }
+
+    /// The same after some triangles were changed, which are given in item order. Costs less than to find all
+    /// again where they are few.
+    pub(super) fn renewed(self, faces: &Faces, changed: &[u32]) -> Self {
+        if changed.len() > faces.len() / 4 {
+            return Self::new(faces, |_| true);
+        }
+        let mut is_changed = vec![false; faces.len()];
+        let mut new: Vec<(u32, Side)> = Vec::new();
+        for &item in changed {
+            is_changed[item as usize] = true;
+            let Some(t) = faces.triangle(item) else { continue };
+            faces.each_side(item, t, |a, b| new.push((a.min(b), Side::new(item, a, b))));
+        }
+        new.sort_unstable();
+        let mut new = new.into_iter().peekable();
+        let mut starts = Vec::with_capacity(self.starts.len());
+        let mut sides = Vec::with_capacity(self.sides.len() + new.len());
+        for (v, w) in (0..).zip(self.starts.windows(2)) {
+            let first = sides.len();
+            starts.push(first as u32);
+            let old = &self.sides[w[0] as usize..w[1] as usize];
+            sides.extend(old.iter().filter(|s| !is_changed[s.item() as usize]));
+            let kept = sides.len();
+            sides.extend(std::iter::from_fn(|| new.next_if(|n| n.0 == v)).map(|n| n.1));
+            if sides.len() > kept {
+                sides[first..].sort_unstable();
+            }
+        }
+        starts.push(sides.len() as u32);
+        Self { starts, sides }
+    }
+
+    /// How many edges there are, and how many of them have one triangle only.
+    pub fn count(&self) -> EdgeCount {
+        let mut count = EdgeCount::default();
+        for (_, sides) in self.iter() {
+            count.edges += 1;
+            count.borders += u64::from(sides.len() == 1);
+        }
+        count
+    }
+
+    /// The edges with one triangle, which comes with them.
+    pub(super) fn borders(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
+        self.iter().filter_map(|(ends, sides)| match sides {
+            [side] => Some((ends, side.item())),
+            _ => None,
+        })
     }
 
     /// Each edge once: its vertices, the smaller first, and the triangles at it in item order.

@@ -1,8 +1,10 @@
 //! Triangles in item order, with their vertices welded by position, in world space.
 
-use super::weld::{Welded, weld};
+use super::Edges;
+use super::stitch::{Grain, divide, stitch};
+use super::weld::{Weld, Welded, weld};
 use crate::math::{DMat4, DVec3, Vec3, by_coordinates};
-use crate::scene::{Mesh, Scene, Topology};
+use crate::scene::{Aabb, Instance, Mesh, Scene, Topology};
 use crate::visibility::surface::setup::runs;
 use crate::{Error, Result};
 use std::ops::Range;
@@ -24,9 +26,9 @@ pub struct FaceRun {
 
 /// The triangles of a scene, and its lines and points.
 ///
-/// Vertices of one mesh that lie at one place are one vertex (two coordinates are equal where they
-/// differ by no more than 2⁻²⁶ of the mesh's extent), so neighbours are found even where the file
-/// shares no vertices. Vertices of different instances are never shared.
+/// Vertices of one mesh that lie at one place are one vertex, so neighbours are found even where the file
+/// shares no vertices. Vertices at borders are shared with those of other instances too, and triangles without
+/// height between others are left out; [`Weld`] says how near.
 ///
 /// # Guarantees
 /// All points are finite; the three vertices of a triangle differ.
@@ -37,37 +39,65 @@ pub struct Faces {
     runs: Vec<FaceRun>,
     polygons: Option<Vec<u32>>,
     marks: Vec<[u32; 2]>,
+    /// Triangles on whose sides vertices of others lie, in item order: their outlines, with these.
+    outlines: Vec<(u32, Vec<u32>)>,
+    /// Of each item whether it is among them; empty where none is.
+    has_outline: Vec<bool>,
+    /// Of each instance; empty where nothing is stitched.
+    grains: Vec<Grain>,
+    /// The edges, if they are known already.
+    edges: Option<Edges>,
 }
 
 /// In place of the vertices of a triangle that has no area or no place.
 const NONE: [u32; 3] = [u32::MAX; 3];
 
 impl Faces {
-    /// The faces of a scene; O(n).
+    /// The faces of a scene, welded as [`Weld::Auto`] says.
     ///
     /// # Errors
-    /// What [`Scene::check`] finds, and [`Error::Limit`] for more than 2³¹ − 1 triangles or vertices.
+    /// See [`Self::welded`].
     pub fn new(scene: &Scene) -> Result<Self> {
+        Self::welded(scene, Weld::Auto)
+    }
+
+    /// The faces of a scene; O(n), and O(b log² b) for b borders.
+    ///
+    /// # Errors
+    /// What [`Scene::check`] finds, [`Error::Parameter`] for a length that is none, and [`Error::Limit`] for more
+    /// than 2³¹ − 1 triangles or vertices.
+    pub fn welded(scene: &Scene, how: Weld) -> Result<Self> {
         scene.check()?;
+        how.check()?;
         let limit = |what, value: u64| {
             let limit = u64::from(u32::MAX >> 1);
             if value > limit { Err(Error::Limit { what, value, limit }) } else { Ok(()) }
         };
         limit("triangles", scene.triangle_count())?;
-        let vertices = |i: &crate::scene::Instance| scene.meshes[i.mesh].positions.len() as u64;
+        let vertices = |i: &Instance| scene.meshes[i.mesh].positions.len() as u64;
         limit("vertices", scene.instances.iter().map(vertices).sum())?;
         let mut faces = Self { runs: face_runs(scene)?, ..Self::default() };
         faces.triangles.reserve_exact(scene.triangle_count() as usize);
         let mut welded: Vec<Option<Welded>> = scene.meshes.iter().map(|_| None).collect();
-        for instance in &scene.instances {
+        let exactly = how == Weld::None;
+        for (instance, i) in scene.instances.iter().zip(0..) {
             let mesh = &scene.meshes[instance.mesh];
+            let mut bounds = None;
             if mesh.topology == Topology::Triangles {
-                let welded = welded[instance.mesh].get_or_insert_with(|| weld(&mesh.positions));
+                let welded =
+                    welded[instance.mesh].get_or_insert_with(|| weld(&mesh.positions, exactly));
+                bounds = welded.bounds;
                 let to_world = |v: &u32| {
                     let p = mesh.positions[*v as usize].as_dvec3();
                     instance.world_from_mesh.transform_point3(p)
                 };
                 faces.add(mesh, welded, to_world);
+            }
+            if !exactly {
+                let tree = scene.trees.get(i).copied().unwrap_or(0);
+                let grain = grain(instance, bounds, how);
+                let digit = grain.digit * scene.last_digit;
+                faces.grains.push(Grain { tree, digit, ..grain });
             }
         }
         for instance in &scene.instances {
@@ -77,7 +107,68 @@ impl Faces {
             }
         }
         faces.polygons = polygons(scene);
+        if !exactly {
+            let grains = std::mem::take(&mut faces.grains);
+            faces.edges = Some(stitch(&mut faces, &grains));
+            faces.grains = grains;
+        }
         Ok(faces)
+    }
+
+    /// Leaves out some triangles.
+    pub(super) fn leave_out(&mut self, items: &[u32]) {
+        items.iter().for_each(|item| self.triangles[*item as usize] = NONE);
+    }
+
+    /// Puts vertices in the place of others, given as (old, new), and gives the items of the triangles
+    /// that have changed.
+    pub(super) fn renumber(&mut self, pairs: &[(u32, u32)]) -> Vec<u32> {
+        if pairs.is_empty() {
+            return Vec::new();
+        }
+        let mut number: Vec<u32> = (0..self.points.len() as u32).collect();
+        pairs.iter().for_each(|(old, new)| number[*old as usize] = *new);
+        let mut changed = Vec::new();
+        for (t, item) in self.triangles.iter_mut().zip(0..).filter(|(t, _)| **t != NONE) {
+            let now = t.map(|v| number[v as usize]);
+            if now != *t {
+                let [a, b, c] = now;
+                *t = if a == b || b == c || c == a { NONE } else { now };
+                changed.push(item);
+            }
+        }
+        changed
+    }
+
+    /// Sets the outlines of those triangles that have more than three vertices on their sides, in item order.
+    pub(super) fn set_outlines(&mut self, outlines: Vec<(u32, Vec<u32>)>) {
+        self.has_outline = vec![false; self.triangles.len()];
+        outlines.iter().for_each(|o| self.has_outline[o.0 as usize] = true);
+        self.outlines = outlines;
+    }
+
+    /// Calls `f` with the ends of each side of a triangle, as it runs around; a side on which vertices of others
+    /// lie is several.
+    #[inline]
+    pub(super) fn each_side(&self, item: u32, t: [u32; 3], mut f: impl FnMut(u32, u32)) {
+        let [a, b, c] = t;
+        let outline = (self.has_outline.get(item as usize) == Some(&true))
+            .then(|| self.outlines.binary_search_by_key(&item, |o| o.0).ok())
+            .flatten();
+        match outline.map(|i| &self.outlines[i].1[..]) {
+            Some(ring) => (0..ring.len()).for_each(|i| f(ring[i], ring[(i + 1) % ring.len()])),
+            None => [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| f(a, b)),
+        }
+    }
+
+    /// The index of the instance that a triangle belongs to.
+    pub(super) fn instance_of(&self, item: u32) -> Option<usize> {
+        self.run_of(item).map(|run| run.instance)
+    }
+
+    /// The edges of all triangles; each caller but the first has them found again.
+    pub(in crate::visibility) fn take_edges(&mut self) -> Edges {
+        self.edges.take().unwrap_or_else(|| Edges::new(self, |_| true))
     }
 
     /// Adds the lines or points of a mesh; those with a coordinate that is not finite are left out.
@@ -147,8 +238,14 @@ impl Faces {
         let runs = self.runs.iter().map(run).collect();
         let polygon = |&item: &u32| self.polygons.as_ref().map_or(item, |p| p[item as usize]);
         let polygons = Some(origins.iter().map(polygon).collect());
-        let marks = self.marks.clone();
-        (Self { points, triangles, runs, polygons, marks }, origins)
+        let (marks, grains) = (self.marks.clone(), self.grains.clone());
+        let mut refined = Self { points, triangles, runs, polygons, marks, ..Self::default() };
+        if !self.outlines.is_empty() {
+            let edges = Edges::new(&refined, |_| true);
+            refined.edges = Some(divide(&mut refined, edges, &grains));
+        }
+        refined.grains = grains;
+        (refined, origins)
     }
 
     /// The number of triangles: one more than the largest item.
@@ -217,6 +314,22 @@ impl Faces {
         self.polygons.as_ref().is_some_and(|p| p.get(a as usize) == p.get(b as usize))
     }
 }
+
+/// How precise the coordinates of an instance are whose mesh has these bounds, if the last digit is 1.
+fn grain(instance: &Instance, bounds: Option<Aabb>, how: Weld) -> Grain {
+    let matrix = instance.world_from_mesh;
+    let axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|a| a.truncate().length());
+    let scale = axes.into_iter().fold(0.0, f64::max);
+    let largest = bounds.map_or(0.0, |b| b.min.abs().max(b.max.abs()).max_element() * scale);
+    let extent = bounds.map_or(0.0, |b| b.size().max_element() * scale);
+    let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
+    let given = if let Weld::Within(length) = how { Some(length) } else { None };
+    let step = finite(largest * STEP);
+    Grain { tree: 0, step, digit: finite(scale), extent: finite(extent), given }
+}
+
+/// The spacing of numbers with 24 bits, as a part of them; or half of it.
+const STEP: f64 = 1.0 / (1u64 << 23) as f64;
 
 fn face_runs(scene: &Scene) -> Result<Vec<FaceRun>> {
     let triangles = runs(scene)?

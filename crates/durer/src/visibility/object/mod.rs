@@ -4,8 +4,11 @@
 pub mod bodies;
 pub mod edges;
 pub mod faces;
-pub(crate) mod weld;
+mod near;
+mod stitch;
+pub mod weld;
 
 pub use bodies::{Bodies, Body};
 pub use edges::{Edges, Side};
 pub use faces::{FaceRun, Faces};
+pub use weld::Weld;

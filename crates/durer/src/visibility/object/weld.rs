@@ -5,6 +5,7 @@
 
 use crate::math::{DVec3, Vec3};
 use crate::scene::Aabb;
+use crate::{Error, Result};
 
 /// Coordinates that differ by no more than this part of the model's extent are one, as in
 /// [`crate::view::topology::mesh_topology`].
@@ -14,30 +15,65 @@ const TOLERANCE: f64 = 1.0 / (1u64 << 26) as f64;
 /// and still so small that hardly any two points share one.
 const CELLS: f64 = (1u64 << 20) as f64;
 
+/// Which vertices are one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Weld {
+    /// Those of one mesh that lie at one place, up to 2⁻²⁶ of the mesh's extent; and, within one tree of
+    /// nodes ([`Scene::trees`]), ends of borders that lie on each other as far as the precision of
+    /// their coordinates can tell: 2⁻¹⁶ of the largest, or one unit of the last decimal. Borders that go along
+    /// each other are one too, though their vertices are not.
+    ///
+    /// [`Scene::trees`]: crate::scene::Scene::trees
+    #[default]
+    Auto,
+    /// Those of one mesh whose coordinates are equal.
+    None,
+    /// As [`Self::Auto`], but borders may lie as far apart as this, in units of the world.
+    Within(f64),
+}
+
+impl Weld {
+    /// # Errors
+    /// [`Error::Parameter`] for a length that is negative or not finite.
+    pub(crate) fn check(self) -> Result<()> {
+        match self {
+            Self::Within(length) if !(length.is_finite() && length >= 0.0) => {
+                Err(Error::parameter("weld", length, "a length, 0 or more"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// What [`weld`] finds.
-pub(crate) struct Welded {
+pub(super) struct Welded {
     /// For each vertex the number of its place; places are numbered in order of first use.
     pub place: Vec<u32>,
     /// The first vertex of each place.
     pub first: Vec<u32>,
+    /// What is around the finite ones, if there are any.
+    pub bounds: Option<Aabb>,
 }
 
-/// Numbers the distinct places of the vertices. Those that are not finite stay alone.
-pub(crate) fn weld(positions: &[Vec3]) -> Welded {
+/// Numbers the distinct places of the vertices, if not `exactly` those within [`TOLERANCE`]. Those that are
+/// not finite stay alone.
+pub(super) fn weld(positions: &[Vec3], exactly: bool) -> Welded {
     let Some(bounds) = Aabb::around(positions.iter().map(|p| p.as_dvec3())) else {
         return alone(positions.len());
     };
     let extent = bounds.size().max_element();
+    let tolerance = if exactly { 0.0 } else { extent * TOLERANCE };
     let scale = if extent > 0.0 { CELLS / extent } else { 0.0 };
     let mut table = Table::new(positions.len());
-    let mut found = Welded { place: Vec::with_capacity(positions.len()), first: Vec::new() };
+    let place = Vec::with_capacity(positions.len());
+    let mut found = Welded { place, first: Vec::new(), bounds: Some(bounds) };
     for (p, vertex) in positions.iter().zip(0u32..) {
         let exact = p.as_dvec3();
         let cell = (exact - bounds.min) * scale;
         let known = if exact.is_finite() {
             let near = |v: u32| {
                 let other = positions[v as usize].as_dvec3();
-                (other - exact).abs().max_element() <= extent * TOLERANCE
+                (other - exact).abs().max_element() <= tolerance
             };
             lookups(cell).find_map(|c| table.find(c, |place| near(found.first[place as usize])))
         } else {
@@ -58,7 +94,7 @@ pub(crate) fn weld(positions: &[Vec3]) -> Welded {
 
 fn alone(count: usize) -> Welded {
     let all: Vec<u32> = (0..count as u32).collect();
-    Welded { place: all.clone(), first: all }
+    Welded { place: all.clone(), first: all, bounds: None }
 }
 
 /// The cells in which a point within tolerance may have been entered, its own first.
@@ -143,8 +179,9 @@ mod tests {
             p(1e-6, 0.0, 1.0),
             p(1.0, 0.0, -5e-17),
         ];
-        let welded = weld(&positions);
+        let welded = weld(&positions, false);
         assert_eq!(welded.place, [0, 0, 1, 2, 3, 1]);
         assert_eq!(welded.first, [0, 2, 3, 4]);
+        assert_eq!(weld(&positions, true).place, [0, 1, 2, 3, 4, 5]);
     }
 }

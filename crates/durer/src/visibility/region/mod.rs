@@ -98,6 +98,6 @@ pub fn draw(
         window: Rect::new(-half, half).ok(),
         regions: paint.regions(&map, &patches, options),
         lines: paint.shadow_lines(&map),
-        labels: Vec::new(),
+        ..Drawing::default()
     })
 }

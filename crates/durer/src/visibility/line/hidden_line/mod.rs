@@ -23,7 +23,7 @@ mod occluders;
 pub use cover::Cover;
 
 use self::occluders::Occluders;
-use super::arrange::{How, SLIVER, arrange};
+use super::arrange::{How, Pieces, SLIVER, arrange, corners};
 use super::crease_chain::connected;
 use super::edge_lines::{
     ClassSet, EdgeLine, Intersections, NO_ITEM, Rules, material_number, materials,
@@ -41,7 +41,7 @@ use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::trace::Tracer;
 use crate::view::View;
 use crate::view::picture_plane::PicturePlane;
-use crate::visibility::object::{Bodies, Edges, Faces};
+use crate::visibility::object::{Bodies, Edges, Faces, Weld};
 use crate::{Error, Result, parallel};
 use std::ops::Range;
 
@@ -93,8 +93,14 @@ pub struct Options {
     /// 0 leaves all as it is on the mesh, and so does a choice of classes that lacks some of
     /// [`ClassSet::default`]. 0.01 suits drawings that are looked at.
     pub stubs: f64,
+    /// Hidden lines, and parts of them, that lie within this part of the drawing's larger side of a visible one all
+    /// along are left out: their strokes would run into each other, as where a view is nearly along an axis. 0
+    /// keeps all but those that lie on visible ones.
+    pub beneath: f64,
     /// Whether lines are put in an order with short ways for a pen, class by class.
     pub pen_order: bool,
+    /// Which vertices are one, so that faces find their neighbours.
+    pub weld: Weld,
 }
 
 impl Default for Options {
@@ -111,7 +117,9 @@ impl Default for Options {
             hidden: true,
             tolerance: 5e-5,
             stubs: 0.0,
+            beneath: 0.0,
             pen_order: false,
+            weld: Weld::Auto,
         }
     }
 }
@@ -135,7 +143,8 @@ impl Options {
         };
         let all = edges(self.classes) == edges(ClassSet::default());
         let stubs = if all { self.stubs } else { 0.0 };
-        How { tolerance: self.tolerance, stubs, pen_order: self.pen_order }
+        let Self { tolerance, beneath, pen_order, .. } = *self;
+        How { tolerance, stubs, beneath, pen_order }
     }
 }
 
@@ -160,15 +169,16 @@ pub enum Step {
 /// The lines that a list of steps leads to.
 pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
     let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
-    let mut pieces = Vec::new();
-    let mut spans = Vec::new();
+    let (mut all, mut spans, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for step in steps {
         if let Step::Line { class, smooth, ends, covers } = step {
             let ends = ends.map(|p| page.grid_from_plane(p));
-            cut(*class, *smooth, ends, covers, options.hidden, &mut spans, &mut pieces);
+            cut(*class, *smooth, ends, covers, options.hidden, &mut spans, &mut all);
+            lines.push((*class, *smooth, ends));
         }
     }
-    arrange(page, pieces, options.how())
+    let corners = corners(lines.into_iter());
+    arrange(page, Pieces { all, corners }, options.how())
 }
 
 /// Draws the lines of a scene.
@@ -201,7 +211,7 @@ pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Parameter`] for an option out of its range, and what [`Faces::new`] finds.
+/// [`Error::Parameter`] for an option out of its range, and what [`Faces::welded`] finds.
 pub fn draw(
     scene: &Scene,
     view: &View,
@@ -209,34 +219,41 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
     options.check()?;
-    let (faces, plane) = (Faces::new(scene)?, PicturePlane::new(view));
+    let (mut faces, plane) = (Faces::welded(scene, options.weld)?, PicturePlane::new(view));
     let window = plane.window();
+    let mut edges = faces.take_edges();
+    let count = edges.count();
     let found = if options.smooth {
-        let divided = divided(scene, faces, &plane);
+        let mut divided = divided(scene, faces, &plane);
+        edges = divided.faces.take_edges();
         let whole = Whole(Some(&divided));
-        on_page(&divided.faces, plane, |page| pieces(&divided.faces, whole, page, options, t))
+        on_page(&divided.faces, plane, |p| pieces(&divided.faces, edges, whole, p, options, t))
     } else {
-        on_page(&faces, plane, |page| pieces(&faces, Whole(None), page, options, t))
+        on_page(&faces, plane, |p| pieces(&faces, edges, Whole(None), p, options, t))
     };
-    Ok(Drawing { window, lines: arranged(found, options.how()), ..Drawing::default() })
+    let lines = arranged(found, options.how());
+    Ok(Drawing { window, lines, edges: count, ..Drawing::default() })
 }
 
 /// What can be seen, or is hidden, of all lines.
 fn pieces(
     faces: &Faces,
+    edges: Edges,
     whole: Whole<'_>,
     projected: &Projected,
     options: &Options,
     t: &mut impl Tracer<Step>,
-) -> Vec<Piece> {
+) -> Pieces {
     t.step(|| Step::Page(projected.page));
-    let (bodies, edges) = Bodies::find(faces);
+    let (bodies, edges) = Bodies::of_edges(faces, edges);
     let facing = Facing::new(faces, &bodies, &edges, projected, whole, options.tolerance);
     let lines = Lines::new(faces, &bodies, edges, &facing, options, projected);
     let all = lines.some(0..lines.len()).map(|l| l.ends);
     let occluders = Occluders::new(faces, &bodies, &facing, projected, all);
     drop((bodies, facing));
-    hide(&lines, &occluders, whole, options, t)
+    let ends = |l: FeatureLine| (l.class, l.smooth, l.ends.map(|v| v.at));
+    let corners = corners(lines.some(0..lines.len()).map(ends));
+    Pieces { all: hide(&lines, &occluders, whole, options, t), corners }
 }
 
 /// All lines, before it is known what of them can be seen. Edges are a third of the size of

@@ -1,0 +1,328 @@
+//! Faces that meet up to rounding find each other.
+//!
+//! A closed surface has no borders. Where a mesh has some only because one corner of a face was rounded
+//! otherwise than its neighbour's, because each face is a mesh of its own, or because the edge of one face goes along several
+//! of another (a T-junction), its borders lie on each other. Here they become one: first triangles
+//! without height are left out, then ends of borders that lie within a reach of each other are one vertex, and
+//! then borders are divided where ends of others lie on them. Nothing but borders is touched, so walls stay apart
+//! however thin they are. After André Guéziec, Gabriel Taubin, Francis Lazarus and Bill Horn, *Cutting and
+//! stitching: converting sets of polygons to manifold surfaces*, IEEE Transactions on Visualization and
+//! Computer Graphics, 2001; the pairs come from a k-d tree, and no surface is cut. O(n), and
+//! O(b log² b) for b borders.
+
+use super::near::Places;
+use super::{Edges, Faces};
+use crate::math::DVec3;
+
+/// How far the faces of one instance reach, world units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Grain {
+    /// The tree of nodes that it belongs to: only those of one tree meet.
+    pub tree: u32,
+    /// The spacing of numbers as large as its largest coordinate.
+    pub step: f64,
+    /// The last digit that its file gives of coordinates, 0 where that is not known.
+    pub digit: f64,
+    /// Its extent.
+    pub extent: f64,
+    /// How far borders may lie apart, if somebody said so.
+    pub given: Option<f64>,
+}
+
+/// Borders lie on each other within this many spacings of numbers: 2⁻¹⁶ of the largest coordinate. What programs
+/// compute in single precision is hardly off by more, and no drawing shows less.
+const STEPS: f64 = 128.0;
+
+/// Triangles lower than this many spacings have no area.
+const LOW: f64 = 4.0;
+
+/// A coordinate lies within half a unit of the last digit that was written, along each axis.
+const DIGITS: f64 = 2.0;
+
+/// Files whose last digit is more than this part of the extent mean what they say.
+const COARSEST: f64 = 1.0 / 1024.0;
+
+/// A border's end moves by at most this part of the longest border at it: what is small is not lost.
+const OF_EDGE: f64 = 1.0 / 16.0;
+
+/// Borders are divided at no more places than this many times their number, or not at all: some
+/// thousand that lie on each other would be divided by each other.
+const MOST: usize = 8;
+
+impl Grain {
+    /// How far borders may lie apart.
+    fn reach(&self) -> f64 {
+        let written = if self.digit <= self.extent * COARSEST { self.digit * DIGITS } else { 0.0 };
+        self.given.unwrap_or((self.step * STEPS).max(written))
+    }
+}
+
+/// Stitches the faces, whose edges it gives back. `grains` are those of the instances.
+pub(super) fn stitch(faces: &mut Faces, grains: &[Grain]) -> Edges {
+    let mut edges = Edges::new(faces, |_| true);
+    let low = all_low(faces, &edges, grains);
+    edges = without(faces, edges, &low);
+    if let Some(borders) = Borders::new(faces, &edges, grains) {
+        let moved = faces.renumber(&borders.joined(faces));
+        if !moved.is_empty() {
+            edges = edges.renewed(faces, &moved);
+        }
+        let low = borders.low(faces, &edges);
+        edges = without(faces, edges, &low);
+    }
+    divide(faces, edges, grains)
+}
+
+/// Divides borders where the ends of others lie on them, as far as these others lie on them too.
+pub(super) fn divide(faces: &mut Faces, edges: Edges, grains: &[Grain]) -> Edges {
+    let Some(borders) = Borders::new(faces, &edges, grains) else { return edges };
+    let outlines = borders.outlines(faces);
+    if outlines.is_empty() {
+        return edges;
+    }
+    let items: Vec<u32> = outlines.iter().map(|o| o.0).collect();
+    faces.set_outlines(outlines);
+    edges.renewed(faces, &items)
+}
+
+/// Leaves out triangles.
+fn without(faces: &mut Faces, edges: Edges, items: &[u32]) -> Edges {
+    if items.is_empty() {
+        return edges;
+    }
+    faces.leave_out(items);
+    edges.renewed(faces, items)
+}
+
+/// The triangles without height that lie along others: with them gone the others meet.
+fn all_low(faces: &Faces, edges: &Edges, grains: &[Grain]) -> Vec<u32> {
+    let mut found = Vec::new();
+    for run in faces.runs() {
+        let Some(grain) = grains.get(run.instance) else { continue };
+        let low = grain.step * LOW;
+        for item in run.items.clone() {
+            let Some(t) = faces.triangle(item) else { continue };
+            if is_low(t.map(|v| faces.points()[v as usize]), low) && is_along(faces, edges, t) {
+                found.push(item);
+            }
+        }
+    }
+    found
+}
+
+fn is_low([a, b, c]: [DVec3; 3], low: f64) -> bool {
+    let longest = longest_squared([a, b, c]);
+    (b - a).cross(c - a).length_squared() <= longest * low * low
+}
+
+fn longest([a, b, c]: [DVec3; 3]) -> f64 {
+    longest_squared([a, b, c]).sqrt()
+}
+
+fn longest_squared([a, b, c]: [DVec3; 3]) -> f64 {
+    a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
+}
+
+/// Whether a triangle has neighbours all along, on one side or the other.
+fn is_along(faces: &Faces, edges: &Edges, [a, b, c]: [u32; 3]) -> bool {
+    let mut sides = [[a, b], [b, c], [c, a]];
+    let length =
+        |[a, b]: [u32; 2]| faces.points()[a as usize].distance_squared(faces.points()[b as usize]);
+    sides.sort_by(|x, y| length(*y).total_cmp(&length(*x)));
+    let has_neighbour = |[a, b]: [u32; 2]| edges.at([a.min(b), a.max(b)]).len() > 1;
+    has_neighbour(sides[0]) || (has_neighbour(sides[1]) && has_neighbour(sides[2]))
+}
+
+/// An edge of one triangle.
+struct Border {
+    /// The smaller first.
+    ends: [u32; 2],
+    item: u32,
+    /// Index into [`Borders::kinds`].
+    kind: u32,
+}
+
+/// A vertex at which borders end.
+struct End {
+    vertex: u32,
+    kind: u32,
+    /// The length of the longest border at it.
+    longest: f64,
+}
+
+/// What is the same for the borders of one instance.
+#[derive(Clone, Copy)]
+struct Kind {
+    tree: u32,
+    reach: f64,
+    /// Whether small ones are spared.
+    careful: bool,
+}
+
+impl Kind {
+    fn reach_of(&self, length: f64) -> f64 {
+        if self.careful { self.reach.min(length * OF_EDGE) } else { self.reach }
+    }
+}
+
+/// The edges that have but one triangle.
+struct Borders {
+    all: Vec<Border>,
+    /// By vertex.
+    ends: Vec<End>,
+    places: Places,
+    kinds: Vec<Kind>,
+}
+
+impl Borders {
+    /// `None` where there are none that may meet.
+    fn new(faces: &Faces, edges: &Edges, grains: &[Grain]) -> Option<Self> {
+        let mut all: Vec<Border> =
+            edges.borders().map(|(ends, item)| Border { ends, item, kind: 0 }).collect();
+        all.sort_unstable_by_key(|b| b.item);
+        let point = |v: u32| faces.points()[v as usize];
+        let mut kinds = Vec::new();
+        for run in all.chunk_by_mut(|a, b| faces.instance_of(a.item) == faces.instance_of(b.item)) {
+            let grain = grains.get(faces.instance_of(run[0].item)?)?;
+            let reach = grain.reach();
+            run.iter_mut().for_each(|b| b.kind = kinds.len() as u32);
+            kinds.push(Kind { tree: grain.tree, reach, careful: grain.given.is_none() });
+        }
+        let both = all.iter().flat_map(|b| {
+            let longest = point(b.ends[0]).distance(point(b.ends[1]));
+            b.ends.map(|vertex| End { vertex, kind: b.kind, longest })
+        });
+        let mut ends: Vec<End> = both.collect();
+        ends.sort_unstable_by(|a, b| a.vertex.cmp(&b.vertex).then(b.longest.total_cmp(&a.longest)));
+        ends.dedup_by_key(|e| e.vertex);
+        let places = Places::new(ends.iter().map(|e| point(e.vertex)));
+        (kinds.iter().any(|k| k.reach > 0.0)).then_some(Self { all, ends, places, kinds })
+    }
+
+    fn kind(&self, end: &End) -> &Kind {
+        &self.kinds[end.kind as usize]
+    }
+
+    /// The vertices that become others, with these: each vertex takes those in its reach that no earlier
+    /// one has taken, so what becomes one lies within two reaches, however many lie in a row.
+    fn joined(&self, faces: &Faces) -> Vec<(u32, u32)> {
+        let reaches: Vec<f64> =
+            self.ends.iter().map(|e| self.kind(e).reach_of(e.longest)).collect();
+        let mut taken = vec![false; self.ends.len()];
+        let mut joined = Vec::new();
+        for (i, end) in self.ends.iter().enumerate() {
+            if std::mem::replace(&mut taken[i], true) {
+                continue;
+            }
+            let p = faces.points()[end.vertex as usize];
+            self.places.along([p, p], reaches[i], |found| {
+                let k = found.number as usize;
+                let other = &self.ends[k];
+                let near = || {
+                    let q = faces.points()[other.vertex as usize];
+                    p.distance_squared(q) <= reaches[k] * reaches[k]
+                };
+                if !taken[k] && self.kind(other).tree == self.kind(end).tree && near() {
+                    taken[k] = true;
+                    joined.push((other.vertex, end.vertex));
+                }
+            });
+        }
+        joined
+    }
+
+    /// The triangles at borders that are no higher than a border reaches, and lie along others.
+    fn low(&self, faces: &Faces, edges: &Edges) -> Vec<u32> {
+        let mut found = Vec::new();
+        for border in &self.all {
+            let Some(t) = faces.triangle(border.item) else { continue };
+            let points = t.map(|v| faces.points()[v as usize]);
+            let reach = self.kinds[border.kind as usize].reach_of(longest(points));
+            if is_low(points, reach) && is_along(faces, edges, t) {
+                found.push(border.item);
+            }
+        }
+        found.dedup();
+        found
+    }
+
+    /// The outlines of the triangles whose borders are divided, by item.
+    fn outlines(&self, faces: &Faces) -> Vec<(u32, Vec<u32>)> {
+        let mut divided: Vec<(usize, Vec<u32>)> = Vec::new();
+        let mut count = 0;
+        for (i, border) in self.all.iter().enumerate() {
+            let between = self.between(faces, border);
+            count += between.len();
+            if count > MOST * self.all.len() {
+                return Vec::new();
+            }
+            if !between.is_empty() {
+                divided.push((i, between));
+            }
+        }
+        let met = self.met(&divided);
+        let mut met = met.into_iter();
+        divided.retain(|_| met.next() == Some(true));
+        divided
+            .chunk_by(|a, b| self.all[a.0].item == self.all[b.0].item)
+            .filter_map(|parts| self.outline(faces, parts))
+            .collect()
+    }
+
+    /// The ends of others that lie on a border, from its first end to its second.
+    fn between(&self, faces: &Faces, border: &Border) -> Vec<u32> {
+        let kind = &self.kinds[border.kind as usize];
+        let ends = border.ends.map(|v| faces.points()[v as usize]);
+        let length = ends[0].distance(ends[1]);
+        let reach = kind.reach_of(length);
+        let mut found: Vec<(f64, u32)> = Vec::new();
+        self.places.along(ends, reach, |f| {
+            let end = &self.ends[f.number as usize];
+            let inside = f.at * length > reach && (1.0 - f.at) * length > reach;
+            let other = !border.ends.contains(&end.vertex);
+            if inside && other && self.kind(end).tree == kind.tree {
+                found.push((f.at, end.vertex));
+            }
+        });
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.into_iter().map(|f| f.1).collect()
+    }
+
+    /// Of each divided border whether a part of it is another border, or a part of one.
+    fn met(&self, divided: &[(usize, Vec<u32>)]) -> Vec<bool> {
+        let mut is_divided = vec![false; self.all.len()];
+        let mut parts: Vec<([u32; 2], usize)> = Vec::new();
+        for (k, (i, between)) in divided.iter().enumerate() {
+            is_divided[*i] = true;
+            let [a, b] = self.all[*i].ends;
+            let row: Vec<u32> = [&[a], &between[..], &[b]].concat();
+            parts.extend(row.windows(2).map(|w| ([w[0].min(w[1]), w[0].max(w[1])], k)));
+        }
+        let whole = self.all.iter().zip(&is_divided).filter(|(_, divided)| !**divided);
+        parts.extend(whole.map(|(b, _)| (b.ends, usize::MAX)));
+        parts.sort_unstable();
+        let mut met = vec![false; divided.len()];
+        for same in parts.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+            same.iter().filter(|p| p.1 != usize::MAX).for_each(|p| met[p.1] = true);
+        }
+        met
+    }
+
+    /// The outline of one triangle, some of whose sides are divided.
+    fn outline(&self, faces: &Faces, parts: &[(usize, Vec<u32>)]) -> Option<(u32, Vec<u32>)> {
+        let item = self.all[parts[0].0].item;
+        let [a, b, c] = faces.triangle(item)?;
+        let mut outline = Vec::new();
+        for [a, b] in [[a, b], [b, c], [c, a]] {
+            outline.push(a);
+            let part = parts.iter().find(|p| self.all[p.0].ends == [a.min(b), a.max(b)]);
+            let between = part.map_or(&[][..], |p| &p.1);
+            if a < b {
+                outline.extend(between);
+            } else {
+                outline.extend(between.iter().rev());
+            }
+        }
+        Some((item, outline))
+    }
+}
