@@ -1,6 +1,7 @@
 //! The fonts that text is set in.
 
 use super::Told;
+use crate::Place;
 use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 use usvg::fontdb::{self, Database, Family, Query, Source};
@@ -118,15 +119,23 @@ fn bytes(face: &fontdb::FaceInfo) -> Option<(&[u8], u32)> {
 
 /// Chooses fonts by family and style; tells where what was asked for is not there.
 pub(super) fn resolver(told: &Told) -> FontResolver<'_> {
+    let fallback = FontResolver::default_fallback_selector();
     FontResolver {
         select_font: Box::new(move |font, database| {
             let id = select(font, database);
             if let Some(face) = id.and_then(|id| database.face(id)) {
-                replaced(font, face).into_iter().for_each(|message| told.tell(message));
+                let tell = |message| told.tell(Place::Whole, message);
+                replaced(font, face).into_iter().for_each(tell);
             }
             id
         }),
-        select_fallback: FontResolver::default_fallback_selector(),
+        select_fallback: Box::new(move |letter, used, database| {
+            let id = fallback(letter, used, database);
+            if id.is_none() {
+                told.miss(letter);
+            }
+            id
+        }),
     }
 }
 
@@ -180,9 +189,8 @@ fn described(family: &str, weight: u16, slanted: bool, stretch: fontdb::Stretch)
 /// Letters that are named in a warning, at most.
 const NAMED: usize = 12;
 
-/// What is to be told of letters that no font has.
-pub(super) fn missing_letters(tree: &usvg::Tree) -> Option<String> {
-    let mut missing = BTreeSet::new();
+/// What is to be told of letters that no font has: those that are known to be `missing`, and those without a glyph.
+pub(super) fn missing_letters(tree: &usvg::Tree, mut missing: BTreeSet<char>) -> Option<String> {
     let mut groups = vec![tree.root()];
     while let Some(group) = groups.pop() {
         for node in group.children() {
@@ -197,7 +205,11 @@ pub(super) fn missing_letters(tree: &usvg::Tree) -> Option<String> {
             }
         }
     }
-    no_glyphs(missing.into_iter().filter(|c| !c.is_control() && !c.is_whitespace()))
+    let is_seen = |c: &char| {
+        let joins = matches!(c, '\u{200b}'..='\u{200f}' | '\u{2060}'..='\u{2064}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}');
+        !joins && !c.is_control() && !c.is_whitespace()
+    };
+    no_glyphs(missing.into_iter().filter(is_seen))
 }
 
 /// The warning that there are no glyphs for some letters, if there are such letters.

@@ -23,25 +23,35 @@
 //! # Ok::<(), durer_formats::Error>(())
 //! ```
 
+mod amend;
 mod arcs;
 mod draw;
+mod filters;
+mod finish;
 mod fonts;
 mod image;
+mod letters;
+mod outline;
 mod paint;
+mod pictures;
 mod references;
+mod shapes;
+mod source;
+mod style;
+mod transform;
 mod values;
+mod write;
 
 pub use fonts::{Fonts, no_glyphs};
 
-use crate::uri::path;
-use crate::{Error, Found, Limits, NoResources, Place, Resources, Result, Warning};
+use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
 use std::collections::BTreeSet;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use svgtypes::{PathParser, PathSegment};
-use usvg::{ImageHrefResolver, ImageKind, roxmltree};
+use usvg::roxmltree;
 
 /// Elements that are passed over, beside those that only describe.
 const NOT_DRAWN: [&str; 12] = [
@@ -95,47 +105,36 @@ impl Drawing {
     /// with a size, or coordinates that overflow. Of the last usvg panics; that is caught here, but the panic hook
     /// is called.
     pub fn read(bytes: &[u8], options: &ReadOptions<'_>) -> Result<Self> {
-        let bytes = crate::text::utf8(bytes);
-        let text = std::str::from_utf8(&bytes).map_err(|e| {
-            Error::byte(e.valid_up_to() as u64, "an SVG must be text in UTF-8 or UTF-16")
-        })?;
-        let document = parse(text).map_err(not_xml)?;
+        let text = source::text(bytes, &options.limits)?;
+        let document = parse(&text).map_err(not_xml)?;
         let root = document.root_element().tag_name();
         if root != ROOT.into() {
             let name = root.name();
             let message = format!("the root is `{name}`, not `svg` with xmlns=\"{}\"", ROOT.0);
             return Err(Error::line(1, 0, message));
         }
-        check_arcs(&document)?;
-        let mut levels = references::check(&document, 0)?;
-        let mut warnings = passed_over(&document);
-        let mut found = values::Found::new(&document);
-        warnings.append(&mut found.warnings);
-        let amended = found.amended(text);
-        let amended = amended.as_deref().and_then(|text| parse(text).ok());
-        // What cannot be used may have hidden what is inherited.
-        if let Some(amended) = &amended {
-            levels = levels.max(references::check(amended, 0)?);
-        }
-        let (tree, told) = {
-            let told = Told { levels: levels.into(), ..Told::default() };
+        let told = Told::new(options.limits.decoded_bytes);
+        let prepared = prepared(&document, 0, &told, false)?;
+        let tree = {
             let usvg_options = usvg::Options {
                 font_family: options.fonts.default_family(),
+                font_size: FONT_SIZE,
                 fontdb: options.fonts.database(),
                 font_resolver: fonts::resolver(&told),
-                image_href_resolver: images(options, &told),
+                image_href_resolver: pictures::resolver(options, &told),
                 ..usvg::Options::default()
             };
+            let amended = prepared.document()?;
             let document = amended.as_ref().unwrap_or(&document);
-            let tree = resolved(|| usvg::Tree::from_xmltree(document, &usvg_options))?;
-            drop(usvg_options);
-            (tree, told.take())
+            resolved(|| usvg::Tree::from_xmltree(document, &usvg_options))?
         };
+        let mut warnings = prepared.warnings;
         if options.fonts.is_empty() && document.descendants().any(|n| n.has_tag_name(TEXT)) {
             warnings.push(warning("text is left out: there are no fonts"));
         }
-        warnings.extend(told.into_iter().map(warning));
-        warnings.extend(fonts::missing_letters(&tree).map(warning));
+        let (told, letters) = told.take();
+        warnings.extend(told);
+        warnings.extend(fonts::missing_letters(&tree, letters).map(warning));
         let at = document.text_pos_at(document.root_element().range().start);
         let place = Place::Line(at.row.into(), at.col.into());
         Ok(Self { tree, place, limits: options.limits, warnings })
@@ -167,6 +166,9 @@ impl Drawing {
     }
 }
 
+/// The size of text that says none, in pixels, as browsers have it.
+const FONT_SIZE: f32 = 16.0;
+
 const ROOT: (&str, &str) = ("http://www.w3.org/2000/svg", "svg");
 const TEXT: (&str, &str) = (ROOT.0, "text");
 
@@ -174,22 +176,120 @@ fn warning(message: impl Into<String>) -> Warning {
     Warning { place: Place::Whole, message: message.into() }
 }
 
-/// Messages from within usvg, each once, and how many levels of elements it may be in by recursion.
-#[derive(Debug, Default)]
+/// What comes to light within usvg, and what is to be known there.
+#[derive(Debug)]
 struct Told {
-    messages: std::sync::Mutex<BTreeSet<String>>,
+    heard: Mutex<Heard>,
+    /// How many levels of elements it may be in by recursion.
     levels: AtomicUsize,
+    /// Bytes of pictures that may still be decoded.
+    bytes_left: AtomicU64,
+}
+
+/// Messages, each once; letters without a font; and the pictures that are referred to.
+#[derive(Debug, Default)]
+struct Heard {
+    messages: Vec<Warning>,
+    letters: BTreeSet<char>,
+    pictures: Vec<pictures::Picture>,
 }
 
 impl Told {
-    fn tell(&self, message: String) {
-        // A poisoned lock still holds the messages.
-        self.messages.lock().unwrap_or_else(|e| e.into_inner()).insert(message);
+    fn new(bytes: u64) -> Self {
+        let heard = Mutex::default();
+        Self { heard, levels: AtomicUsize::new(0), bytes_left: AtomicU64::new(bytes) }
     }
 
-    fn take(self) -> BTreeSet<String> {
-        self.messages.into_inner().unwrap_or_else(|e| e.into_inner())
+    fn heard(&self) -> std::sync::MutexGuard<'_, Heard> {
+        // A poisoned lock still holds the messages.
+        self.heard.lock().unwrap_or_else(|e| e.into_inner())
     }
+
+    fn tell(&self, place: Place, message: String) {
+        let mut heard = self.heard();
+        if heard.messages.iter().all(|told| told.message != message) {
+            heard.messages.push(Warning { place, message });
+        }
+    }
+
+    /// Notes that no font has a letter.
+    fn miss(&self, letter: char) {
+        self.heard().letters.insert(letter);
+    }
+
+    fn picture(&self, number: usize) -> Option<pictures::Picture> {
+        self.heard().pictures.get(number).cloned()
+    }
+
+    fn levels(&self) -> usize {
+        self.levels.load(Ordering::Relaxed)
+    }
+
+    fn set_levels(&self, levels: usize) {
+        self.levels.store(levels, Ordering::Relaxed);
+    }
+
+    fn bytes_left(&self) -> u64 {
+        self.bytes_left.load(Ordering::Relaxed)
+    }
+
+    fn take_bytes(&self, bytes: u64) {
+        self.bytes_left.store(self.bytes_left().saturating_sub(bytes), Ordering::Relaxed);
+    }
+
+    fn take(self) -> (Vec<Warning>, BTreeSet<char>) {
+        let heard = self.heard.into_inner().unwrap_or_else(|e| e.into_inner());
+        (heard.messages, heard.letters)
+    }
+}
+
+/// A document that has been looked at, and put in terms that usvg knows.
+struct Prepared {
+    written: Option<write::Written>,
+    warnings: Vec<Warning>,
+}
+
+impl Prepared {
+    /// The document that was written anew, if it was.
+    fn document(&self) -> Result<Option<roxmltree::Document<'_>>> {
+        self.written.as_ref().map(|written| parse(&written.text).map_err(not_xml)).transpose()
+    }
+}
+
+/// Looks at a document with `above` levels of elements around it, and puts it in terms that usvg knows.
+///
+/// # Errors
+/// What usvg would not get through.
+fn prepared(
+    document: &roxmltree::Document<'_>,
+    above: usize,
+    told: &Told,
+    is_within: bool,
+) -> Result<Prepared> {
+    check_arcs(document)?;
+    let mut warnings = passed_over(document);
+    let at = |offset: usize| {
+        let at = document.text_pos_at(offset);
+        (u64::from(at.row), u64::from(at.col))
+    };
+    let pictures = told.heard().pictures.len();
+    let amended = amend::amended(document, pictures)?;
+    warnings.extend(amended.warnings);
+    told.heard().pictures.extend(amended.pictures.into_iter().map(|(href, offset)| {
+        let (line, column) = at(offset);
+        pictures::Picture { href, place: Place::Line(line, column), is_within }
+    }));
+    let prepared = Prepared { written: amended.written, warnings };
+    let levels = match (&prepared.written, prepared.document()?) {
+        (Some(written), Some(new)) => references::check(&new, above, &|node| {
+            let mut elements = new.descendants().filter(roxmltree::Node::is_element);
+            let number = elements.position(|other| other.id() == node.id());
+            at(number.and_then(|n| written.places.get(n)).copied().unwrap_or_default())
+        })?,
+        _ => references::check(document, above, &|node| at(node.range().start))?,
+    };
+    told.set_levels(levels);
+    Ok(prepared)
 }
 
 fn parse(text: &str) -> std::result::Result<roxmltree::Document<'_>, roxmltree::Error> {
@@ -276,60 +376,4 @@ fn passed_over(document: &roxmltree::Document<'_>) -> Vec<Warning> {
         }
     }
     warnings
-}
-
-/// Where images come from: the file itself, or what it refers to.
-fn images<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
-    let (resources, limit) = (options.resources, options.limits.decoded_bytes);
-    let default = ImageHrefResolver::default_data_resolver();
-    ImageHrefResolver {
-        resolve_data: Box::new(move |mime, bytes, usvg_options| match mime {
-            "image/svg+xml" => nested(&bytes, usvg_options, told),
-            "text/plain" => kind_of(bytes, usvg_options, told),
-            _ => default(mime, bytes, usvg_options),
-        }),
-        resolve_string: Box::new(move |href, usvg_options| {
-            let path = path(href).map_err(str::to_owned);
-            match path.and_then(|path| resources.find(&path, limit)) {
-                Ok(Found { bytes, note }) => {
-                    if let Some(note) = note {
-                        told.tell(format!("image `{href}`: {note}"));
-                    }
-                    kind_of(bytes.into(), usvg_options, told)
-                }
-                Err(why) => {
-                    told.tell(format!("image `{href}` is left out: {why}"));
-                    None
-                }
-            }
-        }),
-    }
-}
-
-fn kind_of(bytes: Arc<Vec<u8>>, options: &usvg::Options<'_>, told: &Told) -> Option<ImageKind> {
-    match bytes.get(..4)? {
-        b"\x89PNG" => Some(ImageKind::PNG(bytes)),
-        [0xff, 0xd8, ..] => Some(ImageKind::JPEG(bytes)),
-        b"GIF8" => Some(ImageKind::GIF(bytes)),
-        b"RIFF" => Some(ImageKind::WEBP(bytes)),
-        _ => nested(&bytes, options, told),
-    }
-}
-
-/// A drawing that is an image of the drawing, looked at with the same care before usvg goes into it.
-fn nested(bytes: &[u8], options: &usvg::Options<'_>, told: &Told) -> Option<ImageKind> {
-    let document = parse(std::str::from_utf8(bytes).ok()?).ok()?;
-    let around = told.levels.load(Ordering::Relaxed);
-    let checked = check_arcs(&document)
-        .and_then(|()| references::check(&document, around + references::IMAGE));
-    match checked {
-        Ok(levels) => told.levels.store(levels, Ordering::Relaxed),
-        Err(why) => {
-            told.tell(format!("an image that is a drawing is left out: {why}"));
-            return None;
-        }
-    }
-    let tree = resolved(|| usvg::Tree::from_data_nested(bytes, options));
-    told.levels.store(around, Ordering::Relaxed);
-    tree.ok().map(ImageKind::SVG)
 }

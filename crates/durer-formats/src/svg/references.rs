@@ -1,10 +1,8 @@
 //! What a drawing's elements refer to: usvg follows patterns, masks, clip paths and filters by recursion, and without end
 //! where three of them, or two of different kinds, go in a circle. Such drawings are refused before it sees them.
 
+use super::filters::links;
 use crate::{Error, Result};
-use simplecss::{
-    AttributeOperator, Declaration, DeclarationTokenizer, PseudoClass, Rule, StyleSheet,
-};
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
@@ -75,42 +73,31 @@ fn property(name: &str) -> Option<Kind> {
     PROPERTIES.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
 }
 
+/// Where elements stand in the file, by line and column.
+pub type PlaceOf<'p> = &'p dyn Fn(&Node<'_, '_>) -> (u64, u64);
+
 /// Refuses references that go in circles or multiply, and elements that are too deep within one another and within
-/// the `above` levels around the document; gives how many levels there are with those.
+/// the `above` levels around the document; gives how many levels there are with those. What style sheets say must stand
+/// in attributes.
 ///
 /// # Errors
 /// [`Error::Decode`] with the place of the element where a circle closes, that is too deep, or from where on there are
 /// too many references.
-pub fn check(document: &Document<'_>, above: usize) -> Result<usize> {
+pub fn check(document: &Document<'_>, above: usize, place: PlaceOf<'_>) -> Result<usize> {
     let mut ids: HashMap<_, Vec<_>> = HashMap::new();
     for node in document.descendants() {
         for id in node.attributes().filter(|attribute| attribute.name() == "id") {
             ids.entry(id.value()).or_default().push(node);
         }
     }
-    let sheet = sheet(document);
     let (found, around) = (HashMap::new(), HashMap::new());
-    Walk { document, sheet: &sheet, ids, found, around, open: Vec::new() }
+    Walk { place, ids, found, around, open: Vec::new() }
         .follow(document.root_element(), BY_HREF, above, Values::default())
         .map(|found| above + found.levels)
 }
 
-/// The rules of all style sheets that say what elements refer to.
-fn sheet<'a>(document: &'a Document<'_>) -> StyleSheet<'a> {
-    let mut sheet = StyleSheet::new();
-    for style in document.descendants().filter(|node| node.has_tag_name("style")) {
-        if style.attribute("type").is_none_or(|kind| kind == "text/css") {
-            sheet.parse_more(style.text().unwrap_or_default());
-        }
-    }
-    let refers = |rule: &Rule<'_>| rule.declarations.iter().any(|d| property(d.name).is_some());
-    sheet.rules.retain(refers);
-    sheet
-}
-
-struct Walk<'a, 'i> {
-    document: &'a Document<'i>,
-    sheet: &'a StyleSheet<'a>,
+struct Walk<'a, 'i, 'p> {
+    place: PlaceOf<'p>,
     /// Of several elements with the same id any may be meant.
     ids: HashMap<&'a str, Vec<Node<'a, 'i>>>,
     /// What was found in the elements that have been followed, with how they were referred to and what is said around
@@ -144,14 +131,13 @@ const BY_HREF: Opened = Opened { kind: Kind::Href, is_outside: false };
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Value<'a> {
     text: &'a str,
-    is_important: bool,
     is_outside: bool,
 }
 
 /// What is said of fill, stroke, clip path, mask and filter.
 type Values<'a> = [Option<Value<'a>>; 5];
 
-impl<'a, 'i> Walk<'a, 'i> {
+impl<'a, 'i> Walk<'a, 'i, '_> {
     /// What there is in an element and in what it refers to; `above` levels are around it, where this is said.
     fn follow(
         &mut self,
@@ -212,7 +198,7 @@ impl<'a, 'i> Walk<'a, 'i> {
         let is_shape = SHAPES.contains(&node.tag_name().name());
         let mut found = Vec::new();
         let mut follow = |opened: Opened, value: &'a str| {
-            let targets = targets_of(value).filter_map(|id| self.ids.get(id)).flatten();
+            let targets = links(value).filter_map(|id| self.ids.get(id)).flatten();
             let fitting = targets.filter(|target| opened.kind.fits(target.tag_name().name()));
             found.extend(fitting.map(|target| (opened, *target)));
         };
@@ -228,9 +214,7 @@ impl<'a, 'i> Walk<'a, 'i> {
                 follow(Opened { kind, is_outside: value.is_outside }, value.text);
             }
         }
-        let declared = self.declared(node).map(|declared| (declared.name, declared.value));
-        let markers = attributes(node).chain(declared);
-        let markers = markers.filter(|(name, _)| property(name) == Some(Kind::Marker));
+        let markers = attributes(node).filter(|(name, _)| property(name) == Some(Kind::Marker));
         let marker = Opened { kind: Kind::Marker, is_outside: false };
         markers.filter(|_| !is_clip).for_each(|(_, value)| follow(marker, value));
         // Where links lead is not drawn.
@@ -249,7 +233,7 @@ impl<'a, 'i> Walk<'a, 'i> {
 
     /// Whether the filter of an element shows the element: then usvg leaves the filter out.
     fn has_image_of_itself(&self, node: Node<'a, 'i>, filter: &str) -> bool {
-        let filters = targets_of(filter).filter_map(|id| self.ids.get(id)).flatten();
+        let filters = links(filter).filter_map(|id| self.ids.get(id)).flatten();
         let mut images = filters.flat_map(Node::children);
         images.any(|image| {
             image.tag_name().name() == "feImage" && self.linked(image).any(|shown| shown == node)
@@ -285,48 +269,34 @@ impl<'a, 'i> Walk<'a, 'i> {
     /// Of what is said around an element what it and those within it can take: clip path, mask and filter only where
     /// it asks for them.
     fn needed(&self, node: Node<'a, 'i>, mut around: Values<'a>) -> Values<'a> {
-        let mut values = attributes(node).chain(self.declared(node).map(|d| (d.name, d.value)));
+        let mut values = attributes(node);
         if !values.any(|(name, value)| value == INHERIT && property(name).is_some()) {
             around[2..].fill(None);
         }
         around
     }
 
-    /// What is said for an element itself, as usvg finds it: of attributes the first counts, of style sheets and the
-    /// element's style the last, but what is important stays. What is taken from around is as important as there.
+    /// What is said for an element itself, as usvg finds it: of attributes the first counts.
     fn said(&self, node: Node<'a, 'i>, around: &Values<'a>) -> Values<'a> {
         let mut said = Values::default();
-        let mut say = |name: &str, text: &'a str, is_important: bool, is_first: bool| {
+        for (name, text) in attributes(node) {
             let at = CASCADED.iter().position(|kind| property(name) == Some(*kind));
             let Some((slot, around)) = at.and_then(|at| said.get_mut(at).zip(around.get(at)))
             else {
-                return;
+                continue;
             };
-            if slot.is_some_and(|before| is_first || before.is_important) {
-                return;
-            }
-            *slot = Some(match (text, around) {
+            let value = match (text, around) {
                 (INHERIT, Some(value)) => Value { is_outside: false, ..*value },
-                (INHERIT, None) => Value { text: "none", is_important: false, is_outside: false },
-                _ => Value { text, is_important, is_outside: false },
-            });
-        };
-        attributes(node).for_each(|(name, value)| say(name, value, false, true));
-        self.declared(node).for_each(|said| say(said.name, said.value, said.important, false));
+                (INHERIT, None) => Value { text: "none", is_outside: false },
+                _ => Value { text, is_outside: false },
+            };
+            slot.get_or_insert(value);
+        }
         said
     }
 
-    /// What style sheets and its style declare for an element.
-    fn declared(&self, node: Node<'a, 'i>) -> impl Iterator<Item = Declaration<'a>> {
-        let rules = self.sheet.rules.iter();
-        let rules = rules.filter(move |rule| rule.selector.matches(&Styled(node)));
-        let own = DeclarationTokenizer::from(node.attribute("style").unwrap_or_default());
-        rules.flat_map(|rule| rule.declarations.iter().copied()).chain(own)
-    }
-
     fn place(&self, node: Node<'_, '_>) -> (u64, u64) {
-        let at = self.document.text_pos_at(node.range().start);
-        (at.row.into(), at.col.into())
+        (self.place)(&node)
     }
 
     fn circle(&self, node: Node<'_, '_>, target: Node<'_, '_>) -> Error {
@@ -356,31 +326,6 @@ impl<'a, 'i> Walk<'a, 'i> {
     }
 }
 
-/// An element as style sheets see it.
-struct Styled<'a, 'i>(Node<'a, 'i>);
-
-impl simplecss::Element for Styled<'_, '_> {
-    fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(Styled)
-    }
-
-    fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(Styled)
-    }
-
-    fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
-    }
-
-    fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.0.attribute(name).is_some_and(|value| operator.matches(value))
-    }
-
-    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
-        matches!(class, PseudoClass::FirstChild) && self.prev_sibling_element().is_none()
-    }
-}
-
 /// What takes the value of the element around.
 const INHERIT: &str = "inherit";
 
@@ -398,12 +343,4 @@ fn handed_down<'a>(mut said: Values<'a>, around: &Values<'a>) -> Values<'a> {
         *own = own.or(*around);
     }
     said
-}
-
-/// Each `id` of `url(#id)` in a value.
-fn targets_of(value: &str) -> impl Iterator<Item = &str> {
-    value.split("url(").skip(1).filter_map(|rest| {
-        let (inside, _) = rest.split_once(')')?;
-        inside.trim().trim_matches(['"', '\'']).trim().strip_prefix('#')
-    })
 }

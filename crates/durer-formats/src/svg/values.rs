@@ -1,18 +1,12 @@
-//! Values that usvg would pass over in silence, or take for something else.
+//! What values may be, and the same in words that usvg understands.
 //!
-//! What cannot be used is told with its place and taken out: then what is inherited or the default counts, as CSS
-//! has it. What can be used but is unknown to usvg is put in other words.
+//! usvg passes over in silence what it does not know, or takes it for something else.
 
-use super::{ROOT, arcs};
-use crate::{Place, Warning, css};
-use std::collections::BTreeSet;
-use std::ops::Range;
+use super::{arcs, transform};
+use crate::css::{self, Color, Token, Units, Whole};
+use std::borrow::Cow;
 use std::str::FromStr;
-use svgtypes::{Color, Length, LengthListParser, LengthUnit, NumberListParser, PathParser};
-use usvg::roxmltree::{Document, Node};
-
-/// Letters of a value that a warning shows.
-const SHOWN: usize = 40;
+use svgtypes::{Length, LengthListParser, LengthUnit, NumberListParser, PathParser};
 
 /// Elements whose size and place are lengths.
 const SIZED: [&str; 14] = [
@@ -37,14 +31,21 @@ const NOT_NEGATIVE: [&str; 6] = ["width", "height", "r", "rx", "ry", "stroke-wid
 
 /// What an attribute or a property may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     Paint,
     Color,
-    Length { negative: bool },
+    Length {
+        negative: bool,
+    },
     Lengths,
     Opacity,
     Number,
     Transform,
+    /// `transform` of CSS.
+    Functions,
+    /// `auto` or `normal`, or a length.
+    Spacing,
+    FontSize,
     Points,
     Path,
     ViewBox,
@@ -53,7 +54,7 @@ enum Kind {
 
 impl Kind {
     /// What a property may be, of style sheets too; `None` for those that are not looked at.
-    fn of_property(name: &str) -> Option<Self> {
+    pub fn of_property(name: &str) -> Option<Self> {
         Some(match name {
             "fill" | "stroke" => Self::Paint,
             "color" | "flood-color" | "lighting-color" | "stop-color" => Self::Color,
@@ -67,13 +68,26 @@ impl Kind {
             "stroke-linecap" => Self::Words(&["butt", "round", "square"]),
             "stroke-linejoin" => Self::Words(&["miter", "miter-clip", "round", "bevel", "arcs"]),
             "fill-rule" | "clip-rule" => Self::Words(&["nonzero", "evenodd"]),
+            "letter-spacing" | "word-spacing" => Self::Spacing,
+            "font-size" => Self::FontSize,
             "transform" => Self::Transform,
             _ => return None,
         })
     }
 
+    /// What a property of style sheets may be, that has another meaning there or none as a presentation attribute.
+    pub fn of_style(name: &str) -> Option<Self> {
+        Some(match name {
+            "transform" => Self::Functions,
+            "x" | "y" | "cx" | "cy" => Self::Length { negative: true },
+            "width" | "height" | "r" | "rx" | "ry" => Self::Length { negative: false },
+            "d" => Self::Path,
+            _ => return Self::of_property(name),
+        })
+    }
+
     /// What an attribute may be.
-    fn of_attribute(element: &str, name: &str) -> Option<Self> {
+    pub fn of_attribute(element: &str, name: &str) -> Option<Self> {
         Some(match name {
             "gradientTransform" | "patternTransform" => Self::Transform,
             "spreadMethod" => Self::Words(&["pad", "reflect", "repeat"]),
@@ -96,37 +110,98 @@ impl Kind {
         })
     }
 
-    fn allows(self, value: &str) -> bool {
+    /// Whether usvg understands a value.
+    pub fn is_known(self, value: &str) -> bool {
         let length = || Length::from_str(value);
-        value == "inherit"
-            || match self {
-                Self::Paint => svgtypes::Paint::from_str(value).is_ok(),
-                Self::Color => value == "currentColor" || Color::from_str(value).is_ok(),
-                Self::Length { negative } => {
-                    value == "auto" || length().is_ok_and(|l| negative || l.number >= 0.0)
-                }
-                Self::Lengths => {
-                    let fits = |l: Result<Length, _>| l.is_ok_and(|l: Length| l.number >= 0.0);
-                    value == "none" || LengthListParser::from(value).all(fits)
-                }
-                Self::Opacity => {
-                    length().is_ok_and(|l| matches!(l.unit, LengthUnit::None | LengthUnit::Percent))
-                }
-                Self::Number => svgtypes::Number::from_str(value).is_ok(),
-                Self::Transform => value == "none" || svgtypes::Transform::from_str(value).is_ok(),
-                Self::Points => {
-                    let mut count = 0;
-                    NumberListParser::from(value).inspect(|_| count += 1).all(|n| n.is_ok())
-                        && count % 2 == 0
-                }
-                Self::Path => value == "none" || PathParser::from(value).all(|s| s.is_ok()),
-                Self::ViewBox => svgtypes::ViewBox::from_str(value).is_ok(),
-                Self::Words(words) => words.contains(&value),
+        match self {
+            Self::Paint => svgtypes::Paint::from_str(value).is_ok(),
+            Self::Color => value == "currentColor" || svgtypes::Color::from_str(value).is_ok(),
+            Self::Length { negative } => {
+                value == "auto" || length().is_ok_and(|l| negative || l.number >= 0.0)
             }
+            Self::Lengths => {
+                let fits = |l: Result<Length, _>| l.is_ok_and(|l: Length| l.number >= 0.0);
+                value == "none" || LengthListParser::from(value).all(fits)
+            }
+            Self::Opacity => {
+                length().is_ok_and(|l| matches!(l.unit, LengthUnit::None | LengthUnit::Percent))
+            }
+            Self::Number => svgtypes::Number::from_str(value).is_ok(),
+            Self::Transform => value == "none" || svgtypes::Transform::from_str(value).is_ok(),
+            Self::Functions => false,
+            Self::Spacing => value == "normal" || length().is_ok(),
+            Self::FontSize => {
+                FONT_SIZES.iter().any(|(name, _)| *name == value)
+                    || length().is_ok_and(|l| l.number >= 0.0)
+            }
+            Self::Points => {
+                let mut count = 0;
+                NumberListParser::from(value).inspect(|_| count += 1).all(|n| n.is_ok())
+                    && count % 2 == 0
+            }
+            Self::Path => value == "none" || PathParser::from(value).all(|s| s.is_ok()),
+            Self::ViewBox => svgtypes::ViewBox::from_str(value).is_ok(),
+            Self::Words(words) => words.contains(&value),
+        }
+    }
+
+    /// A value as usvg understands it, where it can be used; `name` is that of the property, and `around` what relative
+    /// values are relative to.
+    pub fn words<'v>(self, name: &str, value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
+        if self == Self::Path {
+            return path(value);
+        }
+        let plain = value.trim();
+        let has_functions = plain.contains('(');
+        match self {
+            Self::Paint | Self::Color if plain.eq_ignore_ascii_case("currentColor") => {
+                return Some(Cow::Borrowed("currentColor"));
+            }
+            Self::Paint if has_functions || !self.is_known(value) => return paint(plain, around),
+            Self::Color if has_functions || !self.is_known(value) => return color(plain, around),
+            Self::Functions => {
+                let _ = transform::parse(plain, &around.units, around.units.viewport)?;
+                return Some(Cow::Borrowed(plain));
+            }
+            _ if self.is_known(value) => return Some(Cow::Borrowed(value)),
+            _ => {}
+        }
+        if self.is_known(plain) {
+            return Some(Cow::Borrowed(plain));
+        }
+        let lower = plain.to_ascii_lowercase();
+        if self.is_known(&lower) {
+            return Some(Cow::Owned(lower));
+        }
+        self.computed(name, plain, around).map(Cow::Owned)
+    }
+
+    /// What is computed of a value with functions or units that usvg does not know.
+    fn computed(self, name: &str, value: &str, around: &Around) -> Option<String> {
+        let units = &around.units;
+        let length = |whole: f64| units.parse(value, Some(Whole::Length(whole)))?.length();
+        // What is computed is kept in range; what is said must be in it.
+        let in_range = |length: f64| match value.contains('(') {
+            true => Some(length.max(0.0)),
+            false => Some(length).filter(|length| *length >= 0.0),
+        };
+        let number = match self {
+            Self::Length { negative: true } => length(whole_of(name, units))?,
+            Self::Length { negative: false } => in_range(length(whole_of(name, units))?)?,
+            Self::Spacing => length(units.font_size)?,
+            Self::FontSize => in_range(length(units.font_size)?)?,
+            Self::Opacity => {
+                units.parse(value, Some(Whole::Number(1.0)))?.number()?.clamp(0.0, 1.0)
+            }
+            Self::Number => units.parse(value, None)?.number()?,
+            Self::Lengths => return lengths(value, whole_of(name, units), units),
+            _ => return None,
+        };
+        Some(number.to_string())
     }
 
     /// What would be right, and what becomes of it.
-    fn wanted(self) -> String {
+    pub fn wanted(self) -> String {
         let wanted = match self {
             Self::Paint => "a colour, as `red` or `#c80000`, `none` or `url(#…)`",
             Self::Color => "a colour, as `red` or `#c80000`",
@@ -135,6 +210,9 @@ impl Kind {
             Self::Lengths => "lengths of at least 0, or `none`",
             Self::Opacity => "a number from 0 to 1, or a percentage",
             Self::Number => "a number",
+            Self::Spacing => "`normal` or a length",
+            Self::FontSize => "a length of at least 0, a percentage or a word as `large`",
+            Self::Functions => "functions as `translate(10px, 5px)` and `rotate(45deg)`",
             Self::Transform => {
                 "a list of `matrix`, `translate`, `scale`, `rotate`, `skewX` and `skewY`"
             }
@@ -147,7 +225,7 @@ impl Kind {
     }
 
     /// What becomes of a value that cannot be used.
-    fn fate(self, name: &str, value: &str) -> Fate {
+    pub fn fate(self, name: &str, value: &str) -> Fate {
         match self {
             Self::Path | Self::Points => Fate::PartlyUsed,
             // Corners that are not round have no radii less than 0 but none.
@@ -163,14 +241,14 @@ impl Kind {
 
 /// What becomes of a value that cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Fate {
+pub(super) enum Fate {
     PassedOver,
     PartlyUsed,
     Zero,
 }
 
 impl Fate {
-    fn in_words(self) -> &'static str {
+    pub fn in_words(self) -> &'static str {
         match self {
             Self::PassedOver => "it is passed over",
             Self::PartlyUsed => "what comes before the error is drawn",
@@ -179,168 +257,106 @@ impl Fate {
     }
 }
 
-/// A value that means the same and that usvg knows.
-fn other_words(kind: Kind, value: &str) -> Option<String> {
-    if kind == Kind::Path {
-        return arcs::as_curves(value);
-    }
-    let plain = value.trim();
-    if matches!(kind, Kind::Paint | Kind::Color) {
-        if let Some(words) = css::in_other_words(plain) {
-            return Some(words.to_owned());
-        }
-        if plain.eq_ignore_ascii_case("currentColor") && value != "currentColor" {
-            return Some("currentColor".to_owned());
-        }
-    }
-    if kind.allows(value) {
-        return None;
-    }
-    [plain.to_owned(), plain.to_ascii_lowercase()].into_iter().find(|value| kind.allows(value))
+/// What relative values are relative to, where they stand.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Around {
+    pub units: Units,
+    /// What `currentColor` is, if it is known.
+    pub color: Option<Color>,
 }
 
-/// What was found in a document.
-#[derive(Debug, Default)]
-pub(super) struct Found {
-    pub warnings: Vec<Warning>,
-    /// Parts of the text and what has to stand there instead, in order.
-    changes: Vec<(Range<usize>, String)>,
-    /// What has been told.
-    seen: BTreeSet<String>,
-}
+/// Words for sizes of fonts, and how many times as large as those around or as `medium` they are; usvg has it so.
+const FONT_SIZES: [(&str, f64); 9] = [
+    ("xx-small", 1.0 / 1.728),
+    ("x-small", 1.0 / 1.44),
+    ("small", 1.0 / 1.2),
+    ("medium", 1.0),
+    ("large", 1.2),
+    ("x-large", 1.44),
+    ("xx-large", 1.728),
+    ("smaller", 1.0 / 1.2),
+    ("larger", 1.2),
+];
 
-impl Found {
-    /// Looks at all values of a document.
-    pub fn new(document: &Document<'_>) -> Self {
-        let mut found = Self::default();
-        for node in document.descendants().filter(is_drawn) {
-            let element = node.tag_name().name();
-            for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
-                let (name, value) = (attribute.name(), attribute.value());
-                let place = || place(document, attribute.range().start);
-                if name == "style" {
-                    found.style(value, element, &place());
-                    found.colors(document, attribute.range_value());
-                } else if let Some(kind) = Kind::of_attribute(element, name) {
-                    let changes = found.changes.len();
-                    if let Some(value) = other_words(kind, value) {
-                        found.changes.push((attribute.range_value(), value));
-                    }
-                    let known = found.changes.len() > changes && kind != Kind::Path;
-                    let told = !known && found.value(kind, (name, value), element, &place());
-                    if told && kind.fate(name, value) == Fate::PassedOver {
-                        found.changes.push((attribute.range(), String::new()));
-                    }
-                }
-            }
-            if element == "style" {
-                found.sheet(document, node);
-            }
-        }
-        found.changes.sort_by_key(|(range, _)| range.start);
-        found
-    }
-
-    /// The document in words that usvg understands; `None` where it is so already.
-    pub fn amended(&self, text: &str) -> Option<String> {
-        let (mut out, mut at) = (String::with_capacity(text.len()), 0);
-        for (range, words) in &self.changes {
-            // What an entity stands for is found wherever it is used.
-            if range.start >= at {
-                out.push_str(text.get(at..range.start)?);
-                out.push_str(words);
-                at = range.end;
-            }
-        }
-        out.push_str(text.get(at..)?);
-        (!self.changes.is_empty()).then_some(out)
-    }
-
-    /// Tells what is wrong with a value; whether anything is.
-    fn value(&mut self, kind: Kind, said: (&str, &str), element: &str, place: &Place) -> bool {
-        let (name, value) = said;
-        if kind.allows(value) {
-            if kind == Kind::Transform && !can_be_drawn(value) {
-                let what = "it makes everything smaller than 10⁻⁷ of its size, or flat, or reaches beyond all numbers; what \
-                            it applies to is left out";
-                self.tell(said, element, place, what);
-            }
-            return false;
-        }
-        if !value.trim().is_empty() {
-            let fate = kind.fate(name, value).in_words();
-            self.tell((name, value), element, place, &format!("{}; {fate}", kind.wanted()));
-        }
-        true
-    }
-
-    fn tell(&mut self, (name, value): (&str, &str), element: &str, place: &Place, what: &str) {
-        let mut shown: String = value.trim().chars().take(SHOWN).collect();
-        if shown.len() < value.trim().len() {
-            shown.push('…');
-        }
-        if self.seen.insert(format!("{name} {value}")) {
-            let message = format!("`{name}` of `{element}` is `{shown}`: {what}");
-            self.warnings.push(Warning { place: place.clone(), message });
-        }
-    }
-
-    /// The declarations of a `style` attribute.
-    fn style(&mut self, text: &str, element: &str, place: &Place) {
-        for said in simplecss::DeclarationTokenizer::from(text) {
-            self.declaration(&said, element, place);
-        }
-    }
-
-    /// A style sheet.
-    fn sheet(&mut self, document: &Document<'_>, node: Node<'_, '_>) {
-        let place = place(document, node.range().start);
-        for text in node.children().filter(Node::is_text) {
-            let sheet = simplecss::StyleSheet::parse(text.text().unwrap_or_default());
-            for said in sheet.rules.iter().flat_map(|rule| &rule.declarations) {
-                self.declaration(said, "style", &place);
-            }
-            self.colors(document, text.range());
-        }
-    }
-
-    fn declaration(&mut self, said: &simplecss::Declaration<'_>, element: &str, place: &Place) {
-        let Some(kind) = Kind::of_property(said.name) else { return };
-        if css::in_other_words(said.value).is_none() {
-            self.value(kind, (said.name, said.value), element, place);
-        }
-    }
-
-    /// Puts colours of declarations that usvg does not know in other words.
-    fn colors(&mut self, document: &Document<'_>, range: Range<usize>) {
-        let Some(text) = document.input_text().get(range.clone()) else { return };
-        for (at, name, words) in css::names_to_replace(text) {
-            if text.get(..at).is_some_and(|before| before.trim_end().ends_with(':')) {
-                let start = range.start + at;
-                self.changes.push((start..start + name.len(), words.to_owned()));
-            }
-        }
+/// The size of a font in pixels, where that around is known.
+pub(super) fn font_size(value: &str, units: &Units) -> Option<f64> {
+    match FONT_SIZES.iter().find(|(name, _)| *name == value) {
+        Some((_, times)) => Some(units.font_size * times),
+        None => units.parse(value, Some(Whole::Length(units.font_size)))?.length(),
     }
 }
 
-/// Elements of SVG but those of animations, whose `fill` is something else.
-fn is_drawn(node: &Node<'_, '_>) -> bool {
-    let name = node.tag_name();
-    node.is_element()
-        && name.namespace().is_none_or(|space| space == ROOT.0)
-        && !name.name().starts_with("animate")
-        && name.name() != "set"
+/// What percentages of a property of that name are of, in pixels.
+pub(super) fn whole_of(name: &str, units: &Units) -> f64 {
+    let [width, height] = units.viewport;
+    match name {
+        "x" | "cx" | "rx" | "width" | "x1" | "x2" | "fx" | "dx" | "markerWidth" | "refX" => width,
+        "y" | "cy" | "ry" | "height" | "y1" | "y2" | "fy" | "dy" | "markerHeight" | "refY" => {
+            height
+        }
+        _ => libm::sqrt((width * width + height * height) / 2.0),
+    }
+}
+
+/// Path data, of CSS too, with curves in place of arcs.
+fn path(value: &str) -> Option<Cow<'_, str>> {
+    let plain = value.trim_start();
+    if !plain.starts_with("path(") {
+        return Some(arcs::as_curves(value).map_or(Cow::Borrowed(value), Cow::Owned));
+    }
+    let pieces = css::tokens(plain);
+    let data = pieces.iter().find_map(|piece| match &piece.token {
+        Token::String(data) => Some(data),
+        _ => None,
+    })?;
+    Some(Cow::Owned(arcs::as_curves(data).unwrap_or_else(|| data.to_string())))
+}
+
+/// A colour as usvg reads it.
+fn color(value: &str, around: &Around) -> Option<Cow<'static, str>> {
+    let [r, g, b, a] = css::color_within(value, around.color)?.bytes();
+    Some(Cow::Owned(match a {
+        255 => format!("#{r:02x}{g:02x}{b:02x}"),
+        _ => format!("#{r:02x}{g:02x}{b:02x}{a:02x}"),
+    }))
+}
+
+/// A paint: what it refers to stays, colours and those in place of what is missing are put as usvg reads them.
+fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
+    if !value.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("url(")) {
+        let lower = value.to_ascii_lowercase();
+        return color(value, around)
+            .or_else(|| Kind::Paint.is_known(&lower).then_some(Cow::Owned(lower)));
+    }
+    let (link, fallback) = value.split_at(value.find(')')? + 1);
+    let fallback = fallback.trim();
+    let known = |words: &str| words.is_empty() || words == "none" || words == "currentColor";
+    if known(fallback) || fallback.starts_with("icc-color") {
+        return Some(Cow::Borrowed(value));
+    }
+    let words = match fallback.to_ascii_lowercase().as_str() {
+        "none" => Cow::Borrowed("none"),
+        "currentcolor" => Cow::Borrowed("currentColor"),
+        _ => color(fallback, around)?,
+    };
+    Some(Cow::Owned(format!("{link} {words}")))
+}
+
+/// Lengths in pixels.
+fn lengths(value: &str, whole: f64, units: &Units) -> Option<String> {
+    let pieces = css::tokens(value);
+    let mut out = String::new();
+    for part in css::split(&pieces, ',').into_iter().flat_map(css::words) {
+        let length = units.value(part, Some(Whole::Length(whole)))?.length();
+        out.push_str(&format!("{} ", length.filter(|length| *length >= 0.0)?));
+    }
+    Some(out)
 }
 
 /// Whether usvg draws what has this transform.
-fn can_be_drawn(value: &str) -> bool {
+pub(super) fn can_be_drawn(value: &str) -> bool {
     svgtypes::Transform::from_str(value).ok().is_none_or(|t| {
         let [a, b, c, d, e, f] = [t.a, t.b, t.c, t.d, t.e, t.f].map(|v| v as f32);
         usvg::Transform::from_row(a, b, c, d, e, f).is_valid()
     })
-}
-
-fn place(document: &Document<'_>, at: usize) -> Place {
-    let at = document.text_pos_at(at);
-    Place::Line(at.row.into(), at.col.into())
 }

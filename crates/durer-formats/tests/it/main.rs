@@ -24,4 +24,5 @@ mod mesh_properties;
 mod ply;
 mod shared;
 mod svg;
+mod svg_styles;
 mod threemf;

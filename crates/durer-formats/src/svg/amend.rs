@@ -1,0 +1,590 @@
+//! A drawing's document in terms that usvg knows: attributes with values that it understands, in place of style sheets
+//! and of what is newer than it. What cannot be used is told with its place and taken out: then what is inherited or the
+//! default counts, as CSS has it.
+
+use super::filters;
+use super::finish::{Later, Pending};
+use super::letters::{Case, Letters};
+use super::style::{self, Declared, IN_STYLE, Styles, initial, shown, takes};
+use super::transform;
+use super::values::{Around, Fate, Kind, can_be_drawn, font_size};
+use super::write::{self, Changes, Written, attributes, is_of_svg};
+use crate::{Place, Result, Warning, css};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use usvg::roxmltree::{Document, Node, NodeId};
+
+/// What a document becomes.
+pub(super) struct Amended {
+    /// `None` where nothing has to be other.
+    pub written: Option<Written>,
+    pub warnings: Vec<Warning>,
+    /// The addresses of pictures, in the place of which their numbers stand now, and where they were.
+    pub pictures: Vec<(String, usize)>,
+}
+
+/// What is said around an element.
+#[derive(Debug, Clone, Copy, Default)]
+struct Scope {
+    around: Around,
+    variables: Option<usize>,
+    letters: Letters,
+    /// Within a text that places no letters by themselves.
+    is_free: bool,
+}
+
+/// Puts a document in terms that usvg knows. Pictures get numbers from `first_picture` on.
+///
+/// # Errors
+/// Where style rules and elements are too many.
+pub(super) fn amended(document: &Document<'_>, first_picture: usize) -> Result<Amended> {
+    let mut walk = Walk::new(document, first_picture);
+    let mut stack: Vec<(NodeId, Scope)> = Vec::new();
+    for node in document.descendants().filter(Node::is_element) {
+        let parent = node.parent_element().map(|parent| parent.id());
+        while stack.last().is_some_and(|(id, _)| Some(*id) != parent) {
+            stack.pop();
+        }
+        let scope = stack.last().map(|(_, scope)| *scope).unwrap_or_default();
+        let own = walk.element(node, scope)?;
+        if own.variables.is_some() && node.tag_name().name() == "use" {
+            walk.uses.push((node, own));
+        }
+        if node.attribute("id").is_some() {
+            walk.around.insert(node.id(), scope.variables);
+        }
+        stack.push((node.id(), own));
+    }
+    walk.finish()
+}
+
+/// So many elements may be copied for the sake of custom properties.
+const MAX_COPIED: usize = 100_000;
+
+struct Walk<'a, 'i> {
+    document: &'a Document<'i>,
+    styles: Styles,
+    ids: HashMap<&'a str, Node<'a, 'i>>,
+    changes: Changes<'a>,
+    pending: Vec<Pending<'a, 'i>>,
+    /// Elements with `var()`.
+    varied: HashSet<NodeId>,
+    /// The custom properties around elements that may be referred to.
+    around: HashMap<NodeId, Option<usize>>,
+    /// `use` elements that have custom properties.
+    uses: Vec<(Node<'a, 'i>, Scope)>,
+    pictures: Vec<(String, usize)>,
+    first_picture: usize,
+    told: Vec<(usize, String)>,
+    /// What has been told.
+    seen: BTreeSet<String>,
+}
+
+/// What becomes of attributes of an element: other values, or none.
+type Edits<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
+
+impl<'a, 'i> Walk<'a, 'i> {
+    fn new(document: &'a Document<'i>, first_picture: usize) -> Self {
+        let mut ids = HashMap::new();
+        for node in document.descendants() {
+            if let Some(id) = node.attribute("id") {
+                ids.entry(id).or_insert(node);
+            }
+        }
+        Self {
+            document,
+            styles: Styles::new(document),
+            ids,
+            changes: Changes::default(),
+            pending: Vec::new(),
+            varied: HashSet::new(),
+            around: HashMap::new(),
+            uses: Vec::new(),
+            pictures: Vec::new(),
+            first_picture,
+            told: Vec::new(),
+            seen: BTreeSet::new(),
+        }
+    }
+
+    /// Looks at an element within a scope; gives that for what is in it.
+    fn element(&mut self, node: Node<'a, 'i>, mut scope: Scope) -> Result<Scope> {
+        let name = node.tag_name().name();
+        if !is_of_svg(&node) || name.starts_with("animate") || name == "set" || name == "style" {
+            return Ok(scope);
+        }
+        let has_style = node.attribute("style").is_some();
+        let mut said = BTreeMap::new();
+        if has_style || self.styles.has_sheets {
+            said = self.styles.said(self.document, node)?;
+        }
+        let custom: BTreeMap<String, String> = said
+            .iter()
+            .filter(|(name, _)| name.starts_with("--"))
+            .map(|(name, declared)| (name.clone(), declared.value.clone()))
+            .collect();
+        if !custom.is_empty() {
+            scope.variables = Some(self.styles.variables.add(scope.variables, custom));
+        }
+        self.enter(node, &said, &mut scope);
+        let (mut edits, mut later) = (Vec::new(), Later::default());
+        for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
+            let (property, value) = (attribute.name(), attribute.value());
+            if property != "style" && !(said.contains_key(property) && takes(name, property)) {
+                let at = attribute.range().start;
+                later.note(property, value, at);
+                self.attribute(node, property, value, at, &scope, &mut edits);
+            }
+        }
+        if name == "image" || name == "feImage" {
+            self.picture(node, &mut edits);
+        }
+        let mut in_style = String::new();
+        for (property, declared) in &said {
+            if !property.starts_with("--") && takes(name, property) {
+                self.declared(
+                    node,
+                    property,
+                    declared,
+                    &scope,
+                    &mut edits,
+                    &mut later,
+                    &mut in_style,
+                );
+            }
+        }
+        let has_foreign =
+            node.attributes().any(|a| a.namespace().is_some_and(|space| space != super::ROOT.0));
+        if has_style || !edits.is_empty() || !in_style.is_empty() {
+            let mut all: Vec<_> =
+                attributes(node).filter(|(name, _)| name != "style" && name != "class").collect();
+            for (name, value) in edits {
+                all.retain(|(own, _)| *own != name);
+                all.extend(value.map(|value| (name, value)));
+            }
+            if !in_style.is_empty() {
+                all.push((Cow::Borrowed("style"), Cow::Owned(in_style)));
+            }
+            self.changes.attributes.insert(node.id(), all);
+        } else if has_foreign && attributes(node).count() < node.attributes().len() {
+            let all = attributes(node).collect();
+            self.changes.attributes.insert(node.id(), all);
+        }
+        if name == "use" || !later.is_nothing() {
+            self.pending.push(Pending { node, around: scope.around, later });
+        }
+        Ok(scope)
+    }
+
+    /// Puts a number in the place of the address of a picture.
+    fn picture(&mut self, node: Node<'a, 'i>, edits: &mut Edits<'a>) {
+        let links = || node.attributes().filter(|a| a.name() == "href");
+        let link = links()
+            .find(|a| a.namespace().is_none())
+            .or_else(|| links().find(|a| a.namespace() == Some("http://www.w3.org/1999/xlink")));
+        let Some(link) = link.filter(|link| !link.value().starts_with('#')) else { return };
+        let key =
+            format!("{}{}", super::pictures::LISTED, self.first_picture + self.pictures.len());
+        self.pictures.push((link.value().to_owned(), link.range().start));
+        edits.push((Cow::Borrowed("xlink:href"), None));
+        edits.push((Cow::Borrowed("href"), Some(Cow::Owned(key))));
+    }
+
+    /// What an element says that its own values are relative to.
+    fn enter(&mut self, node: Node<'a, 'i>, said: &BTreeMap<String, Declared>, scope: &mut Scope) {
+        let mut value = |name: &str, scope: &Scope| {
+            let text = said.get(name).map(|d| Cow::Borrowed(d.value.as_str()));
+            let text = text.or_else(|| node.attribute(name).map(Cow::Borrowed))?;
+            self.styles.variables.replaced(&text, scope.variables)
+        };
+        if let Some(size) =
+            value("font-size", scope).and_then(|v| font_size(v.trim(), &scope.around.units))
+        {
+            scope.around.units.font_size = size;
+        }
+        let of_font = said.get("font").and_then(|_| value("font", scope));
+        if let Some((_, size)) =
+            of_font.and_then(|v| style::font(&v)?.into_iter().find(|(n, _)| *n == "font-size"))
+        {
+            scope.around.units.font_size =
+                font_size(&size, &scope.around.units).unwrap_or(scope.around.units.font_size);
+        }
+        if let Some(text) = value("color", scope) {
+            scope.around.color =
+                css::color_within(&text, scope.around.color).or(scope.around.color);
+        }
+        if let Some(text) = value("letter-spacing", scope) {
+            let spacing = scope.around.units.parse(text.trim(), None).and_then(|v| v.length());
+            scope.letters.are_apart = match spacing {
+                Some(spacing) => spacing != 0.0,
+                None => scope.letters.are_apart && text == "inherit",
+            };
+        }
+        if let Some(text) = value("text-transform", scope) {
+            scope.letters.case = Case::of(text.trim()).unwrap_or(scope.letters.case);
+        }
+        let name = node.tag_name().name();
+        if node.parent_element().is_none() {
+            let units = &mut scope.around.units;
+            units.root_font_size = units.font_size;
+            let black = css::Color::of_bytes([0, 0, 0, 255]);
+            scope.around.color = scope.around.color.or(Some(black));
+        }
+        if name == "svg" {
+            scope.around.units.viewport =
+                style::viewport(node).unwrap_or(scope.around.units.viewport);
+        }
+        if name == "text" {
+            let lists = ["x", "y", "dx", "dy", "rotate"];
+            let places = |node: Node<'_, '_>| {
+                let mut values = lists.iter().filter_map(|name| node.attribute(*name));
+                values.any(|v| v.trim().contains([' ', ',', '\n', '\t']))
+            };
+            scope.is_free = !node.descendants().any(places);
+        }
+        let is_text = scope.is_free && matches!(name, "text" | "tspan" | "textPath" | "a");
+        if is_text && !scope.letters.are_as_written() {
+            self.changes.letters.insert(node.id(), scope.letters);
+        }
+    }
+
+    /// Looks at an attribute.
+    fn attribute(
+        &mut self,
+        node: Node<'a, 'i>,
+        name: &'a str,
+        value: &'a str,
+        at: usize,
+        scope: &Scope,
+        edits: &mut Edits<'a>,
+    ) {
+        let element = node.tag_name().name();
+        let kind = Kind::of_attribute(element, name);
+        let is_property = initial(name).is_some() || kind.is_some();
+        let mut said = Cow::Borrowed(value);
+        if is_property && value.contains("var(") {
+            self.varied.insert(node.id());
+            match self.styles.variables.replaced(value, scope.variables) {
+                Some(replaced) => {
+                    said = Cow::Owned(replaced);
+                    edits.push((Cow::Borrowed(name), Some(said.clone())));
+                }
+                None => {
+                    self.tell(
+                        (name, value),
+                        element,
+                        at,
+                        "it stands for nothing; it is passed over",
+                    );
+                    return edits.push((Cow::Borrowed(name), None));
+                }
+            }
+        }
+        self.check_links(node, name, &said, at);
+        if is_property && said != "inherit" && is_general(&said) {
+            return edits.push((Cow::Borrowed(name), general(name, &said)));
+        }
+        let Some(kind) = kind.filter(|_| said != "inherit") else { return };
+        let words = kind.words(name, &said, &scope.around);
+        let is_told = self.check(kind, (name, &said), element, at, words.is_some());
+        let edit = match words {
+            Some(Cow::Borrowed(words)) if words == &*said => return,
+            Some(words) => Some(Cow::Owned(words.into_owned())),
+            None if is_told && kind.fate(name, &said) == Fate::PassedOver => None,
+            None => return,
+        };
+        edits.push((Cow::Borrowed(name), edit));
+    }
+
+    /// Tells what is wrong with a value; whether anything is.
+    fn check(
+        &mut self,
+        kind: Kind,
+        said: (&str, &str),
+        element: &str,
+        at: usize,
+        is_usable: bool,
+    ) -> bool {
+        let (name, value) = said;
+        if kind == Kind::Transform && !can_be_drawn(value) {
+            let what = "it makes everything smaller than 10⁻⁷ of its size, or flat, or reaches beyond all numbers; what \
+                        it applies to is left out";
+            self.tell(said, element, at, what);
+            return false;
+        }
+        if is_usable && (kind != Kind::Path || kind.is_known(value)) {
+            return false;
+        }
+        if !value.trim().is_empty() {
+            let fate = kind.fate(name, value).in_words();
+            self.tell(said, element, at, &format!("{}; {fate}", kind.wanted()));
+        }
+        true
+    }
+
+    fn tell(&mut self, (name, value): (&str, &str), element: &str, at: usize, what: &str) {
+        if self.seen.insert(format!("{name} {value}")) {
+            self.told.push((at, format!("`{name}` of `{element}` is `{}`: {what}", shown(value))));
+        }
+    }
+
+    /// Tells of references to what is not there.
+    fn check_links(&mut self, node: Node<'a, 'i>, name: &str, value: &str, at: usize) {
+        let element = node.tag_name().name();
+        let wants = match name {
+            "fill" | "stroke" => "nothing is painted",
+            "clip-path" | "mask" | "marker-start" | "marker-mid" | "marker-end" => {
+                "it is passed over"
+            }
+            "href" if matches!(element, "use" | "textPath" | "tref") => "nothing is drawn",
+            _ => return,
+        };
+        let link = match name {
+            "href" => value.trim().strip_prefix('#'),
+            // Without something in its place.
+            _ => filters::links(value)
+                .next()
+                .filter(|_| value.split_once(')').is_some_and(|(_, rest)| rest.trim().is_empty())),
+        };
+        if let Some(id) = link.filter(|id| !self.ids.contains_key(id)) {
+            let what = format!("there is no element with the id `{}`; {wants}", shown(id));
+            self.tell((name, value), element, at, &what);
+        }
+    }
+
+    /// Looks at what style sheets and the element's style say of a property.
+    #[allow(clippy::too_many_arguments)]
+    fn declared(
+        &mut self,
+        node: Node<'a, 'i>,
+        name: &str,
+        declared: &Declared,
+        scope: &Scope,
+        edits: &mut Edits<'a>,
+        later: &mut Later,
+        in_style: &mut String,
+    ) {
+        let element = node.tag_name().name();
+        let of_style =
+            || node.attribute_node("style").map_or(node.range().start, |style| style.range().start);
+        let at = declared.at.unwrap_or_else(of_style);
+        let mut set = |name: &str, value: Option<String>| {
+            edits.push((Cow::Owned(name.to_owned()), value.map(Cow::Owned)));
+        };
+        if declared.value.contains("var(") {
+            self.varied.insert(node.id());
+        }
+        let Some(value) = self.styles.variables.replaced(&declared.value, scope.variables) else {
+            self.tell(
+                (name, &declared.value),
+                element,
+                at,
+                "it stands for nothing; it is passed over",
+            );
+            return set(name, None);
+        };
+        let value = value.trim();
+        if is_general(value) {
+            let words = general(name, &value.to_ascii_lowercase());
+            return set(name, words.map(Cow::into_owned));
+        }
+        let is_root = node.parent_element().is_none();
+        match name {
+            "font" => {
+                for (name, value) in style::font(value).unwrap_or_default() {
+                    set(name, Some(value));
+                }
+                return;
+            }
+            "transform" if is_root => {
+                let units = &scope.around.units;
+                let map = transform::parse(value, units, units.viewport);
+                return set(name, map.map(|map| transform::attribute(&map)));
+            }
+            "transform" | "translate" | "rotate" | "scale" | "transform-box" if !is_root => {
+                return later.transform(name, value);
+            }
+            "transform-origin" if !is_root => return later.transform(name, value),
+            "filter" => later.is_filtered = true,
+            "background-color" if is_root => {
+                let color = css::color_within(value, scope.around.color).map(css::Color::bytes);
+                if let Some([r, g, b, a]) = color.filter(|color| color[3] > 0) {
+                    set(name, Some(format!("#{r:02x}{g:02x}{b:02x}{a:02x}")));
+                } else if color.is_none() && value != "none" {
+                    self.tell(
+                        (name, value),
+                        element,
+                        at,
+                        "only colours are drawn behind a drawing; it is passed over",
+                    );
+                }
+                return;
+            }
+            "background-color" | "text-overflow" => return,
+            "text-transform" if Case::of(value).is_some() => return,
+            "text-transform" => {
+                return self.tell((name, value), element, at, "text is set as it is written");
+            }
+            "white-space" => {
+                let keeps =
+                    value.starts_with("pre") && value != "pre-line" || value == "break-spaces";
+                return set(
+                    "xml:space",
+                    Some(if keeps { "preserve" } else { "default" }.to_owned()),
+                );
+            }
+            "clip-path" => later.clip(value, at),
+            "mask" if !value.starts_with("url(") && value != "none" => {
+                return self.tell(
+                    (name, value),
+                    element,
+                    at,
+                    "only masks that are elements are drawn; it is passed over",
+                );
+            }
+            "width" | "height" if is_root && (value == "auto" || value.ends_with('%')) => {
+                // There is nothing around that it could be a part of.
+                return;
+            }
+            "width" | "height" if value == "auto" => return set(name, None),
+            _ => {}
+        }
+        self.check_links(node, name, value, at);
+        let mut words = Cow::Borrowed(value);
+        if let Some(kind) = Kind::of_style(name) {
+            match kind.words(name, value, &scope.around) {
+                Some(usable) => words = usable,
+                None => {
+                    self.tell(
+                        (name, value),
+                        element,
+                        at,
+                        &format!("{}; it is passed over", kind.wanted()),
+                    );
+                    return set(name, None);
+                }
+            }
+        }
+        let is_in_style = IN_STYLE.contains(&name)
+            || name == "image-rendering"
+                && matches!(&*words, "smooth" | "high-quality" | "crisp-edges" | "pixelated");
+        if is_in_style {
+            in_style.push_str(&format!("{name}:{words};"));
+            set(name, None);
+        } else {
+            set(name, Some(words.into_owned()));
+        }
+    }
+
+    /// Copies what `use` elements show where custom properties around them make it look otherwise than where it stands.
+    fn copy_shown(&mut self) -> Result<()> {
+        let mut left = MAX_COPIED;
+        for (node, scope) in std::mem::take(&mut self.uses) {
+            let link = node.attributes().find(|a| a.name() == "href");
+            let link = link.and_then(|link| link.value().trim().strip_prefix('#'));
+            let Some(shown) = link.and_then(|id| self.ids.get(id)).copied() else { continue };
+            let is_alike =
+                self.around.get(&shown.id()).is_none_or(|around| *around == scope.variables);
+            let is_varied = |node: Node<'_, '_>| self.varied.contains(&node.id());
+            if is_alike
+                || !shown.descendants().any(is_varied)
+                || node.ancestors().any(|above| above == shown)
+            {
+                continue;
+            }
+            let count = shown.descendants().count();
+            if count > left {
+                let what = "there is too much that custom properties change where it is shown";
+                self.told.push((node.range().start, what.to_owned()));
+                break;
+            }
+            left -= count;
+            let id = self.copy(shown, scope)?;
+            let all = self
+                .changes
+                .attributes
+                .entry(node.id())
+                .or_insert_with(|| attributes(node).collect());
+            all.retain(|(name, _)| name != "href" && name != "xlink:href");
+            all.push((Cow::Borrowed("href"), Cow::Owned(format!("#{id}"))));
+        }
+        Ok(())
+    }
+
+    /// Adds a copy of an element, as it is within a scope, to the definitions; gives its id.
+    fn copy(&mut self, shown: Node<'a, 'i>, scope: Scope) -> Result<String> {
+        let number = self.changes.definitions.len();
+        let id = (number..)
+            .map(|n| format!("shown-{n}"))
+            .find(|id| !self.ids.contains_key(id.as_str()))
+            .unwrap_or_default();
+        let own = std::mem::take(&mut self.changes);
+        let pending = std::mem::take(&mut self.pending);
+        let mut stack: Vec<(NodeId, Scope)> = Vec::new();
+        for node in shown.descendants().filter(Node::is_element) {
+            let parent = node.parent_element().map(|parent| parent.id());
+            while stack.last().is_some_and(|(id, _)| Some(*id) != parent) {
+                stack.pop();
+            }
+            let around = stack.last().map_or(scope, |(_, scope)| *scope);
+            stack.push((node.id(), self.element(node, around)?));
+            let all = self
+                .changes
+                .attributes
+                .entry(node.id())
+                .or_insert_with(|| attributes(node).collect());
+            all.retain(|(name, _)| name != "id");
+            if node == shown {
+                all.push((Cow::Borrowed("id"), Cow::Owned(id.clone())));
+            }
+        }
+        self.changes.definitions = own.definitions;
+        for pending in std::mem::replace(&mut self.pending, pending).into_iter().rev() {
+            pending.finish(&mut self.changes, &self.ids, &mut self.told);
+        }
+        let mut written = write::Written::default();
+        let definitions = std::mem::take(&mut self.changes.definitions);
+        write::element(shown, &self.changes, &mut written);
+        self.changes = Changes { definitions: definitions + &written.text, ..own };
+        Ok(id)
+    }
+
+    /// What was found.
+    fn finish(mut self) -> Result<Amended> {
+        self.copy_shown()?;
+        self.told.append(&mut self.styles.told);
+        for pending in std::mem::take(&mut self.pending).into_iter().rev() {
+            pending.finish(&mut self.changes, &self.ids, &mut self.told);
+        }
+        let place = |at: usize| {
+            let at = self.document.text_pos_at(at);
+            Place::Line(at.row.into(), at.col.into())
+        };
+        let mut seen = BTreeSet::new();
+        self.told.sort_by_key(|(at, _)| *at);
+        let told = self.told.iter().filter(|(_, message)| seen.insert(message.as_str()));
+        let warnings = told
+            .map(|(at, message)| Warning { place: place(*at), message: message.clone() })
+            .collect();
+        let is_new = self.styles.has_sheets || !self.changes.is_empty();
+        let written = is_new.then(|| write::document(self.document, &self.changes));
+        Ok(Amended { written, warnings, pictures: self.pictures })
+    }
+}
+
+/// Whether a value is one that all properties may have.
+fn is_general(value: &str) -> bool {
+    ["inherit", "initial", "unset", "revert", "revert-layer"]
+        .iter()
+        .any(|word| value.eq_ignore_ascii_case(word))
+}
+
+/// What such a value is as an attribute.
+fn general(name: &str, value: &str) -> Option<Cow<'static, str>> {
+    match (value.to_ascii_lowercase().as_str(), initial(name)) {
+        ("initial", Some(value)) => Some(Cow::Borrowed(value)),
+        // Of those that are not taken from around the parent's may be.
+        ("inherit", None) => Some(Cow::Borrowed("inherit")),
+        _ => None,
+    }
+}
