@@ -36,6 +36,7 @@ pub mod ply;
 pub mod png;
 mod polygon;
 mod sniff;
+mod sqlite;
 pub mod stl;
 pub mod svg;
 mod texels;
