@@ -1,11 +1,12 @@
 //! What must hold for any bytes, read as map data: the bodies of the fuzz targets `geojson`, `wkt`,
-//! `wkb`, `svg`, `shapefile`, `flatgeobuf`, `topojson`, `csv`, `kml` and `gpx`, which the tests call as well.
+//! `wkb`, `svg`, `shapefile`, `flatgeobuf`, `geopackage`, `topojson`, `csv`, `kml` and `gpx`, which the tests call as well.
 
 use super::words::text;
 use arbitrary::{Result, Unstructured};
+use durer::math::DVec2;
 use durer_formats::Resources;
 use durer_formats::geo::crs::{Crs, code_of_wkt};
-use durer_formats::geo::{Beside, Feature, GeoFormat, Reader, Writer};
+use durer_formats::geo::{Beside, Feature, GeoFormat, Geometry, Points, Reader, Writer};
 
 /// Whatever is read can be written, and reads back as the same.
 fn round_trip(format: GeoFormat, bytes: &[u8]) {
@@ -255,6 +256,17 @@ pub fn shapefile(bytes: &[u8]) {
 pub fn flatgeobuf(bytes: &[u8]) {
     settles(GeoFormat::FlatGeobuf, bytes);
     settles(GeoFormat::FlatGeobuf, &[b"fgb\x03fgb\0", bytes].concat());
+}
+
+/// GeoPackages: the bytes as a file, and as a geometry in one.
+pub fn geopackage(bytes: &[u8]) {
+    settles(GeoFormat::GeoPackage, bytes);
+    let point = Feature::of_geometry(Geometry::Point(Points::flat(vec![DVec2::ONE])));
+    let mut file = write(GeoFormat::GeoPackage, &[point]);
+    let geometry: &[u8] = b"GP\0\x01\xff\xff\xff\xff\x01\x01\0\0\0";
+    let at = file.windows(geometry.len()).position(|w| w == geometry).expect("the point");
+    file[at + 3..].iter_mut().zip(bytes.iter().take(26)).for_each(|(to, from)| *to = *from);
+    settles(GeoFormat::GeoPackage, &file);
 }
 
 const TOPOJSON: &[&str] = &[

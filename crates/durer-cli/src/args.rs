@@ -122,7 +122,7 @@ pub enum Command {
 /// The options of `durer info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Models, or map data: GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads a model
+    /// Models, or map data: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads a model
     /// from standard input
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub models: Vec<PathBuf>,

@@ -93,11 +93,12 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     for path in &args.models {
         let name = input::display_name(path);
         messages.progress.stage(|| format!("reading {name}"));
-        infos.push(if is_layer(path) {
-            Told::Layer(Box::new(layer::of_layer(path)?))
+        if is_layer(path) {
+            let layers = layer::of_layers(path)?;
+            infos.extend(layers.into_iter().map(|layer| Told::Layer(Box::new(layer))));
         } else {
-            Told::Model(Box::new(of_model(name, &input::read(path, &options)?)))
-        });
+            infos.push(Told::Model(Box::new(of_model(name, &input::read(path, &options)?))));
+        }
         messages.progress.advance();
     }
     drop(messages);

@@ -37,6 +37,7 @@ pub mod ply;
 pub mod png;
 mod polygon;
 mod sniff;
+mod sqlite;
 pub mod stl;
 pub mod svg;
 mod texels;

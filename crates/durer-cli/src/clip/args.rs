@@ -32,7 +32,7 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer clip`.
 #[derive(Debug, Args)]
 pub struct ClipArgs {
-    /// GeoJSON (also one feature per line), TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB or SVG, also
+    /// GeoJSON (also one feature per line), TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB or SVG, also
     /// compressed by gzip; `-` reads standard input
     #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
@@ -59,7 +59,7 @@ pub struct ClipArgs {
     /// The format of IN [default: by its content, then by its suffix]
     #[arg(long, value_name = "FORMAT", value_parser = format, help_heading = "Formats")]
     pub from: Option<GeoFormat>,
-    /// The layer of a TopoJSON with several [default: all, as one]
+    /// The layer of a TopoJSON or GeoPackage with several [default: all, as one]
     #[arg(long, value_name = "NAME", help_heading = "Formats")]
     pub layer: Option<String>,
     /// The format of OUT: geojson, geojsonl, geojsons, topojson, flatgeobuf, shapefile, csv, wkt, wkb, wkb-hex or svg

@@ -90,7 +90,7 @@ pub struct Layers(pub Vec<Layer>);
 #[command(next_help_heading = "Style of map layers")]
 #[allow(dead_code)]
 struct LayerArgs {
-    /// SVG; or layers of a map: GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB, also compressed by
+    /// SVG; or layers of a map: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB, also compressed by
     /// gzip; `-` reads standard input
     #[arg(required = true, value_name = "IN", value_hint = ValueHint::FilePath, help_heading = None)]
     input: Vec<PathBuf>,

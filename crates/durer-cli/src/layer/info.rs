@@ -1,12 +1,12 @@
 //! What `durer info` says of map data.
 
-use super::{open, words};
+use super::{Source, open, words};
 use crate::clip::is_valid;
 use crate::failure::Failure;
 use crate::input::display_name;
 use durer::math::Rect;
 use durer_formats::geo::crs::Crs;
-use durer_formats::geo::{Dimensions, Feature, FieldKind, Schema, System};
+use durer_formats::geo::{Dimensions, Feature, FieldKind, GeoFormat, Schema, System};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,6 +15,9 @@ use std::path::Path;
 #[derive(Debug, Serialize)]
 pub struct LayerInfo {
     layer: String,
+    /// Its name, of a file with several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
     format: &'static str,
     features: u64,
     /// Features by the name of their geometry; `none` of those that have none.
@@ -91,9 +94,31 @@ impl Counts {
     }
 }
 
-/// Reads a file and tells what is in it.
-pub fn of_layer(path: &Path) -> Result<LayerInfo, Failure> {
-    let (format, mut reader) = open(path, None, None)?;
+/// Reads a file and tells what is in it, of each layer.
+pub fn of_layers(path: &Path) -> Result<Vec<LayerInfo>, Failure> {
+    let (format, reader) = open(path, None, None)?;
+    let names = reader.layers();
+    if names.len() < 2 {
+        return Ok(vec![of_layer(path, format, reader, None)?]);
+    }
+    let mut infos = Vec::new();
+    for name in names {
+        let (format, one) = open(path, Some(format), Some(&name))?;
+        infos.push(of_layer(path, format, one, Some(name))?);
+    }
+    // What is no layer is told with the first one.
+    if let Some(first) = infos.first_mut() {
+        first.warnings.splice(0..0, reader.warnings().iter().map(ToString::to_string));
+    }
+    Ok(infos)
+}
+
+fn of_layer(
+    path: &Path,
+    format: GeoFormat,
+    mut reader: Source,
+    name: Option<String>,
+) -> Result<LayerInfo, Failure> {
     let mut counts = Counts::default();
     let fail =
         |e: durer_formats::Error| Failure::Data(format!("{}: {}", display_name(path), words(&e)));
@@ -110,6 +135,7 @@ pub fn of_layer(path: &Path) -> Result<LayerInfo, Failure> {
     }
     Ok(LayerInfo {
         layer: display_name(path),
+        name,
         format: format.name(),
         features: counts.features,
         geometries: counts.geometries,
@@ -151,6 +177,10 @@ const LONG: usize = 40;
 impl LayerInfo {
     /// A line for each fact; facts that are nothing are left out.
     pub fn text(&self) -> String {
+        let title = match &self.name {
+            Some(name) => format!("{}, layer {name}", self.layer),
+            None => self.layer.clone(),
+        };
         let mut lines =
             vec![("format", self.format.to_owned()), ("features", self.features.to_string())];
         let kinds = self.geometries.iter().map(|(kind, count)| format!("{count} {kind}"));
@@ -182,7 +212,7 @@ impl LayerInfo {
         lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
         let lines: Vec<String> =
             lines.iter().map(|(name, value)| format!("  {name:<11} {value}\n")).collect();
-        format!("{}\n{}", self.layer, lines.concat())
+        format!("{title}\n{}", lines.concat())
     }
 }
 

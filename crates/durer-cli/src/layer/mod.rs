@@ -7,7 +7,7 @@ mod sink;
 mod systems;
 
 pub use fields::{FieldArgs, Fields};
-pub use info::{LayerInfo, of_layer};
+pub use info::{LayerInfo, of_layers};
 pub use out::{finish, named_format, writer};
 pub use sink::{Sink, failure};
 pub use systems::{Shift, SystemArgs};

@@ -40,7 +40,12 @@ pub fn writer(
     members: &[Member],
     system: System,
 ) -> Result<Writer<Sink>, Failure> {
-    let mut writer = Writer::new(to, place(output, to)?);
+    let place = place(output, to)?;
+    let mut writer =
+        if place.is_seekable() { Writer::seekable(to, place) } else { Writer::new(to, place) };
+    if let Some(name) = output.file_stem().filter(|_| !is_stream(output)) {
+        writer.set_layer(&name.to_string_lossy());
+    }
     writer.head(members);
     writer.set_system(system);
     Ok(writer)

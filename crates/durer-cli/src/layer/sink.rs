@@ -6,7 +6,7 @@ use crate::input::is_stream;
 use crate::output::is_special;
 use durer_formats::Error;
 use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Takes bytes as they come.
@@ -41,6 +41,11 @@ impl Sink {
         };
         let out = out.map_err(|e| Failure::of_file(path, in_words(&e)))?;
         Ok(Self { out, name: path.to_owned() })
+    }
+
+    /// Whether what was written can be gone back to.
+    pub fn is_seekable(&self) -> bool {
+        matches!(self.out, Out::Beside(_))
     }
 
     /// Puts the file in its place.
@@ -79,5 +84,14 @@ impl Write for Sink {
 
     fn flush(&mut self) -> io::Result<()> {
         self.writer().flush()
+    }
+}
+
+impl Seek for Sink {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match &mut self.out {
+            Out::Beside(out) => out.seek(to),
+            _ => Err(io::ErrorKind::NotSeekable.into()),
+        }
     }
 }

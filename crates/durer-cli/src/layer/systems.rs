@@ -90,8 +90,19 @@ impl Shift {
         let (lost, system) = (self.lost, self.system.code);
         let name =
             system.map_or_else(|| "the new system".to_owned(), |code| format!("EPSG:{code}"));
-        (lost > 0).then(|| {
+        let lost = (lost > 0).then(|| {
             format!("{lost} features reach beyond where {name} shows anything; left out (--window cuts them before)")
-        })
+        });
+        let told: Vec<String> = lost.into_iter().chain(self.shifted()).collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+
+    /// How well coordinates are known, where they come from an older frame or go to one.
+    fn shifted(&self) -> Option<String> {
+        let way = self.common.as_ref().or_else(|| self.own.as_ref().map(|(_, way)| way))?;
+        let (datum, metres) = way.accuracy()?;
+        Some(format!(
+            "coordinates are shifted between datums by seven parameters: with {datum} they may be off by {metres} m"
+        ))
     }
 }

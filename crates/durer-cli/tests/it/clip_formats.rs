@@ -29,7 +29,7 @@ fn text(folder: &Folder, name: &str) -> String {
 #[test]
 fn files_are_converted_without_a_mask() {
     let folder = folder();
-    for name in ["o.fgb", "o.shp", "o.topojson", "o.csv", "o.geojsonl"] {
+    for name in ["o.fgb", "o.gpkg", "o.shp", "o.topojson", "o.csv", "o.geojsonl"] {
         assert_eq!(folder.must(&format!("clip areas.geojson -o {name}")).err, "", "{name}");
         folder.must(&format!("clip {name} -o back.wkt"));
         let back = text(&folder, "back.wkt").replace("SRID=4326;", "");
@@ -141,12 +141,61 @@ fn info_tells_fields_extent_system_and_validity() {
     assert!(said(&folder, "info cloud.csv").contains("points"), "points of a model");
 }
 
+/// Two layers, a table without geometries, a view and tiles.
+const LAYERS: &[u8] = include_bytes!("../../../../fuzz/seeds/geopackage/plain.gpkg");
+
+#[test]
+fn geopackages_are_read_by_layer_and_written_with_their_system() {
+    let folder = folder();
+    folder.write("map.gpkg", LAYERS);
+    let told = folder.must("info map.gpkg --json").json();
+    let of = |i: usize, key: &str| told[i][key].clone();
+    assert_eq!((of(0, "name"), of(1, "name")), ("Städte".into(), "lines".into()));
+    assert_eq!((of(0, "features"), of(1, "features")), (3.into(), 7.into()));
+    assert_eq!(told[0]["crs"]["code"], "EPSG:4326");
+    assert_eq!(told[1]["crs"]["code"], "EPSG:32632");
+    assert_eq!(told[0]["fields"][3]["kind"], "boolean");
+    assert!(told[0]["warnings"][0].as_str().is_some_and(|w| w.contains("it is a view")), "{told}");
+    assert!(said(&folder, "info map.gpkg").contains("map.gpkg, layer lines\n"));
+    folder
+        .run("clip map.gpkg -o o.geojson")
+        .fails(1, "different coordinate systems; --layer names one of Städte (EPSG:4326), lines");
+    folder.run("clip map.gpkg --layer seas -o o.geojson").fails(1, "it has Städte, lines, notes");
+    folder.must("clip map.gpkg --layer Städte -o o.geojson");
+    assert!(text(&folder, "o.geojson").contains("\"id\":3,"), "{}", text(&folder, "o.geojson"));
+    folder.write("map.gpkg-wal", b"x");
+    folder
+        .run("clip map.gpkg --layer lines -o o.wkt")
+        .fails(1, "map.gpkg-wal beside it holds changes");
+    folder.must("clip areas.geojson --to-crs EPSG:3857 -o new.gpkg");
+    let told = folder.must("info new.gpkg --json").json();
+    assert_eq!((&told["crs"]["code"], &told["features"]), (&"EPSG:3857".into(), &3.into()));
+    assert_eq!(told["fields"][1]["examples"], serde_json::json!([2.5, 10, 1]));
+    let piped = folder.must("clip areas.geojson --to geopackage -o -").out;
+    assert!(piped.starts_with(b"SQLite format 3\0"));
+    folder.write("piped.gpkg", piped);
+    assert_eq!(folder.must("info piped.gpkg --json").json()["extent"][2], 10.0);
+}
+
+#[test]
+fn older_datums_are_shifted_with_a_word_or_refused() {
+    let folder = folder();
+    folder.write("os.wkt", "POINT (366930.326448 400483.401903)");
+    let ended = folder.must("clip os.wkt --from-crs EPSG:27700 --to-crs EPSG:4326 -o o.csv");
+    assert!(ended.err.contains("with OSGB_1936 they may be off by 5 m"), "{}", ended.err);
+    // -2.5, 53.5, by the way back, which is right to a centimetre.
+    let told = text(&folder, "o.csv");
+    assert!(told.contains("POINT (-2.49999998") && told.contains(" 53.49999999"), "{told}");
+    folder
+        .run("clip os.wkt --from-crs EPSG:21781 --to-crs EPSG:4326 -o o.csv")
+        .fails(2, "is on the datum CH1903, and its shift to WGS 84 is not known here");
+}
+
 #[test]
 fn foreign_formats_are_named() {
     let folder = folder();
     folder.write("a.gpkg", b"SQLite format 3\0");
-    let told =
-        "a.gpkg: this is an SQLite database, such as GeoPackage or MBTiles; export it as GeoJSON";
+    let told = "a.gpkg: this is an SQLite database that is no GeoPackage, such as MBTiles or SpatiaLite; export it as GeoJSON";
     folder.run("clip a.gpkg --window 0,0,1,1 -o o.geojson").fails(1, told);
     folder.run("draw a.gpkg -o o.png").fails(1, told);
     folder.write("a.geojson", b"PK\x03\x04");

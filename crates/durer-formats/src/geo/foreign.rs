@@ -2,7 +2,11 @@
 
 /// Beginnings of formats, what they are, and what to do.
 const MAGIC: [(&[u8], &str, &str); 18] = [
-    (b"SQLite format 3\0", "an SQLite database, such as GeoPackage or MBTiles", EXPORT),
+    (
+        b"SQLite format 3\0",
+        "an SQLite database that is no GeoPackage, such as MBTiles or SpatiaLite",
+        EXPORT,
+    ),
     (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile, KMZ or XLSX", "unpack it first"),
     (b"PAR1", "Parquet, such as GeoParquet", EXPORT),
     (b"II*\0", "a TIFF picture, such as GeoTIFF", PIXELS),
@@ -22,7 +26,7 @@ const MAGIC: [(&[u8], &str, &str); 18] = [
     (b"ARROW1", "an Arrow file, such as GeoArrow", EXPORT),
 ];
 
-const EXPORT: &str = "export it as GeoJSON or FlatGeobuf";
+const EXPORT: &str = "export it as GeoJSON, GeoPackage or FlatGeobuf";
 const PIXELS: &str = "it holds pixels and no features";
 
 /// Roots of XML documents that hold something else.

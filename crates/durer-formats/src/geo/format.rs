@@ -1,6 +1,6 @@
 //! The formats of geodata, and how they are told apart.
 
-use super::{csv, flatgeobuf, foreign, markup, shapefile, topojson, wkb, wkt};
+use super::{csv, flatgeobuf, foreign, geopackage, markup, shapefile, topojson, wkb, wkt};
 
 /// A format of geodata.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -23,6 +23,8 @@ pub enum GeoFormat {
     Shapefile,
     /// FlatGeobuf.
     FlatGeobuf,
+    /// GeoPackage, a database of SQLite.
+    GeoPackage,
     /// TopoJSON.
     TopoJson,
     /// A table as text, with geometries as WKT, or as longitude and latitude.
@@ -35,7 +37,7 @@ pub enum GeoFormat {
 
 impl GeoFormat {
     /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::GeoJson,
         Self::GeoJsonSeq,
         Self::GeoJsonRs,
@@ -45,6 +47,7 @@ impl GeoFormat {
         Self::Svg,
         Self::Shapefile,
         Self::FlatGeobuf,
+        Self::GeoPackage,
         Self::TopoJson,
         Self::Csv,
         Self::Kml,
@@ -52,7 +55,7 @@ impl GeoFormat {
     ];
 
     /// What is read, for messages.
-    pub const READ: &'static str = "GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, KML, GPX, WKT, WKB and SVG, also compressed by gzip";
+    pub const READ: &'static str = "GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB and SVG, also compressed by gzip";
 
     /// The name used on the command line.
     pub fn name(self) -> &'static str {
@@ -66,6 +69,7 @@ impl GeoFormat {
             Self::Svg => "svg",
             Self::Shapefile => "shapefile",
             Self::FlatGeobuf => "flatgeobuf",
+            Self::GeoPackage => "geopackage",
             Self::TopoJson => "topojson",
             Self::Csv => "csv",
             Self::Kml => "kml",
@@ -85,6 +89,7 @@ impl GeoFormat {
             Self::Svg => &["svg"],
             Self::Shapefile => &["shp"],
             Self::FlatGeobuf => &["fgb"],
+            Self::GeoPackage => &["gpkg"],
             Self::TopoJson => &["topojson"],
             Self::Csv => &["csv", "tsv"],
             Self::Kml => &["kml"],
@@ -102,6 +107,11 @@ impl GeoFormat {
         self.is_geojson() || matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
     }
 
+    /// Whether its files may have several layers.
+    pub fn has_layers(self) -> bool {
+        matches!(self, Self::TopoJson | Self::GeoPackage)
+    }
+
     /// Whether it is written, and not only read.
     pub fn is_written(self) -> bool {
         !matches!(self, Self::Kml | Self::Gpx)
@@ -114,7 +124,7 @@ impl GeoFormat {
 
     /// Whether its files are bytes that are no text.
     pub fn is_binary(self) -> bool {
-        matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf)
+        matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf | Self::GeoPackage)
     }
 
     /// Whether its coordinates are longitude and latitude on WGS 84 where nothing else is said.
@@ -124,13 +134,15 @@ impl GeoFormat {
 
     /// Whether it has a place for the number of the coordinate system.
     pub fn tells_system(self) -> bool {
-        matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex | Self::Shapefile | Self::FlatGeobuf)
+        matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
+            || matches!(self, Self::Shapefile | Self::FlatGeobuf | Self::GeoPackage)
     }
 
     /// The format that the first bytes of a file speak for, if they do.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
+            _ if geopackage::sniff(bytes) => Some(Self::GeoPackage),
             _ if foreign::of_content(bytes).is_some() => None,
             _ if shapefile::sniff(bytes) => Some(Self::Shapefile),
             _ if flatgeobuf::sniff(bytes) => Some(Self::FlatGeobuf),

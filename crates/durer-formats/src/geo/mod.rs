@@ -1,5 +1,5 @@
-//! Geodata: features in GeoJSON, TopoJSON, FlatGeobuf, Shapefile, CSV, WKT, WKB and SVG, read and written one at
-//! a time; and in KML and GPX, read.
+//! Geodata: features in GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, WKT, WKB and SVG, read and written
+//! one at a time; and in KML and GPX, read.
 //!
 //! [`Reader`] takes bytes and gives features; [`Writer`] takes features and gives bytes. GeoJSON is
 //! read and written as a stream, a feature at a time, whichever way it is laid out (a
@@ -27,6 +27,7 @@ mod flatgeobuf;
 mod foreign;
 mod format;
 mod geojson;
+mod geopackage;
 mod gpx;
 mod gzip;
 mod kml;

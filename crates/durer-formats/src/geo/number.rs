@@ -12,6 +12,13 @@ pub fn write(out: &mut impl Write, value: f64) -> io::Result<()> {
     }
 }
 
+/// The number in JSON; `null` where it is not finite.
+pub fn json(value: f64) -> String {
+    let mut text = Vec::new();
+    let written = write(&mut text, value).is_ok() && value.is_finite();
+    String::from_utf8(text).ok().filter(|_| written).unwrap_or_else(|| "null".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,10 +1,11 @@
 //! Features from bytes in any format.
 
 use super::{
-    Feature, GeoFormat, Member, System, Warnings, csv, flatgeobuf, geojson, gpx, kml, shapefile,
-    svg_shapes, topojson, wkb, wkt,
+    Feature, GeoFormat, Member, System, Warnings, csv, flatgeobuf, geojson, geopackage, gpx, kml,
+    shapefile, svg_shapes, topojson, wkb, wkt,
 };
 use crate::{Error, NoResources, Place, Resources, Result, Warning};
+use durer::math::Rect;
 use std::io::Read;
 
 /// Files that are held whole may have so many bytes.
@@ -56,6 +57,7 @@ enum Source<R> {
     Svg(svg_shapes::Reader),
     Shapefile(shapefile::Reader),
     FlatGeobuf(flatgeobuf::Reader),
+    GeoPackage(geopackage::Reader),
     Csv(csv::Reader),
     /// Features that have been read.
     Held(std::vec::IntoIter<Feature>),
@@ -97,6 +99,11 @@ impl<R: Read> Reader<R> {
                 system = reader.system.clone();
                 Source::FlatGeobuf(reader)
             }
+            GeoFormat::GeoPackage => {
+                let reader = geopackage::Reader::new(whole(source)?, beside, &mut warnings)?;
+                system = reader.system();
+                Source::GeoPackage(reader)
+            }
             GeoFormat::Csv => Source::Csv(csv::Reader::new(text(source)?)?),
             GeoFormat::TopoJson => {
                 let (features, further) =
@@ -107,7 +114,7 @@ impl<R: Read> Reader<R> {
             GeoFormat::Kml => Source::Held(kml::read(&markup(source)?, &mut warnings)?.into_iter()),
             GeoFormat::Gpx => Source::Held(gpx::read(&markup(source)?, &mut warnings)?.into_iter()),
         };
-        if beside.layer.is_some() && format != GeoFormat::TopoJson {
+        if beside.layer.is_some() && !format.has_layers() {
             let message = format!("{format} has one layer; --layer does nothing");
             warnings.push(Place::Whole, message);
         }
@@ -119,6 +126,14 @@ impl<R: Read> Reader<R> {
     pub fn system(&self) -> System {
         let told = super::system::of_members(self.members());
         told.unwrap_or_else(|| self.system.clone())
+    }
+
+    /// Lets features be passed over whose boxes do not meet a window, in the coordinates of the file, where the file has
+    /// an index of places; before the first feature. Features are given that lie outside all the same where it has none.
+    pub fn choose(&mut self, window: &Rect) {
+        if let Source::FlatGeobuf(reader) = &mut self.source {
+            reader.choose(window);
+        }
     }
 
     /// The next feature; `None` at the end. After an error there is nothing more to be had.
@@ -160,8 +175,17 @@ impl<R: Read> Reader<R> {
             Source::Svg(reader) => reader.next_feature(&mut self.warnings),
             Source::Shapefile(reader) => reader.next_feature(&mut self.warnings),
             Source::FlatGeobuf(reader) => reader.next_feature(&mut self.warnings),
+            Source::GeoPackage(reader) => reader.next_feature(&mut self.warnings),
             Source::Csv(reader) => reader.next_feature(&mut self.warnings),
             Source::Held(features) => Ok(features.next()),
+        }
+    }
+
+    /// The names of the layers that are read, of a GeoPackage; none of other formats.
+    pub fn layers(&self) -> Vec<String> {
+        match &self.source {
+            Source::GeoPackage(reader) => reader.layers(),
+            _ => Vec::new(),
         }
     }
 

@@ -2,16 +2,17 @@
 
 use super::members::object;
 use super::{
-    Feature, GeoFormat, Member, System, csv, flatgeobuf, geojson, shapefile, svg, topojson, wkb,
-    wkt,
+    Feature, GeoFormat, Member, System, csv, flatgeobuf, geojson, geopackage, shapefile, svg,
+    topojson, wkb, wkt,
 };
 use crate::{Error, Place, Result, Warning};
-use std::io::Write;
+use std::io::{self, Seek, SeekFrom, Write};
 
 /// Writes features one after the other.
 ///
-/// GeoJSON, WKT and WKB are written as features come, the others at the end. WKT and WKB keep geometry and SRID only;
-/// SVG keeps ids too. CSV, FlatGeobuf and Shapefile keep an id as the field `id`, where there is no other of that name.
+/// GeoJSON, WKT and WKB are written as features come, and GeoPackages by [`Writer::seekable`]; the others at the end. WKT
+/// and WKB keep geometry and SRID only; SVG keeps ids too. CSV, FlatGeobuf and Shapefile keep an id as the field `id`,
+/// where there is no other of that name; so do GeoPackages ids that are no whole numbers which grow.
 pub struct Writer<W> {
     format: GeoFormat,
     out: W,
@@ -21,7 +22,14 @@ pub struct Writer<W> {
     held: Vec<Feature>,
     line: Vec<u8>,
     system: System,
+    layer: String,
+    package: Option<Box<geopackage::Writer>>,
+    /// Writes over the first bytes, where the target can.
+    rewrite: Option<Rewrite<W>>,
 }
+
+/// What writes bytes over the first ones of a target and goes to its end.
+type Rewrite<W> = fn(&mut W, &[u8]) -> io::Result<()>;
 
 /// What a writer gives back at its end.
 #[derive(Debug)]
@@ -34,11 +42,56 @@ pub struct Finished<W> {
     pub warnings: Vec<Warning>,
 }
 
+impl<W: Write + Seek> Writer<W> {
+    /// A writer of a format to a target that is empty and can be gone back in, so that a GeoPackage is written as its
+    /// features come. Nothing is written yet.
+    pub fn seekable(format: GeoFormat, out: W) -> Self {
+        let rewrite: Rewrite<W> = |out, bytes| {
+            out.seek(SeekFrom::Start(0))?;
+            out.write_all(bytes)?;
+            out.seek(SeekFrom::End(0)).map(drop)
+        };
+        Self { rewrite: Some(rewrite), ..Self::new(format, out) }
+    }
+}
+
 impl<W: Write> Writer<W> {
     /// A writer of a format. Nothing is written yet.
     pub fn new(format: GeoFormat, out: W) -> Self {
-        let (members, held, line, system) = Default::default();
-        Self { format, out, members, count: 0, held, line, system }
+        let (members, held, line, system, package) = Default::default();
+        let (layer, rewrite) = ("layer".to_owned(), None);
+        Self { format, out, members, count: 0, held, line, system, layer, package, rewrite }
+    }
+
+    /// Says what the layer is called, for GeoPackages; before the end.
+    pub fn set_layer(&mut self, name: &str) {
+        name.clone_into(&mut self.layer);
+    }
+
+    fn package(&mut self) -> &mut geopackage::Writer {
+        self.package.get_or_insert_with(|| {
+            let mut package = geopackage::Writer::new();
+            package.set_system(self.system.clone());
+            Box::new(package)
+        })
+    }
+
+    /// Ends a GeoPackage.
+    fn finish_package(&mut self) -> Result<Vec<Warning>> {
+        self.package();
+        let Some(package) = self.package.take() else { return Ok(Vec::new()) };
+        let (first, mut rest, warnings) = package.finish(&self.layer)?;
+        match self.rewrite {
+            Some(rewrite) => {
+                self.out.write_all(&rest)?;
+                rewrite(&mut self.out, &first)?;
+            }
+            None => {
+                rest.iter_mut().zip(&first).for_each(|(to, from)| *to = *from);
+                self.out.write_all(&rest)?;
+            }
+        }
+        Ok(warnings)
     }
 
     /// Says which coordinate system all coordinates are in, for formats that tell it; before the first feature.
@@ -56,7 +109,7 @@ impl<W: Write> Writer<W> {
     /// Writes a feature. WKT and WKB leave out those without geometry.
     ///
     /// # Errors
-    /// [`crate::Error::Io`].
+    /// [`crate::Error::Io`]; [`crate::Error::Unsupported`] where a GeoPackage would have more than 1998 fields.
     pub fn write(&mut self, feature: &Feature) -> Result<()> {
         self.line.clear();
         match self.format {
@@ -85,6 +138,12 @@ impl<W: Write> Writer<W> {
             GeoFormat::Svg | GeoFormat::TopoJson => self.held.push(feature.clone()),
             GeoFormat::Shapefile | GeoFormat::FlatGeobuf | GeoFormat::Csv => {
                 self.held.push(with_id(feature));
+            }
+            GeoFormat::GeoPackage => {
+                self.package().add(feature)?;
+                if self.rewrite.is_some() {
+                    self.line = self.package().take();
+                }
             }
             GeoFormat::Kml | GeoFormat::Gpx => return Err(unwritten(self.format)),
         }
@@ -130,6 +189,7 @@ impl<W: Write> Writer<W> {
             GeoFormat::TopoJson => topojson::write(&mut self.out, &self.held, members)?,
             GeoFormat::Csv => csv::write(&mut self.out, &self.held)?,
             GeoFormat::FlatGeobuf => flatgeobuf::write(&mut self.out, &self.held, &self.system)?,
+            GeoFormat::GeoPackage => warnings = self.finish_package()?,
             GeoFormat::Shapefile => {
                 let whole = shapefile::write(&self.held, &self.system)?;
                 self.out.write_all(&whole.0)?;
@@ -144,7 +204,7 @@ impl<W: Write> Writer<W> {
 }
 
 /// The feature with its id among its fields.
-fn with_id(feature: &Feature) -> Feature {
+pub(super) fn with_id(feature: &Feature) -> Feature {
     let mut feature = feature.clone();
     let mut fields = feature.fields();
     if let Some(id) = feature.id.take()

@@ -1,18 +1,19 @@
 //! MBTiles 1.3: <https://github.com/mapbox/mbtiles-spec/blob/master/1.3/spec.md>, a database of SQLite.
 
 use super::archive::Metadata;
-use super::sqlite::{Cell, Database, Table, index, record};
 use crate::Result;
+use crate::sqlite::{NewDatabase as Database, NewTable as Table, Value, index, record};
 use durer::clip::tiles::Tile;
 use serde_json::json;
-use std::io::{Seek, Write};
+use std::io::{Seek, SeekFrom, Write};
 
 /// "MPBX", which the specification asks for.
 const APPLICATION: u32 = 0x4d50_4258;
 
 /// Writes tiles.
 pub struct MbTiles<W> {
-    database: Database<W>,
+    out: W,
+    database: Database,
     tiles: Table,
     /// Level, column and row of each tile, in the order of the rows.
     places: Vec<(u8, u32, u32)>,
@@ -24,7 +25,7 @@ impl<W: Write + Seek> MbTiles<W> {
     /// # Errors
     /// [`crate::Error::Io`].
     pub fn new(out: W) -> Result<Self> {
-        Ok(Self { database: Database::new(out)?, tiles: Table::new(), places: Vec::new() })
+        Ok(Self { out, database: Database::new(), tiles: Table::new(), places: Vec::new() })
     }
 
     /// Adds a tile, compressed by [`gzip`](super::gzip()).
@@ -35,10 +36,10 @@ impl<W: Write + Seek> MbTiles<W> {
         // Rows count to the north.
         let row = (1u32 << tile.zoom) - 1 - tile.y;
         let place = (tile.zoom, tile.x, row);
-        let values = cells(place).into_iter().chain([Cell::Blob(bytes)]).collect::<Vec<_>>();
+        let values = cells(place).into_iter().chain([Value::Blob(bytes)]).collect::<Vec<_>>();
         self.tiles.add(&mut self.database, &values)?;
         self.places.push(place);
-        Ok(())
+        Ok(self.out.write_all(&self.database.take())?)
     }
 
     /// Writes what the tiles need to be found, and gives the target back.
@@ -46,18 +47,18 @@ impl<W: Write + Seek> MbTiles<W> {
     /// # Errors
     /// As [`MbTiles::add`].
     pub fn finish(self, metadata: &Metadata) -> Result<W> {
-        let Self { mut database, tiles, places } = self;
+        let Self { mut out, mut database, tiles, places } = self;
         let root = tiles.finish(&mut database)?;
         let mut sorted: Vec<_> = places.into_iter().zip(1i64..).collect();
         sorted.sort_unstable();
         let entry = |(place, row)| {
-            record(&cells(place).into_iter().chain([Cell::Integer(row)]).collect::<Vec<_>>())
+            record(&cells(place).into_iter().chain([Value::Integer(row)]).collect::<Vec<_>>())
         };
         let entries: Vec<Vec<u8>> = sorted.into_iter().map(entry).collect();
         let index_root = index(&mut database, &entries)?;
         let mut about = Table::new();
         for (name, value) in rows(metadata) {
-            about.add(&mut database, &[Cell::Text(name), Cell::Text(&value)])?;
+            about.add(&mut database, &[Value::from(name), Value::from(&value[..])])?;
         }
         let about = about.finish(&mut database)?;
         let sql = "CREATE TABLE metadata (name text, value text)";
@@ -66,12 +67,18 @@ impl<W: Write + Seek> MbTiles<W> {
         database.name("table", "tiles", "tiles", root, sql);
         let sql = "CREATE UNIQUE INDEX tile_index on tiles (zoom_level, tile_column, tile_row)";
         database.name("index", "tile_index", "tiles", index_root, sql);
-        database.finish(APPLICATION)
+        let (first, rest) = database.finish(APPLICATION, 0)?;
+        out.write_all(&rest)?;
+        out.seek(SeekFrom::Start(0))?;
+        out.write_all(&first)?;
+        out.seek(SeekFrom::End(0))?;
+        out.flush()?;
+        Ok(out)
     }
 }
 
-fn cells((zoom, x, y): (u8, u32, u32)) -> [Cell<'static>; 3] {
-    [zoom.into(), x.into(), y.into()].map(Cell::Integer)
+fn cells((zoom, x, y): (u8, u32, u32)) -> [Value<'static>; 3] {
+    [zoom.into(), x.into(), y.into()].map(Value::Integer)
 }
 
 /// The table `metadata`.

@@ -9,7 +9,6 @@ mod mbtiles;
 mod mvt;
 mod pmtiles;
 mod protobuf;
-mod sqlite;
 
 pub use archive::{Field, LayerInfo, Metadata};
 pub use gzip::gzip;

@@ -126,12 +126,69 @@ fn systems_are_known_by_many_names() {
     ] {
         assert_eq!(Crs::parse(text).map(|crs| crs.code()), Ok(Some(code)), "{text}");
     }
-    for text in ["EPSG:27700", "", "mars", "GEOGCS[\"x\"]"] {
+    for text in ["EPSG:21781", "", "mars", "GEOGCS[\"x\"]"] {
         assert!(Crs::parse(text).is_err(), "{text}");
     }
-    let datum = "GEOGCS[\"OSGB 1936\",DATUM[\"OSGB_1936\",SPHEROID[\"Airy 1830\",6377563.396,299.3249646]],\
-                 PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]";
-    assert!(Crs::parse(datum).is_err_and(|e| e.contains("OSGB_1936")), "{:?}", Crs::parse(datum));
+}
+
+/// Places on older frames: as in `FIGURES`, by the parameters that PROJ takes too. Longitudes and latitudes have eleven decimals.
+const SHIFTED: &[(i32, f64, f64, f64, f64)] = &[
+    (27700, -2.5, 53.5, 366930.326448, 400483.401903),
+    (4277, 0.1, 51.5, 0.10163207919, 51.49948507059),
+    (31467, 9.2, 48.8, 3514768.524742, 5406965.390660),
+    (4314, 13.0, 52.5, 13.00168025734, 52.50140851987),
+    (23030, -3.7, 40.4, 440699.788324, 4472596.462481),
+    (31370, 4.35, 50.85, 148679.447378, 171066.810330),
+    (31287, 13.0, 47.8, 375093.943348, 433455.973524),
+    (31256, 16.37, 48.2, 2814.771436, 340177.440779),
+];
+
+#[test]
+fn older_frames_are_shifted_as_proj_does() {
+    for &(code, lon, lat, x, y) in SHIFTED {
+        let (given, expected) = (DVec2::new(lon, lat), DVec2::new(x, y));
+        let there = transform(4326, code).apply(given).expect("a place");
+        let most =
+            if Crs::of_code(code).is_some_and(|crs| crs.is_geographic()) { 2e-11 } else { 2e-6 };
+        assert!((there - expected).length() < most, "{code}: {there}");
+        // The way back leaves out products of angles: less than a centimetre.
+        let back = transform(code, 4326).apply(expected).expect("a place");
+        assert!((back - given).length() < 1e-7, "{code}: {back}");
+    }
+    let (name, metres) = transform(27700, 3857).accuracy().expect("a shift");
+    assert_eq!((name, metres), ("OSGB_1936", 5.0));
+    assert_eq!(transform(4326, 4258).accuracy(), None);
+    assert_eq!(transform(31467, 4314).accuracy(), None);
+    assert!(!transform(4326, 4277).is_identity());
+    let west = transform(4326, 4277).apply(DVec2::new(-182.0, 50.0)).expect("a place");
+    assert!((west.x + 182.0).abs() < 0.01);
+}
+
+#[test]
+fn frames_that_need_grids_are_refused_by_name() {
+    for (code, name) in
+        [(4267, "NAD27"), (21781, "CH1903"), (28992, "Amersfoort"), (26715, "NAD27")]
+    {
+        let told = Crs::parse(&format!("EPSG:{code}")).expect_err("refused");
+        assert!(told.contains(&format!("is on the datum {name}, and its shift")), "{told}");
+    }
+    let definition = |datum: &str, more: &str| {
+        format!(
+            "GEOGCS[\"x\",DATUM[\"{datum}\",SPHEROID[\"y\",6377563.396,299.3249646]{more}],\
+             PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]"
+        )
+    };
+    for datum in ["North_American_1927", "MGI_1901", "European_1950_ED77", "D_CH1903"] {
+        let told = Crs::parse(&definition(datum, "")).expect_err("refused");
+        assert!(told.contains(&format!("how its datum {datum} lies is not known")), "{told}");
+    }
+    let shifted = definition("WGS_1984", ",TOWGS84[1,2,3,0,0,0,0]");
+    assert!(Crs::parse(&shifted).is_err_and(|e| e.contains("WGS_1984")));
+    for more in ["", ",TOWGS84[446.448,-125.157,542.06,0.15,0.247,0.842,-20.489]"] {
+        let crs = Crs::parse(&definition("OSGB_1936", more)).expect("known");
+        assert_eq!(code_of_wkt(&definition("OSGB_1936", more)), Some(4277));
+        assert!(Transform::new(&crs, &Crs::of_code(4326).expect("known")).accuracy().is_some());
+    }
 }
 
 #[test]

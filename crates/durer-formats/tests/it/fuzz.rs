@@ -20,13 +20,14 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 29] = [
+const TARGETS: [(&str, Body); 30] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
     ("svg", geo::svg),
     ("shapefile", geo::shapefile),
     ("flatgeobuf", geo::flatgeobuf),
+    ("geopackage", geo::geopackage),
     ("topojson", geo::topojson),
     ("csv", geo::csv),
     ("kml", geo::kml),

@@ -1,5 +1,6 @@
 //! CSV, TopoJSON, FlatGeobuf, KML and GPX: read, and written where they are written.
 
+use durer::math::{DVec2, Rect};
 use durer_formats::NoResources;
 use durer_formats::geo::{
     Beside, Dimensions, Feature, FieldKind, GeoFormat, Geometry, Member, Reader, Schema, System,
@@ -40,10 +41,16 @@ const ALL_KINDS: &str = r#"{"type":"FeatureCollection","features":[
 #[test]
 fn features_of_every_kind_go_through_formats_with_fields() {
     let (features, _) = read(ALL_KINDS.as_bytes(), "a.geojson");
-    for format in [GeoFormat::Csv, GeoFormat::TopoJson, GeoFormat::FlatGeobuf] {
+    let formats =
+        [GeoFormat::Csv, GeoFormat::TopoJson, GeoFormat::FlatGeobuf, GeoFormat::GeoPackage];
+    for format in formats {
         let bytes = write(format, &features);
         assert_eq!(GeoFormat::of_content(&bytes), Some(format));
-        let (again, warnings) = read(&bytes, "");
+        let (mut again, warnings) = read(&bytes, "");
+        if format == GeoFormat::FlatGeobuf {
+            // Its index has an order of its own.
+            again.sort_by_key(|f| features.iter().position(|g| g.geometry == f.geometry));
+        }
         assert_eq!((wkt(&again), warnings), (wkt(&features), Vec::new()), "{format}");
         assert_eq!(write(format, &again), bytes, "{format}: written again");
         let field = |i: usize, key: &str| {
@@ -190,6 +197,35 @@ fn flatgeobuf_keeps_dimensions_and_the_coordinate_system() {
     assert!(error(&bytes[..60], "").contains("ends within its header"));
 }
 
+#[test]
+fn flatgeobuf_is_indexed_and_read_by_it() {
+    let points: String = (0..400).map(|i| format!("POINT ({} {})\n", i % 20, i / 20)).collect();
+    let (mut features, _) = read(format!("{points}POINT EMPTY").as_bytes(), "a.wkt");
+    features.push(Feature::default());
+    let bytes = write(GeoFormat::FlatGeobuf, &features);
+    let (all, warnings) = read(&bytes, "");
+    assert_eq!((all.len(), warnings.len()), (402, 0));
+    assert_eq!(write(GeoFormat::FlatGeobuf, &all), bytes);
+    let window = Rect::around([DVec2::new(2.5, 3.0), DVec2::new(5.0, 4.5)]).expect("a window");
+    let mut reader = Reader::new(GeoFormat::FlatGeobuf, &bytes[..]).expect("a reader");
+    reader.choose(&window);
+    let mut found = Vec::new();
+    while let Some(feature) = reader.next_feature().expect("read") {
+        found.push(feature);
+    }
+    let text = wkt(&found);
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines.sort_unstable();
+    assert_eq!(
+        lines,
+        ["POINT (3 3)", "POINT (3 4)", "POINT (4 3)", "POINT (4 4)", "POINT (5 3)", "POINT (5 4)"]
+    );
+    // None without features, and a root above one.
+    assert_eq!(read(&write(GeoFormat::FlatGeobuf, &[]), "").0, []);
+    let (one, _) = read(&write(GeoFormat::FlatGeobuf, &features[..1]), "");
+    assert_eq!(one.len(), 1);
+}
+
 const KML: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <kml xmlns="http://www.opengis.net/kml/2.2" xmlns:gx="http://www.google.com/kml/ext/2.2"><Document><Folder>
 <Placemark id="a"><name>A &amp; B</name><description><![CDATA[<b>x</b>]]></description>
@@ -291,7 +327,7 @@ fn fields_have_kinds_and_examples() {
 #[test]
 fn foreign_formats_are_named() {
     for (bytes, told) in [
-        (&b"SQLite format 3\0rest"[..], "an SQLite database, such as GeoPackage"),
+        (&b"SQLite format 3\0rest"[..], "an SQLite database that is no GeoPackage"),
         (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile"),
         (b"II*\0", "GeoTIFF"),
         (b"PAR1", "GeoParquet"),
@@ -301,7 +337,7 @@ fn foreign_formats_are_named() {
         (b"what", "not a known format"),
     ] {
         let message = error(bytes, "a.bin");
-        assert!(message.contains(told) && message.contains("FlatGeobuf, Shapefile"), "{message}");
+        assert!(message.contains(told) && message.contains("GeoPackage, Shapefile"), "{message}");
     }
     // A name does not make it what it is not.
     assert!(error(b"PK\x03\x04", "").contains("ZIP"));

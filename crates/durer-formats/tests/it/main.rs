@@ -14,6 +14,7 @@ mod fuzz;
 mod geo;
 mod geo_curves;
 mod geo_formats;
+mod geo_package;
 mod geo_shapefile;
 mod gltf;
 mod gltf_extensions;

@@ -8,7 +8,7 @@ use durer::math::DVec2;
 /// What is known, for messages.
 pub const KNOWN: &str = "known are EPSG:4326 and other longitudes and latitudes close to it (4258, 4269, 4171 …), \
 3857, UTM (326zz, 327zz, 258zz, 269zz …), 2154, 3942 to 3950, 3034, 3035, 3395, 5070, 3031, 3413, 3995, 2193, 3006, 3067, \
-2180, 3577, 3978 and more; robinson, equal-earth, mercator; and definitions as well-known text of such projections";
+2180, 3577, 3978 and more; on older frames 27700, 31466 to 31469, 230zz, 31370, 31254 to 31256 and 31284 to 31287; robinson, equal-earth, mercator; and definitions as well-known text of such projections";
 
 /// Names on the command line, in capitals.
 const NAMES: [(&str, i32); 10] = [
@@ -35,12 +35,15 @@ const ETRS89: i32 = 4258;
 const NAD83: i32 = 4269;
 const RGF93: i32 = 4171;
 const GDA94: i32 = 4283;
+const OSGB36: i32 = 4277;
+const DHDN: i32 = 4314;
+const MGI: i32 = 4312;
 
 /// A conic projection: its number, that of longitudes and latitudes, name, origin, parallels and offset.
 type Conic = (i32, i32, &'static str, [f64; 2], [f64; 2], [f64; 2]);
 
 /// Lambert's conformal conic.
-const CONFORMAL: [Conic; 5] = [
+const CONFORMAL: [Conic; 7] = [
     (2154, RGF93, "RGF_1993_Lambert_93", [3.0, 46.5], [49.0, 44.0], [700_000.0, 6_600_000.0]),
     (3034, ETRS89, "ETRS_1989_LCC", [10.0, 52.0], [35.0, 65.0], [4_000_000.0, 2_800_000.0]),
     (
@@ -60,6 +63,15 @@ const CONFORMAL: [Conic; 5] = [
         [-18.0, -36.0],
         [0.0, 0.0],
     ),
+    (31287, MGI, "MGI_Austria_Lambert", [13.0 + 1.0 / 3.0, 47.5], [49.0, 46.0], [4e5, 4e5]),
+    (
+        31370,
+        4313,
+        "Belge_Lambert_1972",
+        [4.367_486_666_666_666, 90.0],
+        [51.166_667_233_333_33, 49.833_333_9],
+        [150_000.013, 5_400_088.438],
+    ),
 ];
 
 /// Albers' conic.
@@ -73,7 +85,7 @@ const ALBERS: [Conic; 3] = [
 type Cylinder = (i32, i32, &'static str, f64, f64, [f64; 2]);
 
 /// Transverse Mercator.
-const TRANSVERSE: [Cylinder; 4] = [
+const TRANSVERSE: [Cylinder; 14] = [
     (
         2193,
         4167,
@@ -85,6 +97,16 @@ const TRANSVERSE: [Cylinder; 4] = [
     (3006, 4619, "SWEREF99_TM", 15.0, 0.9996, [500_000.0, 0.0]),
     (3067, ETRS89, "ETRS_1989_TM35FIN", 27.0, 0.9996, [500_000.0, 0.0]),
     (2180, 9702, "ETRF2000-PL_CS92", 19.0, 0.9993, [500_000.0, -5_300_000.0]),
+    (31466, DHDN, "DHDN_3_Degree_Gauss_Zone_2", 6.0, 1.0, [2_500_000.0, 0.0]),
+    (31467, DHDN, "DHDN_3_Degree_Gauss_Zone_3", 9.0, 1.0, [3_500_000.0, 0.0]),
+    (31468, DHDN, "DHDN_3_Degree_Gauss_Zone_4", 12.0, 1.0, [4_500_000.0, 0.0]),
+    (31469, DHDN, "DHDN_3_Degree_Gauss_Zone_5", 15.0, 1.0, [5_500_000.0, 0.0]),
+    (31254, MGI, "MGI_Austria_GK_West", 10.0 + 1.0 / 3.0, 1.0, [0.0, -5e6]),
+    (31255, MGI, "MGI_Austria_GK_Central", 13.0 + 1.0 / 3.0, 1.0, [0.0, -5e6]),
+    (31256, MGI, "MGI_Austria_GK_East", 16.0 + 1.0 / 3.0, 1.0, [0.0, -5e6]),
+    (31284, MGI, "MGI_Austria_GK_M28", 10.0 + 1.0 / 3.0, 1.0, [150_000.0, 0.0]),
+    (31285, MGI, "MGI_Austria_GK_M31", 13.0 + 1.0 / 3.0, 1.0, [450_000.0, 0.0]),
+    (31286, MGI, "MGI_Austria_GK_M34", 16.0 + 1.0 / 3.0, 1.0, [750_000.0, 0.0]),
 ];
 
 /// A plane: its number, that of longitudes and latitudes, name, origin and offset.
@@ -113,11 +135,12 @@ const POLAR: [(i32, &str, f64, f64); 4] = [
 
 /// UTM: the number of zone 0, the first and last zone, whether it is the southern half, longitudes and latitudes,
 /// and the name.
-const UTM: [(i32, i32, i32, bool, i32, &str); 7] = [
+const UTM: [(i32, i32, i32, bool, i32, &str); 8] = [
     (32600, 1, 60, false, WGS84, "WGS_1984_UTM_Zone_"),
     (32700, 1, 60, true, WGS84, "WGS_1984_UTM_Zone_"),
     (25800, 28, 38, false, ETRS89, "ETRS_1989_UTM_Zone_"),
     (26900, 1, 23, false, NAD83, "NAD_1983_UTM_Zone_"),
+    (23000, 28, 38, false, 4230, "ED_1950_UTM_Zone_"),
     (28300, 48, 58, true, GDA94, "GDA_1994_MGA_Zone_"),
     (31954, 11, 22, false, 4674, "SIRGAS_2000_UTM_Zone_"),
     (31960, 17, 25, true, 4674, "SIRGAS_2000_UTM_Zone_"),
@@ -144,6 +167,9 @@ fn is_web(code: i32) -> bool {
 /// The number of web maps' system.
 const WEB: i32 = 3857;
 
+/// The number of Great Britain's grid.
+const BRITISH: i32 = 27700;
+
 /// Name, longitudes and latitudes, method, meridian, offset.
 type Projected = (String, i32, Method, f64, [f64; 2]);
 
@@ -161,6 +187,10 @@ fn projected(code: i32) -> Option<Projected> {
         3395 => return world("WGS_1984_World_Mercator", Method::Mercator { scale: 1.0 }),
         8857 => return world("WGS_1984_Equal_Earth_Greenwich", Method::EqualEarth),
         54030 => return world("World_Robinson", Method::Robinson),
+        BRITISH => {
+            let method = Method::Transverse { lat: 49_f64.to_radians(), scale: 0.999_601_271_7 };
+            return named("British_National_Grid", OSGB36, method, -2.0, [400_000.0, -100_000.0]);
+        }
         3942..=3950 => {
             let lat = f64::from(code - 3900);
             let parallels = [lat - 0.75, lat + 0.75].map(f64::to_radians);
@@ -251,7 +281,7 @@ fn all() -> impl Iterator<Item = i32> {
     let geographic = datum::DATUMS.iter().map(|datum| datum.code);
     geographic
         .chain(utm)
-        .chain([WEB, 3395, 8857, 54030])
+        .chain([WEB, 3395, 8857, 54030, BRITISH])
         .chain(3942..=3950)
         .chain(conic)
         .chain(other)

@@ -16,10 +16,8 @@ pub struct Ellipsoid {
 
 impl Ellipsoid {
     /// The ellipsoid of WGS 84.
+    #[cfg(test)]
     pub const WGS84: Self = Self::flattened(6_378_137.0, 298.257_223_563);
-
-    /// GRS 1980, that of ETRS89 and NAD83.
-    pub const GRS80: Self = Self::flattened(6_378_137.0, 298.257_222_101);
 
     /// An ellipsoid by its inverse flattening, 0 for a sphere.
     pub const fn flattened(a: f64, inverse: f64) -> Self {

@@ -2,7 +2,8 @@
 //!
 //! Longitude comes before latitude, easting before northing, as in GeoJSON, whatever order a system itself would have.
 //! Between frames that differ by less than two metres (WGS 84, ETRS89, NAD83 …) coordinates are taken over as they
-//! are. All formulas are computed with the functions of `libm`, so that results are the same on every machine.
+//! are; of older frames some (OSGB36, DHDN, ED50, MGI, Belge 1972) are brought there by seven parameters, to within a
+//! few metres, which [`Transform::accuracy`] tells; others are refused by name. All formulas are computed with the functions of `libm`, so that results are the same on every machine.
 //!
 //! ```
 //! use durer_formats::geo::crs::{Crs, Transform};
@@ -18,6 +19,7 @@ mod codes;
 mod datum;
 mod ellipsoid;
 mod projection;
+mod shift;
 mod transverse;
 mod wkt;
 mod world;
@@ -67,8 +69,14 @@ impl Crs {
         let number = ["EPSG:", "ESRI:", "URN:OGC:DEF:CRS:EPSG::"];
         let number = number.iter().find_map(|prefix| upper.strip_prefix(prefix)).unwrap_or(&upper);
         let code = number.parse().ok().or_else(|| codes::of_name(&upper));
-        code.and_then(Self::of_code)
-            .ok_or_else(|| format!("`{text}` is not known; {}", codes::KNOWN))
+        let unknown = || match code.and_then(datum::refused) {
+            Some(datum) => format!(
+                "`{text}` is on the datum {datum}, and its shift to WGS 84 is not known here; bring it to EPSG:4326 \
+                 with a program that has grids, such as ogr2ogr or QGIS"
+            ),
+            None => format!("`{text}` is not known; {}", codes::KNOWN),
+        };
+        code.and_then(Self::of_code).ok_or_else(unknown)
     }
 
     /// The system that a file says it is in.
@@ -135,7 +143,21 @@ impl Transform {
 
     /// Whether coordinates stay as they are, to the bit.
     pub fn is_identity(&self) -> bool {
-        self.from.kind == self.to.kind
+        self.from.kind == self.to.kind && !self.is_shifted()
+    }
+
+    /// Whether both lie on frames that are hundreds of metres apart.
+    fn is_shifted(&self) -> bool {
+        let [from, to] = [self.from.datum, self.to.datum];
+        !std::ptr::eq(from, to) && from.shift != to.shift
+    }
+
+    /// How far coordinates may be off, in metres, where frames are shifted by parameters, and the frame that is least well
+    /// known; `None` where none is.
+    pub fn accuracy(&self) -> Option<(&'static str, f64)> {
+        let [from, to] = [self.from.datum, self.to.datum];
+        let worst = if from.accuracy > to.accuracy { from } else { to };
+        self.is_shifted().then_some((worst.name, from.accuracy + to.accuracy))
     }
 
     /// A place in the other system; `None` where it has none there.
@@ -143,7 +165,12 @@ impl Transform {
         if self.is_identity() {
             return Some(p);
         }
-        self.to.place(self.from.to_radians(p)?).filter(|p| p.is_finite())
+        let mut place = self.from.to_radians(p)?;
+        if self.is_shifted() {
+            let frame = |crs: &Crs| (crs.datum.body(), crs.datum.shift);
+            place = shift::apply(place, frame(&self.from), frame(&self.to));
+        }
+        self.to.place(place).filter(|p| p.is_finite())
     }
 
     /// A geometry with all its positions in the other system; heights and measures stay. `None` where a position has

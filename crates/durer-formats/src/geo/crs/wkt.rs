@@ -102,9 +102,15 @@ impl Node {
         let datum = Datum::of_name(named.value(0)).or_else(|| Datum::of_name(geographic.value(0)));
         let shifted =
             named.node("TOWGS84").is_some_and(|n| n.values.iter().any(|v| v.parse() != Ok(0.0)));
-        let datum = datum.filter(|_| !shifted);
-        let datum =
-            datum.ok_or_else(|| format!("how its datum {} lies is not known", named.value(0)))?;
+        // What is known of a frame goes before what a definition tells of it.
+        let datum = datum.filter(|datum| !shifted || datum.accuracy > 0.0);
+        let datum = datum.ok_or_else(|| {
+            let name = named.value(0);
+            format!(
+                "how its datum {name} lies is not known; bring it to EPSG:4326 with a program that has grids, such as \
+                 ogr2ogr or QGIS"
+            )
+        })?;
         let meridian = geographic.node("PRIMEM").and_then(|n| n.number(1)).unwrap_or(0.0);
         let degrees = geographic.node("UNIT").and_then(|n| n.number(1)).unwrap_or(DEGREE);
         if meridian != 0.0 || (degrees - DEGREE).abs() > 1e-9 {
@@ -193,10 +199,10 @@ const DEGREE: f64 = 0.017_453_292_519_943_295;
 /// The definition of a system, as .prj files have it.
 pub fn of_crs(crs: &Crs, name: &str) -> String {
     let datum = crs.datum;
-    let (spheroid, flattening) = datum.spheroid();
-    let own = datum.name;
+    let (spheroid, own) = (&datum.spheroid, datum.name);
+    let (body, a, flattening) = (spheroid.name, spheroid.a, spheroid.inverse);
     let geographic = format!(
-        "GEOGCS[\"GCS_{own}\",DATUM[\"D_{own}\",SPHEROID[\"{spheroid}\",6378137.0,{flattening}]],\
+        "GEOGCS[\"GCS_{own}\",DATUM[\"D_{own}\",SPHEROID[\"{body}\",{a:?},{flattening:?}]],\
          PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]"
     );
     let Kind::Projected { projection, unit } = &crs.kind else { return geographic };

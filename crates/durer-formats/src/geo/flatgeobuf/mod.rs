@@ -1,9 +1,10 @@
-//! FlatGeobuf 3: a header with fields and coordinate system, an index that is stepped over, and features one after the
+//! FlatGeobuf 3: a header with fields and coordinate system, an index of places, and features one after the
 //! other. <https://github.com/flatgeobuf/flatgeobuf>, files `header.fbs` and `feature.fbs`.
 //!
-//! What is written has no index: features stay in their order, which an index would change.
+//! What is written has an index, for which features are put in order along Hilbert's curve.
 
 mod build;
+mod index;
 mod read;
 mod table;
 mod write;

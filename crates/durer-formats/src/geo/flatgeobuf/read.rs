@@ -1,7 +1,7 @@
 //! Features from a file.
 
 use super::table::{Table, Vector};
-use super::{HEAD, column, sniff};
+use super::{HEAD, column, index, sniff};
 use crate::geo::geojson::{finish_line, finish_ring};
 use crate::geo::members::{object, quoted};
 use crate::geo::{
@@ -9,10 +9,7 @@ use crate::geo::{
 };
 use crate::text::Tally;
 use crate::{Error, Place, Result};
-use durer::math::DVec2;
-
-/// Bytes of a node of the index.
-const NODE: u64 = 40;
+use durer::math::{DVec2, Rect};
 
 /// A field of all features.
 #[derive(Debug, Clone)]
@@ -25,6 +22,10 @@ struct Column {
 pub struct Reader {
     bytes: Vec<u8>,
     at: usize,
+    /// The index: its bytes, how many features it is of, and how many children nodes have.
+    index: (std::ops::Range<usize>, u64, u16),
+    /// The places that are read, the last one first, where not all are.
+    chosen: Option<Vec<usize>>,
     columns: Vec<Column>,
     /// The kind of all geometries; 0 where each says its own.
     kind: u8,
@@ -53,17 +54,30 @@ impl Reader {
         let columns = columns(&header, 7);
         let (count, width) = (header.u64(8).unwrap_or(0), header.u16(9).unwrap_or(16));
         let after =
-            usize::try_from(index_size(count, width)).ok().and_then(|size| end.checked_add(size));
+            usize::try_from(index::size(count, width)).ok().and_then(|size| end.checked_add(size));
         let at = after.filter(|&at| at <= bytes.len());
         let at = at.ok_or_else(|| Error::byte(end as u64, "the file ends within its index"))?;
         let (kind, system) = (header.u8(2).unwrap_or(0), system(&header));
         let (has_z, has_m) = (header.u8(3) == Some(1), header.u8(4) == Some(1));
         let (binary, infinite) = Default::default();
-        Ok(Self { columns, kind, has_z, has_m, system, at, bytes, binary, infinite })
+        let (index, chosen) = ((end..at, count, width), None);
+        Ok(Self { index, chosen, columns, kind, has_z, has_m, system, at, bytes, binary, infinite })
+    }
+
+    /// Lets only features be read whose boxes meet a window, before the first one; nothing happens where there is no index.
+    pub fn choose(&mut self, window: &Rect) {
+        let (place, count, width) = &self.index;
+        let bytes = self.bytes.get(place.clone()).unwrap_or_default();
+        let Some(found) = index::search(bytes, *count, *width, window) else { return };
+        let at = |offset: u64| usize::try_from(offset).ok()?.checked_add(self.at);
+        self.chosen = found.into_iter().rev().map(at).collect();
     }
 
     /// The next feature; `None` at the end.
     pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
+        if let Some(chosen) = &mut self.chosen {
+            self.at = chosen.pop().unwrap_or(self.bytes.len());
+        }
         let Some((start, end)) = piece(&self.bytes, self.at) else {
             if self.at < self.bytes.len() {
                 let message = "the file ends within a feature, which is left out";
@@ -130,22 +144,6 @@ fn piece(bytes: &[u8], at: usize) -> Option<(usize, usize)> {
     let start = at + 4;
     let end = start.checked_add(length)?;
     (end <= bytes.len()).then_some((start, end))
-}
-
-/// The bytes of the index: a tree over so many features, of nodes of so many children.
-fn index_size(count: u64, width: u16) -> u64 {
-    if count == 0 || width == 0 {
-        return 0;
-    }
-    let width = u64::from(width.max(2));
-    let (mut level, mut nodes) = (count, count);
-    while level > 1 {
-        level = level.div_ceil(width);
-        nodes = nodes.saturating_add(level);
-    }
-    // A tree of one feature has a root beside it.
-    let nodes = if count == 1 { 2 } else { nodes };
-    nodes.saturating_mul(NODE)
 }
 
 fn columns(table: &Table<'_>, slot: usize) -> Vec<Column> {
@@ -217,11 +215,11 @@ fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
             let (own, rest) = bytes.split_first_chunk()?;
             // The shortest decimal that stands for it.
             let short = f32::from_le_bytes(*own).to_string().parse().unwrap_or(f64::NAN);
-            Some((Some(double(short)), rest))
+            Some((Some(number::json(short)), rest))
         }
         column::DOUBLE => {
             let (own, rest) = bytes.split_first_chunk()?;
-            Some((Some(double(f64::from_le_bytes(*own))), rest))
+            Some((Some(number::json(f64::from_le_bytes(*own))), rest))
         }
         column::STRING | column::JSON | column::DATE_TIME | column::BINARY => {
             let (length, rest) = bytes.split_first_chunk()?;
@@ -238,12 +236,6 @@ fn value(kind: u8, bytes: &[u8]) -> Option<(Option<String>, &[u8])> {
         }
         _ => None,
     }
-}
-
-fn double(value: f64) -> String {
-    let mut text = Vec::new();
-    let written = number::write(&mut text, value).is_ok() && value.is_finite();
-    String::from_utf8(text).ok().filter(|_| written).unwrap_or_else(|| "null".to_owned())
 }
 
 /// Makes geometries of a feature's tables.

@@ -1,21 +1,30 @@
 //! Features as a file.
 
 use super::build::{Builder, Later, Value};
-use super::{MAGIC, column};
+use super::{MAGIC, column, index};
 use crate::geo::members::members;
 use crate::geo::schema::{FieldKind, Schema};
 use crate::geo::{Feature, Geometry, Points, System, wkb};
 use durer::math::Rect;
 use std::io::{self, Write};
 
-/// Writes features in their order, without an index.
+/// Writes features along Hilbert's curve, with an index of their places. All are held as they are written.
 pub fn write(out: &mut impl Write, features: &[Feature], system: &System) -> io::Result<()> {
     let schema = Schema::of(features);
+    let bounds: Vec<Option<Rect>> =
+        features.iter().map(|f| f.geometry.as_ref()?.bounds()).collect();
+    let kind = common_kind(features);
+    let (order, mut bytes, mut places) = (index::order(&bounds), Vec::new(), Vec::new());
+    for &i in &order {
+        places.push((bounds.get(i).copied().flatten(), bytes.len() as u64));
+        let feature = features.get(i).map(|feature| self::feature(feature, &schema, kind));
+        bytes.extend(feature.unwrap_or_default());
+    }
     out.write_all(&MAGIC)?;
     out.write_all(&[1])?;
-    let kind = common_kind(features);
     out.write_all(&header(features, &schema, kind, system))?;
-    features.iter().try_for_each(|feature| out.write_all(&self::feature(feature, &schema, kind)))
+    out.write_all(&index::build(places.into_iter()))?;
+    out.write_all(&bytes)
 }
 
 /// The number of the kind that all geometries are; 0 where they differ.
@@ -46,7 +55,9 @@ fn header(features: &[Feature], schema: &Schema, kind: u8, system: &System) -> V
         (3, Value::U8(has_z.into())),
         (4, Value::U8(has_m.into())),
     ]);
-    fields.extend([(7, Value::Later), (8, Value::U64(features.len() as u64)), (9, Value::U16(0))]);
+    let width = if features.is_empty() { 0 } else { index::WIDTH };
+    fields.extend([(7, Value::Later), (8, Value::U64(features.len() as u64))]);
+    fields.push((9, Value::U16(width)));
     fields.extend((!system.is_unknown()).then_some((10, Value::Later)));
     let mut open = buffer.table(root, &fields).into_iter();
     let mut next = || open.next();

@@ -3,8 +3,8 @@
 //! Tables get their rows in the order of their numbers, and indices are built when all entries are there; nothing is
 //! ever changed but the first page.
 
+use super::{HEADER, INDEX_INNER, INDEX_LEAF, MAGIC, TABLE_INNER, TABLE_LEAF, Value};
 use crate::{Error, Place, Result};
-use std::io::{Seek, SeekFrom, Write};
 
 /// Bytes of a page.
 const PAGE: usize = 4096;
@@ -15,45 +15,33 @@ const LOCKED: u32 = (1 << 30) / PAGE as u32 + 1;
 /// A page may have this number, and no higher one.
 const MOST_PAGES: u32 = u32::MAX - 4;
 
-/// Bytes of the file's header, on the first page.
-const HEADER: usize = 100;
-
 /// A record longer than this goes on on other pages …
 const MOST: usize = PAGE - 35;
 
 /// … so that at least this stays.
 const LEAST: usize = (PAGE - 12) * 32 / 255 - 23;
 
-const TABLE_INNER: u8 = 5;
-const TABLE_LEAF: u8 = 13;
-const INDEX_INNER: u8 = 2;
-const INDEX_LEAF: u8 = 10;
+/// Nor is a record longer than this, as SQLite is built.
+const LONGEST: usize = 1_000_000_000;
 
-/// A value of a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cell<'a> {
-    /// A whole number.
-    Integer(i64),
-    /// Text.
-    Text(&'a str),
-    /// Bytes.
-    Blob(&'a [u8]),
-}
-
-/// The pages of a database that is being written.
-pub struct Database<W> {
-    out: W,
+/// The pages of a database that is being written, but for the first one, which is known when all others are.
+pub struct Database {
+    /// Pages that nobody has taken yet.
+    out: Vec<u8>,
     /// The number of the last page written.
     pages: u32,
     schema: Vec<Vec<u8>>,
 }
 
-impl<W: Write + Seek> Database<W> {
-    /// A database without a table.
-    pub fn new(mut out: W) -> Result<Self> {
-        // The first page is known when all others are.
-        out.write_all(&[0; PAGE])?;
-        Ok(Self { out, pages: 1, schema: Vec::new() })
+impl Database {
+    /// A database without a table; what is taken first stands in for the first page.
+    pub fn new() -> Self {
+        Self { out: vec![0; PAGE], pages: 1, schema: Vec::new() }
+    }
+
+    /// The pages since the last call, which follow those of that one.
+    pub fn take(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.out)
     }
 
     /// Writes a page and gives its number.
@@ -64,40 +52,45 @@ impl<W: Write + Seek> Database<W> {
             return Err(Error::Limit { place, what, value, limit });
         }
         if self.pages + 1 == LOCKED {
-            self.out.write_all(&[0; PAGE])?;
+            self.out.extend([0; PAGE]);
         }
         self.pages = after(self.pages);
-        self.out.write_all(bytes)?;
-        self.out.write_all(&vec![0; PAGE.saturating_sub(bytes.len())])?;
+        let end = self.out.len() + PAGE;
+        self.out.extend_from_slice(bytes);
+        self.out.resize(end, 0);
         Ok(self.pages)
     }
 
-    /// Takes note of a table or index whose first page is `root`.
+    /// Takes note of a table or index whose first page is `root`; an index that SQLite makes by itself has no text.
     pub fn name(&mut self, kind: &str, name: &str, table: &str, root: u32, sql: &str) {
-        let [kind, name, table, sql] = [kind, name, table, sql].map(Cell::Text);
-        let row = record(&[kind, name, table, Cell::Integer(root.into()), sql]);
-        self.schema.push(row);
+        let sql = if sql.is_empty() { Value::Null } else { Value::from(sql) };
+        let [kind, name, table] = [kind, name, table].map(Value::from);
+        self.schema.push(record(&[kind, name, table, Value::Integer(root.into()), sql]));
     }
 
-    /// Writes the first page; `application` tells what the file is for. Gives the target back.
-    pub fn finish(mut self, application: u32) -> Result<W> {
+    /// The first page, and what is left of the others; `application` tells what the file is for, `version` which of its
+    /// kind it is.
+    pub fn finish(mut self, application: u32, version: u32) -> Result<(Vec<u8>, Vec<u8>)> {
         let mut first = Page::new(TABLE_LEAF, HEADER);
         let mut table = Vec::new();
         for (row, number) in std::mem::take(&mut self.schema).iter().zip(1..) {
             table.push(self.row(number, row)?);
         }
-        table.iter().for_each(|cell| first.push(cell));
+        if table.iter().any(|cell| !first.add(cell)) {
+            let (what, hint) = ("a table of so many fields".to_owned(), String::new());
+            return Err(Error::Unsupported { place: Place::Whole, what, hint });
+        }
         let mut bytes = first.bytes(None);
-        bytes[..HEADER].copy_from_slice(&header(self.pages, application));
-        self.out.seek(SeekFrom::Start(0))?;
-        self.out.write_all(&bytes)?;
-        self.out.seek(SeekFrom::End(0))?;
-        self.out.flush()?;
-        Ok(self.out)
+        bytes[..HEADER].copy_from_slice(&header(self.pages, application, version));
+        Ok((bytes, self.out))
     }
 
     /// The cell of a row; what is too long goes to pages of its own.
     fn row(&mut self, number: i64, record: &[u8]) -> Result<Vec<u8>> {
+        if record.len() > LONGEST {
+            let (value, limit) = (record.len() as u64, LONGEST as u64);
+            return Err(Error::Limit { place: Place::Whole, what: "a row", value, limit });
+        }
         let mut cell = Vec::new();
         varint(&mut cell, record.len() as u64);
         varint(&mut cell, number as u64);
@@ -125,19 +118,18 @@ fn after(page: u32) -> u32 {
 }
 
 /// The header of the file.
-fn header(pages: u32, application: u32) -> [u8; HEADER] {
+fn header(pages: u32, application: u32, version: u32) -> [u8; HEADER] {
     /// Of the library whose format this is.
     const VERSION: u32 = 3_040_000;
     let mut header = [0; HEADER];
     let mut put = |at: usize, bytes: &[u8]| header[at..at + bytes.len()].copy_from_slice(bytes);
-    put(0, b"SQLite format 3\0");
+    put(0, MAGIC);
     put(16, &(PAGE as u16).to_be_bytes());
     // Versions, and shares of a page, that are always these.
     put(18, &[1, 1, 0, 64, 32, 32]);
     // How often it was changed, pages; schema: how often it was changed, its format; UTF-8.
-    for (at, value) in
-        [(24, 1), (28, pages), (40, 1), (44, 4), (56, 1), (68, application), (92, 1), (96, VERSION)]
-    {
+    let counts = [(24, 1), (28, pages), (40, 1), (44, 4), (56, 1), (92, 1), (96, VERSION)];
+    for (at, value) in counts.into_iter().chain([(60, version), (68, application)]) {
         put(at, &value.to_be_bytes());
     }
     header
@@ -165,6 +157,15 @@ impl Page {
         self.head() + 2 * (self.ends.len() + 1) + self.cells.len() + cell.len() <= PAGE
     }
 
+    /// Adds a cell where there is room for it.
+    fn add(&mut self, cell: &[u8]) -> bool {
+        let fits = self.fits(cell);
+        if fits {
+            self.push(cell);
+        }
+        fits
+    }
+
     fn push(&mut self, cell: &[u8]) {
         self.cells.extend_from_slice(cell);
         self.ends.push(self.cells.len());
@@ -190,7 +191,8 @@ impl Page {
 /// A table that gets one row after the other.
 pub struct Table {
     leaf: Page,
-    rows: i64,
+    /// The number of the last row.
+    last: i64,
     /// Pages and the number of the last row of each.
     leaves: Vec<(u32, i64)>,
 }
@@ -198,32 +200,33 @@ pub struct Table {
 impl Table {
     /// A table without a row.
     pub fn new() -> Self {
-        Self { leaf: Page::new(TABLE_LEAF, 0), rows: 0, leaves: Vec::new() }
+        Self { leaf: Page::new(TABLE_LEAF, 0), last: 0, leaves: Vec::new() }
     }
 
-    /// Adds a row and gives its number.
-    pub fn add<W: Write + Seek>(
-        &mut self,
-        to: &mut Database<W>,
-        values: &[Cell<'_>],
-    ) -> Result<i64> {
-        let cell = to.row(self.rows + 1, &record(values))?;
+    /// Adds a row with the next number.
+    pub fn add(&mut self, to: &mut Database, values: &[Value<'_>]) -> Result<()> {
+        self.add_at(to, self.last + 1, values)
+    }
+
+    /// Adds a row with a number above all others.
+    pub fn add_at(&mut self, to: &mut Database, number: i64, values: &[Value<'_>]) -> Result<()> {
+        let cell = to.row(number, &record(values))?;
         if !self.leaf.fits(&cell) {
             self.end_leaf(to)?;
         }
         self.leaf.push(&cell);
-        self.rows += 1;
-        Ok(self.rows)
+        self.last = number;
+        Ok(())
     }
 
-    fn end_leaf<W: Write + Seek>(&mut self, to: &mut Database<W>) -> Result<()> {
+    fn end_leaf(&mut self, to: &mut Database) -> Result<()> {
         let leaf = std::mem::replace(&mut self.leaf, Page::new(TABLE_LEAF, 0));
-        self.leaves.push((to.page(&leaf.bytes(None))?, self.rows));
+        self.leaves.push((to.page(&leaf.bytes(None))?, self.last));
         Ok(())
     }
 
     /// Writes what is left, and the pages above; gives the number of the first page.
-    pub fn finish<W: Write + Seek>(mut self, to: &mut Database<W>) -> Result<u32> {
+    pub fn finish(mut self, to: &mut Database) -> Result<u32> {
         self.end_leaf(to)?;
         let mut level = self.leaves;
         while level.len() > 1 {
@@ -257,8 +260,9 @@ fn evenly<T>(list: &[T], most: usize) -> impl Iterator<Item = &[T]> {
     (0..count).map(move |i| &list[i * list.len() / count..(i + 1) * list.len() / count])
 }
 
-/// Writes an index: its records, each of at most 39 bytes, in their order. Gives the number of the first page.
-pub fn index<W: Write + Seek>(to: &mut Database<W>, records: &[Vec<u8>]) -> Result<u32> {
+/// Writes an index: its records, each of at most 39 bytes, or fewer than four of at most 1000, in their order. Gives the
+/// number of the first page.
+pub fn index(to: &mut Database, records: &[Vec<u8>]) -> Result<u32> {
     let cell = |record: &[u8]| {
         let mut cell = Vec::new();
         varint(&mut cell, record.len() as u64);
@@ -293,11 +297,12 @@ pub fn index<W: Write + Seek>(to: &mut Database<W>, records: &[Vec<u8>]) -> Resu
 }
 
 /// A row as it is stored: the kinds of its values, then the values.
-pub fn record(values: &[Cell<'_>]) -> Vec<u8> {
+pub fn record(values: &[Value<'_>]) -> Vec<u8> {
     let (mut kinds, mut bodies) = (Vec::new(), Vec::new());
     for value in values {
-        match *value {
-            Cell::Integer(value) => {
+        match value {
+            Value::Null => kinds.push(0),
+            Value::Integer(value) => {
                 let (kind, length) = match value {
                     -0x80..=0x7f => (1, 1),
                     -0x8000..=0x7fff => (2, 2),
@@ -307,19 +312,24 @@ pub fn record(values: &[Cell<'_>]) -> Vec<u8> {
                 varint(&mut kinds, kind);
                 bodies.extend_from_slice(&value.to_be_bytes()[8 - length..]);
             }
-            Cell::Text(text) => {
+            Value::Real(value) => {
+                kinds.push(7);
+                bodies.extend(value.to_be_bytes());
+            }
+            Value::Text(text) => {
                 varint(&mut kinds, text.len() as u64 * 2 + 13);
                 bodies.extend_from_slice(text.as_bytes());
             }
-            Cell::Blob(bytes) => {
+            Value::Blob(bytes) => {
                 varint(&mut kinds, bytes.len() as u64 * 2 + 12);
                 bodies.extend_from_slice(bytes);
             }
         }
     }
-    // Its own length counts; of rows of a few values it is one byte.
     let mut record = Vec::with_capacity(kinds.len() + bodies.len() + 2);
-    varint(&mut record, kinds.len() as u64 + 1);
+    // Its own length counts, of one byte for a few values.
+    let length = (1..).find(|own| (kinds.len() + own) >> (7 * own) == 0).unwrap_or(1);
+    varint(&mut record, (kinds.len() + length) as u64);
     record.extend(kinds);
     record.extend(bodies);
     record
@@ -364,113 +374,56 @@ mod tests {
         }
     }
 
-    /// A reader as small as can be.
-    struct Pages(Vec<u8>);
-
-    impl Pages {
-        fn page(&self, number: u32) -> &[u8] {
-            &self.0[(number as usize - 1) * PAGE..number as usize * PAGE]
-        }
-
-        /// The cells of a page, and its last child.
-        fn cells(&self, number: u32) -> (u8, Vec<&[u8]>, u32) {
-            let (page, at) = (self.page(number), if number == 1 { HEADER } else { 0 });
-            let word = |at: usize| usize::from(u16::from_be_bytes([page[at], page[at + 1]]));
-            let kind = page[at];
-            let inner = kind == TABLE_INNER || kind == INDEX_INNER;
-            let head = at + if inner { 12 } else { 8 };
-            let cells = (0..word(at + 3)).map(|i| &page[word(head + 2 * i)..]).collect();
-            (kind, cells, if inner { long(&page[at + 8..]) } else { 0 })
-        }
-
-        /// All records of a table with their numbers, or of an index with zeros, in order.
-        fn records(&self, root: u32, found: &mut Vec<(u64, Vec<u8>)>) {
-            let (kind, cells, last) = self.cells(root);
-            for cell in cells {
-                match kind {
-                    TABLE_INNER => self.records(long(cell), found),
-                    TABLE_LEAF => {
-                        let (length, cell) = number(cell);
-                        let (row, cell) = number(cell);
-                        found.push((row, self.record(length as usize, cell)));
-                    }
-                    _ => {
-                        let cell = if kind == INDEX_INNER {
-                            self.records(long(cell), found);
-                            &cell[4..]
-                        } else {
-                            cell
-                        };
-                        let (length, cell) = number(cell);
-                        found.push((0, cell[..length as usize].to_vec()));
-                    }
-                }
-            }
-            if last > 0 {
-                self.records(last, found);
-            }
-        }
-
-        fn record(&self, length: usize, cell: &[u8]) -> Vec<u8> {
-            if length <= PAGE - 35 {
-                return cell[..length].to_vec();
-            }
-            let least = (PAGE - 12) * 32 / 255 - 23;
-            let part = least + (length - least) % (PAGE - 4);
-            let here = if part <= PAGE - 35 { part } else { least };
-            let (mut record, mut next) = (cell[..here].to_vec(), long(&cell[here..]));
-            while next > 0 {
-                assert_ne!(next, LOCKED);
-                let page = self.page(next);
-                let rest = (length - record.len()).min(PAGE - 4);
-                record.extend(&page[4..4 + rest]);
-                next = long(page);
-            }
-            record
-        }
-    }
-
-    fn long(bytes: &[u8]) -> u32 {
-        u32::from_be_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
-    }
-
-    fn number(bytes: &[u8]) -> (u64, &[u8]) {
-        let (mut value, mut at) = (0, 0);
-        loop {
-            value = value << 7 | u64::from(bytes[at] & 0x7f);
-            at += 1;
-            if bytes[at - 1] < 0x80 {
-                return (value, &bytes[at..]);
-            }
-        }
-    }
-
     #[test]
     fn rows_and_entries_are_found_again() {
         for count in [0usize, 1, 73, 74, 75, 149, 3000] {
             let blob = |i: usize| vec![i as u8; i * 37 % 9001];
-            let mut database = Database::new(std::io::Cursor::new(Vec::new())).unwrap();
+            let mut database = Database::new();
             let mut table = Table::new();
+            let mut bytes = Vec::new();
             for i in 0..count {
-                table.add(&mut database, &[Cell::Integer(i as i64), Cell::Blob(&blob(i))]).unwrap();
+                table
+                    .add(&mut database, &[Value::Integer(i as i64), Value::Blob(&blob(i))])
+                    .expect("room");
+                bytes.extend(database.take());
             }
-            let root = table.finish(&mut database).unwrap();
+            let root = table.finish(&mut database).expect("room");
             let entries: Vec<Vec<u8>> =
-                (0..count).map(|i| record(&[Cell::Integer(i as i64 * 1000)])).collect();
-            let index = index(&mut database, &entries).unwrap();
+                (0..count).map(|i| record(&[Value::Integer(i as i64 * 1000)])).collect();
+            index(&mut database, &entries).expect("room");
             database.name("table", "t", "t", root, "CREATE TABLE t (a integer, b blob)");
-            let pages = Pages(database.finish(7).unwrap().into_inner());
-            assert_eq!(pages.0.len() % PAGE, 0);
-            assert_eq!(long(&pages.0[28..]) as usize * PAGE, pages.0.len());
-            let (mut rows, mut found, mut schema) = (Vec::new(), Vec::new(), Vec::new());
-            pages.records(root, &mut rows);
-            pages.records(index, &mut found);
-            pages.records(1, &mut schema);
-            let expected =
-                |i: usize| (i as u64 + 1, record(&[Cell::Integer(i as i64), Cell::Blob(&blob(i))]));
-            assert_eq!(rows, (0..count).map(expected).collect::<Vec<_>>());
-            assert_eq!(found.into_iter().map(|(_, entry)| entry).collect::<Vec<_>>(), entries);
-            assert_eq!(schema.len(), 1);
+            let (first, rest) = database.finish(7, 8).expect("room");
+            bytes.extend(rest);
+            bytes[..PAGE].copy_from_slice(&first);
+            let database = super::super::Database::new(bytes).expect("a database");
+            assert_eq!(database.application(), 7);
+            let tables = database.tables().expect("tables");
+            assert_eq!((tables.len(), tables[0].root), (1, root));
+            let mut rows = database.rows(root);
+            for i in 0..count {
+                let row = rows.next(&database).expect("read").expect("a row");
+                let expected = record(&[Value::Integer(i as i64), Value::Blob(&blob(i))]);
+                assert_eq!((row.number, &row.record[..]), (i as i64 + 1, &expected[..]));
+            }
+            assert!(rows.next(&database).expect("read").is_none());
+        }
+    }
+
+    #[test]
+    fn records_of_many_values_have_a_longer_length() {
+        for count in [126_usize, 127, 16_381, 16_382] {
+            let bytes = record(&vec![Value::Null; count]);
+            let length = count
+                + if count < 127 {
+                    1
+                } else if count < 16_382 {
+                    2
+                } else {
+                    3
+                };
+            let mut start = Vec::new();
+            varint(&mut start, length as u64);
+            assert!(bytes.starts_with(&start) && bytes.len() == length, "{count}");
         }
     }
 }
