@@ -48,10 +48,14 @@ fn texts_keep_apart_and_on_the_page() {
             let texts = texts(&plot);
             assert!(texts.len() > 6, "{texts:?}");
             for (i, (text, own)) in texts.iter().enumerate() {
-                let inside = own.min().cmpge(DVec2::ZERO).all() && own.max().cmple(options.page).all();
+                let inside =
+                    own.min().cmpge(DVec2::ZERO).all() && own.max().cmple(options.page).all();
                 assert!(inside, "{x:?}, {azimuth}: `{text}` leaves the page");
                 for (other, its) in &texts[..i] {
-                    assert!(!own.overlaps(its), "{x:?}, {azimuth}, {elevation}: `{text}` on `{other}`");
+                    assert!(
+                        !own.overlaps(its),
+                        "{x:?}, {azimuth}, {elevation}: `{text}` on `{other}`"
+                    );
                 }
             }
         }
