@@ -436,6 +436,16 @@ fn labels_keep_off_markers_and_stand_in_the_middle_of_squares() {
     assert!((95..=105).contains(&middle), "{dark:?}");
 }
 
+#[test]
+fn labels_beside_holes_stand_in_the_middle_too() {
+    let folder = folder();
+    let plate = r#"{"type":"Feature","properties":{"n":"plate"},"geometry":{"type":"Polygon","coordinates":[[[0,0],[200,0],[200,60],[0,60],[0,0]],[[90,10],[110,10],[110,50],[90,50],[90,10]]]}}"#;
+    folder.write("plate.geojson", plate);
+    folder.must("draw plate.geojson -o p.png --size 200x60 --window 0,0,200,60 --label n --label-halo none --stroke none");
+    let dark = darkest_rows(&picture(&folder, "p.png"), 0..200, 0..60);
+    assert!((27..=33).contains(&((dark.0 + dark.1) / 2)), "{dark:?}");
+}
+
 /// The first and the last row with dark pixels in a part of a picture.
 fn darkest_rows(
     picture: &Picture,

@@ -1,6 +1,6 @@
 //! resvg's suite, and heavy art: pictures against those that resvg makes.
 //!
-//! `resvg.txt` lists the drawings that do not match, with reasons; a drawing that is not listed must
+//! `resvg.txt` and `resvg_suite.txt` list the drawings that do not match, with reasons; a drawing that is not listed must
 //! match, and a listed one must not.
 
 use crate::shared::{Folder, data, files};
@@ -15,6 +15,7 @@ use std::path::Path;
 type Picture = Pixels<[u8; 4]>;
 
 const LISTED: &str = include_str!("resvg.txt");
+const LISTED_IN_SUITE: &str = include_str!("resvg_suite.txt");
 
 fn reference(path: &Path) -> Picture {
     let bytes = std::fs::read(path).unwrap();
@@ -81,8 +82,8 @@ fn keep(name: &str, found: &Picture, reference: &Picture) {
 }
 
 /// What is wrong with a result, in view of what is listed; empty if nothing is.
-fn complaint(name: &str, difference: Difference) -> String {
-    let lines = LISTED.lines().filter(|l| !l.starts_with('#') && !l.is_empty());
+fn complaint(listed: &str, name: &str, difference: Difference) -> String {
+    let lines = listed.lines().filter(|l| !l.starts_with('#') && !l.is_empty());
     let mut names = lines.map(|l| l.split_once(": ").expect("a name, a colon, a reason").0);
     match (difference.is_match(), names.any(|n| n == name)) {
         (false, false) => format!("{name} differs: {difference:?}\n"),
@@ -91,17 +92,14 @@ fn complaint(name: &str, difference: Difference) -> String {
     }
 }
 
-#[test]
-fn the_resvg_suite_matches_but_for_what_is_listed() {
-    let Some(data) = data() else { return };
-    let root = data.join("reference/resvg");
-    let fonts = Fonts::new();
+/// Draws all files of some chapters below a folder; what is not as listed, and how many files there are.
+fn compare(root: &Path, chapters: &[&str], fonts: &Fonts, listed: &str) -> (String, u32) {
     let mut folders: BTreeMap<String, (u32, u32)> = BTreeMap::new();
     let mut complaints = String::new();
-    for path in files(&root, &["svg"]) {
-        let name = path.strip_prefix(&root).unwrap().to_string_lossy().into_owned();
+    for path in chapters.iter().flat_map(|chapter| files(&root.join(chapter), &["svg"])) {
+        let name = path.strip_prefix(root).unwrap().to_string_lossy().into_owned();
         let wanted = reference(&path.with_extension("png"));
-        let found = render(&path, &fonts, (wanted.width(), wanted.height()), [0; 4]);
+        let found = render(&path, fonts, (wanted.width(), wanted.height()), [0; 4]);
         let difference = Difference::new(&found, &wanted);
         let count = folders.entry(name.rsplit_once('/').unwrap().0.to_owned()).or_default();
         count.0 += u32::from(difference.is_match());
@@ -109,14 +107,39 @@ fn the_resvg_suite_matches_but_for_what_is_listed() {
         if !difference.is_match() {
             keep(&name, &found, &wanted);
         }
-        complaints += &complaint(&name, difference);
+        complaints += &complaint(listed, &name, difference);
     }
     for (folder, (good, all)) in &folders {
         println!("{folder}: {good} of {all}");
     }
     let sums = folders.values().fold((0, 0), |s, c| (s.0 + c.0, s.1 + c.1));
     println!("all: {} of {}", sums.0, sums.1);
-    assert!(sums.1 > 150, "only {} drawings found", sums.1);
+    (complaints, sums.1)
+}
+
+#[test]
+fn the_resvg_suite_matches_but_for_what_is_listed() {
+    let Some(data) = data() else { return };
+    let root = data.join("reference/resvg");
+    let chapters = ["masking", "painting", "shapes", "structure"];
+    let (complaints, count) = compare(&root, &chapters, &Fonts::new(), LISTED);
+    assert!(count > 150, "only {count} drawings found");
+    assert!(complaints.is_empty(), "\n{complaints}");
+}
+
+#[test]
+fn the_suite_with_fonts_matches_but_for_what_is_listed() {
+    let Some(root) = data().map(|data| data.join("reference/resvg_suite")) else { return };
+    if !root.is_dir() {
+        return println!("skipped: no {}", root.display());
+    }
+    let mut fonts = Fonts::new();
+    for file in files(&root.join("fonts"), &["ttf", "otf"]) {
+        fonts.add(std::fs::read(file).unwrap());
+    }
+    let chapters = ["masking", "paint-servers", "painting", "shapes", "structure"];
+    let (complaints, count) = compare(&root, &chapters, &fonts, LISTED_IN_SUITE);
+    assert!(count > 400, "only {count} drawings found");
     assert!(complaints.is_empty(), "\n{complaints}");
 }
 
@@ -140,7 +163,7 @@ fn heavy_art_matches_resvg() {
         if !difference.is_match() {
             keep(&name, &found, &wanted);
         }
-        complaints += &complaint(&name, difference);
+        complaints += &complaint(LISTED, &name, difference);
         count += 1;
     }
     assert!(count >= 8, "only {count} drawings found");

@@ -63,7 +63,8 @@ pub struct Interior {
 
 /// The point of a polygon that is farthest from its rings — the inside by the even-odd rule — to within
 /// `options.precision`; `None` where nothing is inside. Of points that are as far, as in long rectangles, the
-/// centre of the largest ring's area is taken, if it is one. Points that are not finite are left out.
+/// centre of the largest ring's area is taken, if it is one, else one in their middle. Points that are not finite
+/// are left out.
 ///
 /// ```
 /// use durer::math::DVec2;
@@ -111,8 +112,32 @@ pub fn interior_point(
     let best = search.best?;
     let center = center_of_largest(&rings).unwrap_or(best.point);
     let distance = distance_to_border(center, &rings);
-    let is_as_far = distance > 0.0 && distance + precision >= best.distance;
-    Some(if is_as_far { Interior { point: center, distance } } else { best })
+    let least = best.distance - precision;
+    if distance > 0.0 && distance >= least {
+        return Some(Interior { point: center, distance });
+    }
+    Some(balanced(best, least, &rings, bounds.size()))
+}
+
+/// So many times the way to where points are no longer far enough is halved.
+const HALVINGS: u32 = 24;
+
+/// Moves a point up and down, then left and right, to the middle of those that are at least so far from the border.
+fn balanced(best: Interior, least: f64, rings: &[Vec<DVec2>], size: DVec2) -> Interior {
+    [DVec2::new(0.0, size.y), DVec2::new(size.x, 0.0)].into_iter().fold(best, |best, way| {
+        let reach = |way: DVec2| {
+            let (mut near, mut far) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = (near + far) * 0.5;
+                let is_far = distance_to_border(best.point + way * middle, rings) >= least;
+                *(if is_far { &mut near } else { &mut far }) = middle;
+            }
+            near
+        };
+        let point = best.point + way * ((reach(way) - reach(-way)) * 0.5);
+        let distance = distance_to_border(point, rings);
+        if distance > 0.0 && distance >= least { Interior { point, distance } } else { best }
+    })
 }
 
 /// The centre of the area of the ring that holds the most.
