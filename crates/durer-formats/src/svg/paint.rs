@@ -10,6 +10,9 @@ use usvg::tiny_skia_path::{self, PathSegment};
 /// Tiles of patterns have at most so many pixels a side; larger ones are painted coarser.
 const MAX_TILE: f64 = 4096.0;
 
+/// Tiles that do not lie on whole pixels have so many times as many a side.
+const FINER: f64 = 8.0;
+
 /// Sides of tiles that are so near to whole pixels are whole.
 const WHOLE: f64 = 1e-3;
 
@@ -111,7 +114,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// A tile with as many pixels as it will cover where those are whole ones, else with four times as many a
+    /// A tile with as many pixels as it will cover where those are whole ones, else with eight times as many a
     /// side, which are then averaged; `None` where it covers nothing.
     pub fn new(pattern: &usvg::Pattern, pixel_from_path: DAffine2) -> Option<Self> {
         let path_from_pattern = affine(pattern.transform());
@@ -123,10 +126,14 @@ impl Tile {
             return None;
         }
         let is_upright = seen.x_axis.y == 0.0 && seen.y_axis.x == 0.0;
-        let fits = is_upright && (pixels - pixels.round()).abs().max_element() < WHOLE;
-        let (finer, filter) = if fits { (1.0, Filter::Bilinear) } else { (4.0, Filter::Area) };
-        let pixels = (pixels * finer).round().clamp(DVec2::ONE, DVec2::splat(MAX_TILE));
         let corner = DVec2::new(rect.x().into(), rect.y().into());
+        let placed = (pixel_from_path * path_from_pattern).transform_point2(corner);
+        let is_whole = |v: DVec2| (v - v.round()).abs().max_element() < WHOLE;
+        let (finer, filter) = match is_upright && is_whole(pixels) && is_whole(placed) {
+            true => (1.0, Filter::Nearest),
+            false => (FINER, Filter::Area),
+        };
+        let pixels = (pixels * finer).round().clamp(DVec2::ONE, DVec2::splat(MAX_TILE));
         let path_from_pixel = path_from_pattern
             * DAffine2::from_translation(corner)
             * DAffine2::from_scale(size / pixels);

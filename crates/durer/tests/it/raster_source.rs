@@ -122,12 +122,12 @@ fn mitchell_s_filter_keeps_ramps_and_overshoots_at_steps() {
 
 #[test]
 fn areas_are_means_of_what_a_pixel_covers() {
-    let row: Vec<u8> = (0..160).map(|i| if i % 16 < 6 { 0 } else { 240 }).collect();
-    let found = enlarged(&row, 0.25, Filter::Area);
-    // Periods of four pixels: black, half black, white, white; an eighth of a texel each side is mixed in.
+    let row: Vec<u8> = (0..320).map(|i| if i % 32 < 12 { 0 } else { 240 }).collect();
+    let found = enlarged(&row, 0.125, Filter::Area);
+    // Periods of four pixels: black, half black, white, white.
     for (i, v) in found.iter().enumerate().take(36).skip(4) {
         let wanted = [0.0, 120.0, 240.0, 240.0][i % 4];
-        assert!((f64::from(*v) - wanted).abs() <= 8.0, "{i}: {v}");
+        assert!((f64::from(*v) - wanted).abs() <= 0.5, "{i}: {v}");
     }
 }
 

@@ -81,8 +81,8 @@ pub enum Filter {
     /// A mixture of the sixteen pixels around, for what is enlarged: D. Mitchell, A. Netravali, *Reconstruction
     /// Filters in Computer Graphics*, SIGGRAPH 1988, with B = C = 1/3.
     Bicubic,
-    /// The mean of sixteen bilinear mixtures spread evenly over the pixel that is painted, for images with
-    /// about four times as many pixels a side as are painted.
+    /// The mean of the pixels at 8 × 8 points spread evenly over the one that is painted, for images with
+    /// about eight times as many pixels a side as are painted.
     Area,
 }
 
@@ -323,16 +323,7 @@ fn image_color(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64
         }
         Filter::Bilinear => bilinear(pattern, p).straight(),
         Filter::Bicubic => bicubic(pattern, p),
-        Filter::Area => {
-            let mut sum = Mixture::default();
-            for part in 0..16 {
-                let (x, y) = (f64::from(part % 4), f64::from(part / 4));
-                let aside = DVec2::new((x - 1.5) / 4.0, (y - 1.5) / 4.0);
-                let at = p + image_from_pixel.transform_vector2(aside);
-                sum.add(&bilinear(pattern, at), 1.0 / 16.0);
-            }
-            sum.straight()
-        }
+        Filter::Area => area(pattern, p, image_from_pixel),
     }
 }
 
@@ -353,6 +344,28 @@ fn bilinear(pattern: &Pattern, p: DVec2) -> Mixture {
         sum.add(&Mixture::of(pixel(pattern, x, y)), weight);
     }
     sum
+}
+
+fn area(pattern: &Pattern, p: DVec2, image_from_pixel: &DAffine2) -> [f64; 4] {
+    let size = DVec2::new(pattern.image.width().into(), pattern.image.height().into());
+    // Repeated images are so common, and have so many points, that places in them are found without division.
+    let (again, per_size) = (pattern.spread == Some(Spread::Repeat), size.recip());
+    let mut sum = Mixture::default();
+    for part in 0..64 {
+        let (x, y) = (f64::from(part % 8), f64::from(part / 8));
+        let aside = DVec2::new((x - 3.5) / 8.0, (y - 3.5) / 8.0);
+        let at = p + image_from_pixel.transform_vector2(aside);
+        let at = if again { at - size * (at * per_size).floor() } else { at };
+        sum.add(&Mixture::of(pixel_within(pattern, at.floor())), 1.0 / 64.0);
+    }
+    sum.straight()
+}
+
+/// [`pixel`], fast for what is within the image.
+fn pixel_within(pattern: &Pattern, at: DVec2) -> [f64; 4] {
+    let place = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as u32, at.y as u32));
+    let found = place.and_then(|(x, y)| pattern.image.get(x, y));
+    found.map_or_else(|| pixel(pattern, at.x, at.y), |color| color.map(f64::from))
 }
 
 fn bicubic(pattern: &Pattern, p: DVec2) -> [f64; 4] {
