@@ -4,7 +4,7 @@ use durer_formats::geo::{
     Beside, Feature, GeoFormat, Geometry, Member, Points, Reader, System, Writer, read_all,
 };
 use durer_formats::{NoResources, Resources};
-use std::io::{Cursor, Seek, SeekFrom};
+use std::io::{Cursor, Seek};
 
 /// Texts in UTF-16, pages of 512 bytes, rows on several pages, a column that was added later, two layers of points and
 /// lines, a table without geometries, a view and tiles.
@@ -185,7 +185,7 @@ fn what_is_written_is_the_same_to_a_file_and_to_a_stream() {
     }
     let finished = stream.finish_all(&[]).expect("memory");
     let mut file = file.finish(&[]).expect("memory");
-    assert_eq!(file.seek(SeekFrom::Current(0)).expect("memory"), finished.out.len() as u64);
+    assert_eq!(file.stream_position().expect("memory"), finished.out.len() as u64);
     assert!(file.into_inner() == finished.out);
     let told: Vec<String> = finished.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(

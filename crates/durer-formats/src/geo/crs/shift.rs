@@ -1,6 +1,7 @@
 //! From one frame to another by seven parameters: the position vector transformation, method 9606 of the EPSG's list, and
 //! Bowring's formula for geographic coordinates (*Transformation from spatial to geographical coordinates*, Survey Review
-//! 23, 1976), repeated. Places lie on the ellipsoid; what that leaves of heights does not reach longitudes and latitudes.
+//! 23, 1976), repeated. Places lie on the ellipsoid; the heights that this leaves out
+//! reach longitudes and latitudes by millimetres.
 
 use super::ellipsoid::Ellipsoid;
 use durer::math::DVec3;
@@ -86,10 +87,11 @@ mod tests {
         for (lon, lat) in [(0.0, 0.0), (3.5, 1.5), (-9.0, -1.0), (1.0, 0.8)] {
             let there = apply((lon, lat), (bodies[0], shift), (bodies[1], Shift::NONE));
             assert!((there.1 - lat).abs() > 1e-6);
+            // Heights of up to 600 m are left out between: a tenth of a metre.
             let back = apply(there, (bodies[1], Shift::NONE), (bodies[0], shift));
-            assert!((back.0 - lon).abs() < 3e-9 && (back.1 - lat).abs() < 3e-9);
+            assert!(((back.0 - lon) * lat.cos()).abs() < 2e-8 && (back.1 - lat).abs() < 2e-8);
             let same = apply((lon, lat), (bodies[0], shift), (bodies[0], shift));
-            assert!((same.0 - lon).abs() < 3e-9 && (same.1 - lat).abs() < 3e-9);
+            assert!(((same.0 - lon) * lat.cos()).abs() < 3e-9 && (same.1 - lat).abs() < 3e-9);
         }
     }
 }
