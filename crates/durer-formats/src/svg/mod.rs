@@ -31,6 +31,7 @@ mod finish;
 mod fonts;
 mod image;
 mod letters;
+mod markers;
 mod outline;
 mod paint;
 mod pictures;
