@@ -40,15 +40,15 @@ impl Letters {
         !self.are_apart && self.case == Case::AsWritten
     }
 
-    /// A text as it is to be set; `goes_on` says whether others follow it in the same line.
-    pub fn set(self, text: &str, goes_on: bool) -> Cow<'_, str> {
+    /// A text as it is to be set; `beside` says whether there are others before it and after it.
+    pub fn set(self, text: &str, beside: [bool; 2]) -> Cow<'_, str> {
         let cased = match self.case {
             Case::AsWritten => Cow::Borrowed(text),
             Case::Upper => Cow::Owned(text.to_uppercase()),
             Case::Lower => Cow::Owned(text.to_lowercase()),
             Case::Capitalized => Cow::Owned(capitalized(text)),
         };
-        if self.are_apart { Cow::Owned(kept_apart(&cased, goes_on)) } else { cased }
+        if self.are_apart { Cow::Owned(kept_apart(&cased, beside)) } else { cased }
     }
 }
 
@@ -72,18 +72,18 @@ const NON_JOINER: char = '\u{200c}';
 pub(super) const SHARE: f64 = 0.5;
 
 /// A text with what keeps letters from being joined after each of them, where another one follows, so that all gaps are alike.
-/// Blanks at the ends stay there, and several stay together: they vanish.
-fn kept_apart(text: &str, goes_on: bool) -> String {
+/// Blanks at the ends of the line and several together stay so: they vanish.
+fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     let mut out = String::with_capacity(2 * text.len());
     let mut left = text.chars().filter(|c| !c.is_whitespace()).count();
-    let (mut has_begun, mut chars) = (false, text.chars().peekable());
+    let (mut has_begun, mut chars) = (has_before, text.chars().peekable());
     while let Some(c) = chars.next() {
         out.push(c);
         has_begun |= !c.is_whitespace();
         left -= usize::from(!c.is_whitespace());
         let is_between = match chars.peek() {
-            Some(next) => left > 0 && !(c.is_whitespace() && next.is_whitespace()),
-            None => goes_on,
+            Some(next) => (left > 0 || has_after) && !(c.is_whitespace() && next.is_whitespace()),
+            None => has_after,
         };
         // What is joined by nature stays so: Arabic and others get no space anyway.
         if has_begun && is_between && !is_joined(c) {
@@ -104,13 +104,15 @@ mod tests {
 
     #[test]
     fn letters_are_changed_and_kept_apart() {
-        let of = |case, are_apart, text| Letters { case, are_apart }.set(text, false).into_owned();
+        let of =
+            |case, are_apart, text| Letters { case, are_apart }.set(text, [false; 2]).into_owned();
         assert_eq!(of(Case::Upper, false, "straße 1"), "STRASSE 1");
         assert_eq!(of(Case::Lower, false, "ÄB"), "äb");
         assert_eq!(of(Case::Capitalized, false, "it's a dog-house"), "It's A Dog-House");
         assert_eq!(of(Case::AsWritten, true, " fi  1 "), " f\u{200c}i\u{200c}  \u{200c}1 ");
         assert_eq!(of(Case::AsWritten, true, "بت"), "بت");
         let apart = Letters { are_apart: true, ..Letters::default() };
-        assert_eq!(apart.set("a", true), "a\u{200c}");
+        assert_eq!(apart.set("a ", [false, true]), "a\u{200c} \u{200c}");
+        assert_eq!(apart.set(" a", [true, false]), " \u{200c}a");
     }
 }

@@ -101,7 +101,7 @@ fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     if let Some(text) = node.text().filter(|_| node.is_text()) {
         let letters = node.parent().and_then(|parent| changes.letters.get(&parent.id()));
         escape(
-            &letters.map_or(Cow::Borrowed(text), |letters| letters.set(text, goes_on(node))),
+            &letters.map_or(Cow::Borrowed(text), |letters| letters.set(text, beside(node))),
             false,
             &mut out.text,
         );
@@ -134,14 +134,17 @@ fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     false
 }
 
-/// Whether something stands after a text in the same `text` element.
-fn goes_on(node: Node<'_, '_>) -> bool {
+/// Whether something stands before a text and after it in the same `text` element.
+fn beside(node: Node<'_, '_>) -> [bool; 2] {
     let is_within = |node: &Node<'_, '_>| node.tag_name().name() != "text";
-    let mut around = node.ancestors().take_while(is_within);
     let is_seen = |node: Node<'_, '_>| {
         node.is_element() || node.text().is_some_and(|text| !text.trim().is_empty())
     };
-    around.any(|node| node.next_sibling().is_some_and(is_seen))
+    let around = || node.ancestors().take_while(is_within);
+    [
+        around().any(|node| node.prev_sibling().is_some_and(is_seen)),
+        around().any(|node| node.next_sibling().is_some_and(is_seen)),
+    ]
 }
 
 /// The name that an element has now.

@@ -447,3 +447,32 @@ fn markers_of_closed_paths_look_half_way() {
     let curve = "<path d='M5 20C5 20 20 20 20 20' fill='none' marker-end='url(#m)'/>";
     assert_eq!(extent(&painted(&format!("{MARKER}{curve}"))), Some([20, 18, 24, 22]));
 }
+
+#[test]
+fn pictures_stand_upright() {
+    // 16 × 8 pixels, of which the right half is white, to be turned by a quarter to the right.
+    let jpeg = "/9j/4AAQSkZJRgABAQAAAQABAAD/4QAiRXhpZgAATU0AKgAAAAgAAQESAAMAAAABAAYAAAAAAAD/2wBDAAgGBgcGBQgHBwcJCQgKDBQNDAsL\
+                DBkSEw8UHRofHh0aHBwgJC4nICIsIxwcKDcpLDAxNDQ0Hyc5PTgyPC4zNDL/wAALCAAIABABAREA/8QAFAABAAAAAAAAAAAAAAAAAAAACP/E\
+                ABQQAQAAAAAAAAAAAAAAAAAAAAD/2gAIAQEAAD8AP5/v/9k=";
+    let picture = painted(&format!("<image x='10' href='data:image/jpeg;base64,{jpeg}'/>"));
+    assert_eq!(extent(&picture), Some([10, 0, 18, 16]), "as high as it was wide");
+    let [above, below] = [3, 12].map(|y| picture.get(14, y).unwrap()[0]);
+    assert!(above < 30 && below > 225, "{above} {below}");
+    let webp = "UklGRhwAAABXRUJQVlA4TA8AAAAvAAAAAAfQ/4j+ByKi/wEA";
+    let picture = painted(&format!("<image {RECT} href='data:image/webp;base64,{webp}'/>"));
+    assert_eq!(picture.get(20, 20), Some(LIME));
+}
+
+#[test]
+fn spaced_words_and_spans_keep_their_gaps() {
+    let fonts = fonts();
+    let draw = |body: &str| draw_with(document(body).as_bytes(), &fonts).0;
+    // Without letters that are joined, what is spaced stands where each letter would be put by itself.
+    let spaced = draw(
+        "<text y='30' font-size='10' letter-spacing='3'> o<tspan letter-spacing='5'>x </tspan>o </text>",
+    );
+    let placed = draw(
+        "<text y='30' font-size='10'>o<tspan dx='3'>x</tspan><tspan dx='5'> </tspan><tspan dx='5'>o</tspan></text>",
+    );
+    assert_eq!(extent(&spaced), extent(&placed));
+}
