@@ -85,8 +85,15 @@ fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
             Some(next) => (left > 0 || has_after) && !(c.is_whitespace() && next.is_whitespace()),
             None => has_after,
         };
+        let is_last = left == 0 && !has_after && !c.is_whitespace();
         // What is joined by nature stays so: Arabic and others get no space anyway.
-        if has_begun && is_between && !is_joined(c) {
+        if is_joined(c) {
+            continue;
+        }
+        if is_last {
+            // Browsers put space after the last letter too; the very last sign gets none.
+            out.extend([NON_JOINER; 2]);
+        } else if has_begun && is_between {
             out.push(NON_JOINER);
         }
     }
@@ -109,10 +116,13 @@ mod tests {
         assert_eq!(of(Case::Upper, false, "straße 1"), "STRASSE 1");
         assert_eq!(of(Case::Lower, false, "ÄB"), "äb");
         assert_eq!(of(Case::Capitalized, false, "it's a dog-house"), "It's A Dog-House");
-        assert_eq!(of(Case::AsWritten, true, " fi  1 "), " f\u{200c}i\u{200c}  \u{200c}1 ");
+        assert_eq!(
+            of(Case::AsWritten, true, " fi  1 "),
+            " f\u{200c}i\u{200c}  \u{200c}1\u{200c}\u{200c} "
+        );
         assert_eq!(of(Case::AsWritten, true, "بت"), "بت");
         let apart = Letters { are_apart: true, ..Letters::default() };
         assert_eq!(apart.set("a ", [false, true]), "a\u{200c} \u{200c}");
-        assert_eq!(apart.set(" a", [true, false]), " \u{200c}a");
+        assert_eq!(apart.set(" a", [true, false]), " \u{200c}a\u{200c}\u{200c}");
     }
 }

@@ -475,4 +475,12 @@ fn spaced_words_and_spans_keep_their_gaps() {
         "<text y='30' font-size='10'>o<tspan dx='3'>x</tspan><tspan dx='5'> </tspan><tspan dx='5'>o</tspan></text>",
     );
     assert_eq!(extent(&spaced), extent(&placed));
+    // As in browsers there is space after the last letter too, which counts where text is centred.
+    let middle = |x: u32| {
+        draw(&format!(
+            "<text x='{x}' y='30' font-size='10' text-anchor='middle' letter-spacing='4'>oo</text>"
+        ))
+    };
+    let [left, _, right, _] = extent(&middle(20)).unwrap();
+    assert!((left + right).abs_diff(2 * 20 - 4) <= 1, "{left} {right}");
 }
