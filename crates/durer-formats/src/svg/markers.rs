@@ -69,6 +69,8 @@ impl Subpath {
 fn between(before: Option<DVec2>, after: Option<DVec2>) -> Option<f64> {
     let angle = |way: DVec2| libm::atan2(way.y, way.x);
     let (Some(a), Some(b)) = (before, after) else { return before.or(after).map(angle) };
+    // Straight to the left again after straight to the right looks up in browsers, and the other way round down.
+    let b = if b.y == 0.0 { DVec2::new(b.x, -0.0) } else { b };
     let (mut a, b) = (angle(a), angle(b));
     if (a - b).abs() > std::f64::consts::PI {
         a += std::f64::consts::TAU;
@@ -234,6 +236,7 @@ mod tests {
             [(0.0, 0.0, 0), (9.0, 0.0, 0), (1.0, 1.0, 90), (1.0, 9.0, 90)]
         );
         assert_eq!(of("M0 0H9V9ZH5").len(), 5);
+        assert_eq!(of("M0 0H9Z"), [(0.0, 0.0, 90), (9.0, 0.0, -90), (0.0, 0.0, 90)]);
         assert_eq!(of("M1 1"), []);
     }
 }
