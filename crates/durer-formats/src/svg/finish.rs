@@ -154,7 +154,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         if reference == Reference::View {
             return Some(Bounds { low: DVec2::ZERO, high: DVec2::new(width, height) });
         }
-        let mut bounds = Boxes::new(view, &self.around).find(self.node)?;
+        let mut bounds = Boxes::new(view, &self.around, &view.changes.looked).find(self.node)?;
         let is_stroked = view.inherited(self.node, "stroke").is_some_and(|stroke| stroke != "none");
         if reference == Reference::Stroke && is_stroked {
             let width = view.inherited(self.node, "stroke-width").unwrap_or("1");

@@ -3,6 +3,7 @@
 use super::letters::Letters;
 use super::outline::Changed;
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
@@ -16,6 +17,8 @@ pub(super) struct Changes<'a> {
     pub attributes: Changed<'a>,
     /// Elements of definitions to be added at the end.
     pub definitions: String,
+    /// How many elements have been looked at to find boxes.
+    pub looked: Cell<u32>,
     /// Elements that become groups, and what is in these.
     pub groups: HashMap<NodeId, String>,
     /// Elements whose letters are not set as they are written.

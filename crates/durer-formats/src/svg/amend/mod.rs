@@ -9,6 +9,7 @@ mod scope;
 use super::filters;
 use super::finish::{Later, Pending};
 use super::letters::SHARE;
+use super::references::MAX_DEPTH;
 use super::style::{Styles, initial, shown, takes};
 use super::values::{Fate, Kind, can_be_drawn};
 use super::write::{self, Changes, Written, attributes, is_of_svg};
@@ -19,6 +20,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use usvg::roxmltree::{Document, Node, NodeId};
 
 /// What a document becomes.
+#[derive(Default)]
 pub(super) struct Amended {
     /// `None` where nothing has to be other.
     pub written: Option<Written>,
@@ -38,6 +40,10 @@ pub(super) fn amended(document: &Document<'_>, first_picture: usize) -> Result<A
         let parent = node.parent_element().map(|parent| parent.id());
         while stack.last().is_some_and(|(id, _)| Some(*id) != parent) {
             stack.pop();
+        }
+        if stack.len() > MAX_DEPTH {
+            // Such a document is refused when its references are looked at.
+            return Ok(Amended::default());
         }
         let scope = stack.last().map(|(_, scope)| *scope).unwrap_or_default();
         let own = walk.element(node, scope)?;
