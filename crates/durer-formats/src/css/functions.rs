@@ -75,7 +75,7 @@ pub(crate) fn split<'a, 'b>(pieces: &'b [Piece<'a>], separator: char) -> Vec<&'b
 /// The components of a colour as they stand in a function: with commas, or with blanks and a stroke before alpha.
 fn of_components(space: Space, inside: &[Piece<'_>]) -> Option<Color> {
     let mut parts = split(inside, ',');
-    let mut alpha: Option<&[Piece<'_>]> = None;
+    let alpha: Option<&[Piece<'_>]>;
     if parts.len() == 1 {
         let halves = split(inside, '/');
         alpha = halves.get(1).copied();
@@ -83,8 +83,15 @@ fn of_components(space: Space, inside: &[Piece<'_>]) -> Option<Color> {
             return None;
         }
         parts = words(halves.first()?);
-    } else if parts.len() == 4 {
-        alpha = parts.pop();
+    } else {
+        alpha = if parts.len() == 4 { parts.pop() } else { None };
+        // With commas, as it was at first, numbers and percentages are not mixed.
+        let is_percent =
+            |part: &&[Piece<'_>]| matches!(part, [Piece { token: Token::Percent(_), .. }]);
+        let percents = parts.iter().filter(|part| is_percent(part)).count();
+        if space == Space::Bytes && percents != 0 && percents != parts.len() {
+            return None;
+        }
     }
     let [a, b, c] = parts.as_slice() else { return None };
     let mut components = [0.0; 3];

@@ -244,6 +244,8 @@ impl Space {
         match self {
             Self::Lab | Self::Lch => *first = first.clamp(0.0, 100.0),
             Self::Oklab | Self::Oklch => *first = first.clamp(0.0, 1.0),
+            // As browsers have it.
+            Self::Hsl => *second = second.min(100.0),
             _ => {}
         }
         if matches!(self, Self::Lch | Self::Oklch | Self::Hsl) {

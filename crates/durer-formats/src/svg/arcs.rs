@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use svgtypes::{PathParser, PathSegment};
 
 /// Calls `curve` with the points of curves after the first of each; `None` where the arc is a line.
-fn curves(ends: &Ends, mut curve: impl FnMut([DVec2; 3])) -> Option<()> {
+pub(super) fn curves(ends: &Ends, mut curve: impl FnMut([DVec2; 3])) -> Option<()> {
     let arc = Arc::new(ends)?;
     let turn = if arc.is_half { PI.copysign(arc.turn) } else { arc.turn };
     // A hair less, so that rounding adds no curve to an eighth of a turn.

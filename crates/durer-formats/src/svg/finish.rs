@@ -1,12 +1,12 @@
 //! What can be said of elements only when all attributes of all elements are known.
 
-use super::filters;
 use super::outline::{Attributes, Bounds, Boxes, path_length};
 use super::shapes::{Reference, Shape};
 use super::style::shown;
 use super::transform;
 use super::values::{Around, Kind};
 use super::write::{Changes, attributes};
+use super::{filters, markers};
 use durer::math::{DAffine2, DVec2};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -20,6 +20,10 @@ pub(super) struct Later {
     /// A shape to clip by, and where in the document it is said.
     pub clip: Option<(String, usize)>,
     pub is_filtered: bool,
+    /// It may have markers.
+    pub is_marked: bool,
+    /// Its path data as they were said, with arcs.
+    pub data: Option<String>,
     has_length: bool,
 }
 
@@ -48,7 +52,11 @@ impl Later {
     }
 
     pub fn is_nothing(&self) -> bool {
-        self.transform.is_empty() && self.clip.is_none() && !self.is_filtered && !self.has_length
+        self.transform.is_empty()
+            && self.clip.is_none()
+            && !self.is_filtered
+            && !self.is_marked
+            && !self.has_length
     }
 }
 
@@ -88,6 +96,14 @@ impl<'a> View<'_, 'a, '_> {
     }
 }
 
+/// Markers of paths with more vertices are left to usvg.
+const MAX_VERTICES: usize = 100_000;
+
+/// Whether path data have curves, arcs or closed parts: straight open lines are marked as they should be anyway.
+fn is_curved_or_closed(data: &str) -> bool {
+    data.contains(['a', 'A', 'c', 'C', 's', 'S', 'q', 'Q', 't', 'T', 'z', 'Z'])
+}
+
 /// Sets an attribute of an element, or takes it away.
 fn set<'a>(
     changes: &mut Changes<'a>,
@@ -120,6 +136,9 @@ impl<'a, 'i> Pending<'a, 'i> {
         if !self.later.transform.is_empty() {
             self.transform(changes, ids, told);
         }
+        if self.later.is_marked {
+            self.mark(changes, ids);
+        }
         if let Some((value, at)) = &self.later.clip {
             self.clip(value, *at, changes, ids, told);
         }
@@ -135,7 +154,7 @@ impl<'a, 'i> Pending<'a, 'i> {
         if reference == Reference::View {
             return Some(Bounds { low: DVec2::ZERO, high: DVec2::new(width, height) });
         }
-        let mut bounds = Boxes::new(view, &self.around).find(self.node)?;
+        let mut bounds = Boxes::new(view, &self.around, &view.changes.looked).find(self.node)?;
         let is_stroked = view.inherited(self.node, "stroke").is_some_and(|stroke| stroke != "none");
         if reference == Reference::Stroke && is_stroked {
             let width = view.inherited(self.node, "stroke-width").unwrap_or("1");
@@ -281,6 +300,66 @@ impl<'a, 'i> Pending<'a, 'i> {
             told.push((at, format!("`{name}` is left out: its filter `{}` shows none of its colours, and filters are not drawn", shown(value))));
             set(changes, self.node, "display", Some("none".to_owned()));
         }
+    }
+
+    /// Places the markers of a path, and takes those away that browsers do not draw.
+    fn mark(&self, changes: &mut Changes<'a>, ids: &HashMap<&'a str, Node<'a, 'i>>) {
+        const NAMES: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
+        let view = View { changes, ids };
+        let is_in = |name: &str| self.node.ancestors().any(|node| node.tag_name().name() == name);
+        if is_in("marker") || is_in("clipPath") {
+            return;
+        }
+        let marker = |value: &str| {
+            let marker = ids.get(filters::links(value).next()?)?;
+            (marker.tag_name().name() == "marker").then_some(*marker)
+        };
+        let said = NAMES.map(|name| view.inherited(self.node, name));
+        let markers = said.map(|value| value.and_then(marker));
+        if markers.iter().all(Option::is_none) {
+            return;
+        }
+        let name = self.name();
+        if matches!(name, "rect" | "circle" | "ellipse") {
+            return NAMES
+                .iter()
+                .for_each(|name| set(changes, self.node, name, Some("none".to_owned())));
+        }
+        let points = || view.value(self.node, "points").map(|points| format!("M{points}Z"));
+        let data = match name {
+            "polygon" => points(),
+            _ => self.later.data.clone().or_else(|| view.value(self.node, "d").map(str::to_owned)),
+        };
+        let shows_context = |marker: &Node<'_, '_>| {
+            let mut values = marker.descendants().flat_map(|node| node.attributes());
+            values.any(|a| a.value().contains("context-"))
+        };
+        let Some(data) = data.filter(|data| is_curved_or_closed(data)) else { return };
+        let is_path_of_text = self.node.attribute("id").is_some()
+            && self.node.document().descendants().any(|node| node.tag_name().name() == "textPath");
+        let vertices = markers::vertices(&data);
+        // Elsewhere than on top usvg draws them with the path alone.
+        let is_on_top =
+            view.inherited(self.node, "paint-order").is_none_or(|order| !order.contains("markers"));
+        if is_path_of_text
+            || !is_on_top
+            || markers.iter().flatten().any(shows_context)
+            || vertices.len() > MAX_VERTICES
+        {
+            return;
+        }
+        let is_reversed =
+            markers[0].and_then(|m| view.value(m, "orient")) == Some("auto-start-reverse");
+        let links = [0, 1, 2].map(|i| said[i].filter(|_| markers[i].is_some()));
+        let placed = markers::paths(&vertices, links, is_reversed);
+        let shape = if name == "polygon" { "points" } else { "d" };
+        let mut own = String::new();
+        super::write::escape(view.value(self.node, shape).unwrap_or_default(), true, &mut own);
+        let inside = format!(
+            "<{name} {shape}=\"{own}\" marker-start=\"none\" marker-mid=\"none\" marker-end=\"none\"></{name}>{placed}"
+        );
+        set(changes, self.node, if name == "polygon" { "points" } else { "d" }, None);
+        changes.groups.insert(self.node.id(), inside);
     }
 
     /// Measures dashes in what the element says its length is.

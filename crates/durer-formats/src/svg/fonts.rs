@@ -206,7 +206,7 @@ pub(super) fn missing_letters(tree: &usvg::Tree, mut missing: BTreeSet<char>) ->
         }
     }
     let is_seen = |c: &char| {
-        let joins = matches!(c, '\u{200b}'..='\u{200f}' | '\u{2060}'..='\u{2064}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}');
+        let joins = matches!(c, '\u{34f}' | '\u{200b}'..='\u{200f}' | '\u{2060}'..='\u{2064}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}');
         !joins && !c.is_control() && !c.is_whitespace()
     };
     no_glyphs(missing.into_iter().filter(is_seen))

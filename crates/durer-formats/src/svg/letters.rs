@@ -40,15 +40,15 @@ impl Letters {
         !self.are_apart && self.case == Case::AsWritten
     }
 
-    /// A text as it is to be set.
-    pub fn set(self, text: &str) -> Cow<'_, str> {
+    /// A text as it is to be set; `beside` says whether there are others before it and after it.
+    pub fn set(self, text: &str, beside: [bool; 2]) -> Cow<'_, str> {
         let cased = match self.case {
             Case::AsWritten => Cow::Borrowed(text),
             Case::Upper => Cow::Owned(text.to_uppercase()),
             Case::Lower => Cow::Owned(text.to_lowercase()),
             Case::Capitalized => Cow::Owned(capitalized(text)),
         };
-        if self.are_apart { Cow::Owned(kept_apart(&cased)) } else { cased }
+        if self.are_apart { Cow::Owned(kept_apart(&cased, beside)) } else { cased }
     }
 }
 
@@ -65,22 +65,44 @@ fn capitalized(text: &str) -> String {
     out
 }
 
-/// What keeps two letters from being joined.
+/// What keeps two letters from being joined. It gets space of its own.
 const NON_JOINER: char = '\u{200c}';
 
-/// A text with what keeps letters from being joined between them; not in scripts whose letters are joined by their nature.
-fn kept_apart(text: &str) -> String {
-    let is_apart = |c: char| c.is_alphabetic() && c < '\u{590}';
+/// Of the space between letters what each of a letter and what follows it gets.
+pub(super) const SHARE: f64 = 0.5;
+
+/// A text with what keeps letters from being joined after each of them, where another one follows, so that all gaps are alike.
+/// Blanks at the ends of the line and several together stay so: they vanish.
+fn kept_apart(text: &str, [has_before, has_after]: [bool; 2]) -> String {
     let mut out = String::with_capacity(2 * text.len());
-    let mut before = ' ';
-    for c in text.chars() {
-        if is_apart(before) && is_apart(c) {
+    let mut left = text.chars().filter(|c| !c.is_whitespace()).count();
+    let (mut has_begun, mut chars) = (has_before, text.chars().peekable());
+    while let Some(c) = chars.next() {
+        out.push(c);
+        has_begun |= !c.is_whitespace();
+        left -= usize::from(!c.is_whitespace());
+        let is_between = match chars.peek() {
+            Some(next) => (left > 0 || has_after) && !(c.is_whitespace() && next.is_whitespace()),
+            None => has_after,
+        };
+        let is_last = left == 0 && !has_after && !c.is_whitespace();
+        // What is joined by nature stays so: Arabic and others get no space anyway.
+        if is_joined(c) {
+            continue;
+        }
+        if is_last {
+            // Browsers put space after the last letter too; the very last sign gets none.
+            out.extend([NON_JOINER; 2]);
+        } else if has_begun && is_between {
             out.push(NON_JOINER);
         }
-        out.push(c);
-        before = c;
     }
     out
+}
+
+/// Whether a letter may be joined with the next one by nature.
+fn is_joined(c: char) -> bool {
+    matches!(c, '\u{600}'..='\u{8ff}' | '\u{900}'..='\u{9ff}' | '\u{a00}'..='\u{a7f}' | '\u{1680}'..='\u{169f}' | '\u{1800}'..='\u{18af}' | '\u{a840}'..='\u{a87f}' | '\u{300}'..='\u{36f}')
 }
 
 #[cfg(test)]
@@ -89,10 +111,18 @@ mod tests {
 
     #[test]
     fn letters_are_changed_and_kept_apart() {
-        let of = |case, are_apart, text| Letters { case, are_apart }.set(text).into_owned();
+        let of =
+            |case, are_apart, text| Letters { case, are_apart }.set(text, [false; 2]).into_owned();
         assert_eq!(of(Case::Upper, false, "straße 1"), "STRASSE 1");
         assert_eq!(of(Case::Lower, false, "ÄB"), "äb");
         assert_eq!(of(Case::Capitalized, false, "it's a dog-house"), "It's A Dog-House");
-        assert_eq!(of(Case::AsWritten, true, "fi 12 بت"), "f\u{200c}i 12 بت");
+        assert_eq!(
+            of(Case::AsWritten, true, " fi  1 "),
+            " f\u{200c}i\u{200c}  \u{200c}1\u{200c}\u{200c} "
+        );
+        assert_eq!(of(Case::AsWritten, true, "بت"), "بت");
+        let apart = Letters { are_apart: true, ..Letters::default() };
+        assert_eq!(apart.set("a ", [false, true]), "a\u{200c} \u{200c}");
+        assert_eq!(apart.set(" a", [true, false]), " \u{200c}a\u{200c}\u{200c}");
     }
 }

@@ -1,6 +1,7 @@
 //! Drawings in SVG, onto a canvas.
 //!
-//! usvg resolves styles, units, references and text; what is left — paths with fills and strokes, groups
+//! Style sheets, and values newer than SVG 1.1, are put in attributes that usvg knows, as browsers read them; usvg resolves
+//! units, references and text; what is left — paths with fills and strokes, groups
 //! with clip paths, masks and opacity, images — is painted by [`durer::raster::paint`]. Not painted are
 //! filters, blend modes, and what moves or runs; [`Drawing::read`] and [`Drawing::draw`] say so in
 //! warnings.
@@ -31,6 +32,7 @@ mod finish;
 mod fonts;
 mod image;
 mod letters;
+mod markers;
 mod outline;
 mod paint;
 mod pictures;

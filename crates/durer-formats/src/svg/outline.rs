@@ -3,6 +3,7 @@
 use super::values::{Around, whole_of};
 use crate::css::Whole;
 use durer::math::{DAffine2, DVec2};
+use std::cell::Cell;
 use std::collections::HashMap;
 use svgtypes::{SimplePathSegment, SimplifyingPathParser};
 use usvg::roxmltree::{Node, NodeId};
@@ -10,8 +11,8 @@ use usvg::roxmltree::{Node, NodeId};
 /// Elements within one another whose boxes are looked for may be so deep.
 const MAX_DEPTH: u32 = 64;
 
-/// So many elements of a group are looked at for its box.
-const MAX_ELEMENTS: u32 = 100_000;
+/// So many elements are looked at for boxes in a document: groups within groups would be looked at again and again.
+const MAX_ELEMENTS: u32 = 2_000_000;
 
 /// The attributes that elements have in the end.
 pub(super) trait Attributes<'a> {
@@ -234,12 +235,13 @@ pub(super) fn path_length<'a>(
 pub(super) struct Boxes<'b, A> {
     pub all: &'b A,
     pub around: &'b Around,
-    left: u32,
+    /// How many elements have been looked at in the document.
+    looked: &'b Cell<u32>,
 }
 
 impl<'b, A> Boxes<'b, A> {
-    pub fn new(all: &'b A, around: &'b Around) -> Self {
-        Self { all, around, left: MAX_ELEMENTS }
+    pub fn new(all: &'b A, around: &'b Around, looked: &'b Cell<u32>) -> Self {
+        Self { all, around, looked }
     }
 
     /// The box around an element in its own units, without its transform; `None` where it is not known, as that of text.
@@ -255,8 +257,8 @@ impl<'b, A> Boxes<'b, A> {
     where
         A: Attributes<'a>,
     {
-        self.left = self.left.checked_sub(1)?;
-        if depth > MAX_DEPTH {
+        self.looked.set(self.looked.get().saturating_add(1));
+        if depth > MAX_DEPTH || self.looked.get() > MAX_ELEMENTS {
             return None;
         }
         let of = |name: &str| length(self.all, node, name, self.around);

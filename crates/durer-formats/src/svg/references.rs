@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
 /// Elements within one another and within what refers to them may be so deep, as usvg has it for elements alone.
-const MAX_DEPTH: usize = 1024;
+pub const MAX_DEPTH: usize = 1024;
 
 /// References may be followed so many times in all: what refers twice to what refers twice, and so on, would keep
 /// a small file busy for ever.

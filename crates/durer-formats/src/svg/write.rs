@@ -3,6 +3,7 @@
 use super::letters::Letters;
 use super::outline::Changed;
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::HashMap;
 use usvg::roxmltree::{Document, Node, NodeId};
 
@@ -16,13 +17,20 @@ pub(super) struct Changes<'a> {
     pub attributes: Changed<'a>,
     /// Elements of definitions to be added at the end.
     pub definitions: String,
+    /// How many elements have been looked at to find boxes.
+    pub looked: Cell<u32>,
+    /// Elements that become groups, and what is in these.
+    pub groups: HashMap<NodeId, String>,
     /// Elements whose letters are not set as they are written.
     pub letters: HashMap<NodeId, Letters>,
 }
 
 impl Changes<'_> {
     pub fn is_empty(&self) -> bool {
-        self.attributes.is_empty() && self.definitions.is_empty() && self.letters.is_empty()
+        self.attributes.is_empty()
+            && self.definitions.is_empty()
+            && self.letters.is_empty()
+            && self.groups.is_empty()
     }
 }
 
@@ -96,7 +104,7 @@ fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     if let Some(text) = node.text().filter(|_| node.is_text()) {
         let letters = node.parent().and_then(|parent| changes.letters.get(&parent.id()));
         escape(
-            &letters.map_or(Cow::Borrowed(text), |letters| letters.set(text)),
+            &letters.map_or(Cow::Borrowed(text), |letters| letters.set(text, beside(node))),
             false,
             &mut out.text,
         );
@@ -107,7 +115,7 @@ fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
     }
     out.places.push(node.range().start);
     out.text.push('<');
-    out.text.push_str(node.tag_name().name());
+    out.text.push_str(name_of(node, changes));
     if node == node.document().root_element() {
         out.text.push_str(&format!(" xmlns=\"{}\" xmlns:xlink=\"{XLINK}\"", super::ROOT.0));
     }
@@ -123,21 +131,46 @@ fn open(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) -> bool {
         None => attributes(node).for_each(|(name, value)| say(&name, &value)),
     }
     out.text.push('>');
-    true
+    let Some(inside) = changes.groups.get(&node.id()) else { return true };
+    out.places.extend(std::iter::repeat_n(node.range().start, elements_in(inside)));
+    out.text.push_str(inside);
+    false
+}
+
+/// Whether something stands before a text and after it in the same `text` element.
+fn beside(node: Node<'_, '_>) -> [bool; 2] {
+    let is_within = |node: &Node<'_, '_>| node.tag_name().name() != "text";
+    let is_seen = |node: Node<'_, '_>| {
+        node.is_element() || node.text().is_some_and(|text| !text.trim().is_empty())
+    };
+    let around = || node.ancestors().take_while(is_within);
+    [
+        around().any(|node| node.prev_sibling().is_some_and(is_seen)),
+        around().any(|node| node.next_sibling().is_some_and(is_seen)),
+    ]
+}
+
+/// The name that an element has now.
+fn name_of<'a>(node: Node<'a, '_>, changes: &Changes<'_>) -> &'a str {
+    if changes.groups.contains_key(&node.id()) { "g" } else { node.tag_name().name() }
+}
+
+/// How many elements there are in what was written.
+fn elements_in(text: &str) -> usize {
+    text.matches('<').count() - text.matches("</").count()
 }
 
 fn close(node: Node<'_, '_>, changes: &Changes<'_>, out: &mut Written) {
     let root = node.document().root_element();
     if node == root && !changes.definitions.is_empty() {
-        let count =
-            changes.definitions.matches('<').count() - changes.definitions.matches("</").count();
-        out.places.extend(std::iter::repeat_n(root.range().start, count + 1));
+        let count = elements_in(&changes.definitions) + 1;
+        out.places.extend(std::iter::repeat_n(root.range().start, count));
         out.text.push_str("<defs>");
         out.text.push_str(&changes.definitions);
         out.text.push_str("</defs>");
     }
     out.text.push_str("</");
-    out.text.push_str(node.tag_name().name());
+    out.text.push_str(name_of(node, changes));
     out.text.push('>');
 }
 

@@ -254,7 +254,7 @@ mod tests {
             ("rect:nth-of-type(2)", "4"),
             (":nth-last-child(-n+2)", "0345678"),
             ("rect:first-child:last-child", "7"),
-            (":only-child", "67"),
+            (":only-child", "067"),
             ("rect:not(.b):not(g > g > rect)", "4"),
             (":is(circle, .c) + *, :is(g .c)", "46"),
             ("g:hover, rect::before", ""),

@@ -23,8 +23,11 @@ use std::rc::Rc;
 use usvg::roxmltree::{Document, Node};
 use variables::Variables;
 
-/// So many declarations may be applied to elements in all.
-const MAX_APPLIED: u64 = 50_000_000;
+/// What elements are given in all may be so much, in bytes: few rules for all elements would fill the memory.
+const MAX_APPLIED: usize = 1 << 29;
+
+/// What a declaration that an element is given counts for, beside its value.
+const COST: usize = 64;
 
 /// Something in a style sheet or attribute to be told, and where in the document it stands.
 pub(super) type Told = (usize, String);
@@ -41,7 +44,7 @@ pub(super) struct Styles {
     /// What `style` attributes that were met say.
     known: HashMap<String, Rc<Vec<Declaration>>>,
     pub variables: Variables,
-    applied: u64,
+    applied: usize,
     pub told: Vec<Told>,
     /// Whether the document has style sheets.
     pub has_sheets: bool,
@@ -145,7 +148,7 @@ impl Styles {
             let of_rules = of_rules.flat_map(|rule| &rule.declarations).map(|d| (d, Some(d.at)));
             let own = own.iter().flat_map(|own| own.iter()).map(|d| (d, None));
             for (declaration, at) in of_rules.chain(own) {
-                self.applied += 1;
+                self.applied += COST + declaration.value.len();
                 if declaration.is_important == is_important {
                     let declared = Declared { value: declaration.value.clone(), at };
                     said.insert(declaration.name.clone(), declared);

@@ -76,6 +76,9 @@ impl Variables {
 
     /// A value with what its `var()` stand for; `None` where one stands for nothing, or for too much.
     pub fn replaced(&mut self, value: &str, set: Option<usize>) -> Option<String> {
+        if !has_variables(value) {
+            return Some(value.to_owned());
+        }
         self.replace(value, set, &BTreeMap::new(), &mut Vec::new())
     }
 

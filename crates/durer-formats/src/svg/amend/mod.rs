@@ -2,35 +2,31 @@
 //! and of what is newer than it. What cannot be used is told with its place and taken out: then what is inherited or the
 //! default counts, as CSS has it.
 
+mod copies;
+mod declared;
+mod scope;
+
 use super::filters;
 use super::finish::{Later, Pending};
-use super::letters::{Case, Letters};
-use super::style::{self, Declared, IN_STYLE, Styles, initial, shown, takes};
-use super::transform;
-use super::values::{Around, Fate, Kind, can_be_drawn, font_size};
+use super::letters::SHARE;
+use super::references::MAX_DEPTH;
+use super::style::{Styles, initial, shown, takes};
+use super::values::{Fate, Kind, can_be_drawn};
 use super::write::{self, Changes, Written, attributes, is_of_svg};
-use crate::{Place, Result, Warning, css};
+use crate::{Place, Result, Warning};
+use scope::Scope;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use usvg::roxmltree::{Document, Node, NodeId};
 
 /// What a document becomes.
+#[derive(Default)]
 pub(super) struct Amended {
     /// `None` where nothing has to be other.
     pub written: Option<Written>,
     pub warnings: Vec<Warning>,
     /// The addresses of pictures, in the place of which their numbers stand now, and where they were.
     pub pictures: Vec<(String, usize)>,
-}
-
-/// What is said around an element.
-#[derive(Debug, Clone, Copy, Default)]
-struct Scope {
-    around: Around,
-    variables: Option<usize>,
-    letters: Letters,
-    /// Within a text that places no letters by themselves.
-    is_free: bool,
 }
 
 /// Puts a document in terms that usvg knows. Pictures get numbers from `first_picture` on.
@@ -45,6 +41,10 @@ pub(super) fn amended(document: &Document<'_>, first_picture: usize) -> Result<A
         while stack.last().is_some_and(|(id, _)| Some(*id) != parent) {
             stack.pop();
         }
+        if stack.len() > MAX_DEPTH {
+            // Such a document is refused when its references are looked at.
+            return Ok(Amended::default());
+        }
         let scope = stack.last().map(|(_, scope)| *scope).unwrap_or_default();
         let own = walk.element(node, scope)?;
         if own.variables.is_some() && node.tag_name().name() == "use" {
@@ -57,9 +57,6 @@ pub(super) fn amended(document: &Document<'_>, first_picture: usize) -> Result<A
     }
     walk.finish()
 }
-
-/// So many elements may be copied for the sake of custom properties.
-const MAX_COPIED: usize = 100_000;
 
 struct Walk<'a, 'i> {
     document: &'a Document<'i>,
@@ -75,6 +72,7 @@ struct Walk<'a, 'i> {
     uses: Vec<(Node<'a, 'i>, Scope)>,
     pictures: Vec<(String, usize)>,
     first_picture: usize,
+    has_markers: bool,
     told: Vec<(usize, String)>,
     /// What has been told.
     seen: BTreeSet<String>,
@@ -102,6 +100,7 @@ impl<'a, 'i> Walk<'a, 'i> {
             uses: Vec::new(),
             pictures: Vec::new(),
             first_picture,
+            has_markers: document.descendants().any(|node| node.tag_name().name() == "marker"),
             told: Vec::new(),
             seen: BTreeSet::new(),
         }
@@ -133,6 +132,9 @@ impl<'a, 'i> Walk<'a, 'i> {
             if property != "style" && !(said.contains_key(property) && takes(name, property)) {
                 let at = attribute.range().start;
                 later.note(property, value, at);
+                if self.has_markers && name == "path" && property == "d" {
+                    later.data = Some(value.to_owned());
+                }
                 self.attribute(node, property, value, at, &scope, &mut edits);
             }
         }
@@ -153,6 +155,10 @@ impl<'a, 'i> Walk<'a, 'i> {
                 );
             }
         }
+        if self.changes.letters.get(&node.id()).is_some_and(|letters| letters.are_apart) {
+            let share = (scope.spacing * SHARE).to_string();
+            edits.push((Cow::Borrowed("letter-spacing"), Some(Cow::Owned(share))));
+        }
         let has_foreign =
             node.attributes().any(|a| a.namespace().is_some_and(|space| space != super::ROOT.0));
         if has_style || !edits.is_empty() || !in_style.is_empty() {
@@ -170,6 +176,8 @@ impl<'a, 'i> Walk<'a, 'i> {
             let all = attributes(node).collect();
             self.changes.attributes.insert(node.id(), all);
         }
+        let is_shape = matches!(name, "path" | "polygon" | "rect" | "circle" | "ellipse");
+        later.is_marked = self.has_markers && is_shape;
         if name == "use" || !later.is_nothing() {
             self.pending.push(Pending { node, around: scope.around, later });
         }
@@ -188,64 +196,6 @@ impl<'a, 'i> Walk<'a, 'i> {
         self.pictures.push((link.value().to_owned(), link.range().start));
         edits.push((Cow::Borrowed("xlink:href"), None));
         edits.push((Cow::Borrowed("href"), Some(Cow::Owned(key))));
-    }
-
-    /// What an element says that its own values are relative to.
-    fn enter(&mut self, node: Node<'a, 'i>, said: &BTreeMap<String, Declared>, scope: &mut Scope) {
-        let mut value = |name: &str, scope: &Scope| {
-            let text = said.get(name).map(|d| Cow::Borrowed(d.value.as_str()));
-            let text = text.or_else(|| node.attribute(name).map(Cow::Borrowed))?;
-            self.styles.variables.replaced(&text, scope.variables)
-        };
-        if let Some(size) =
-            value("font-size", scope).and_then(|v| font_size(v.trim(), &scope.around.units))
-        {
-            scope.around.units.font_size = size;
-        }
-        let of_font = said.get("font").and_then(|_| value("font", scope));
-        if let Some((_, size)) =
-            of_font.and_then(|v| style::font(&v)?.into_iter().find(|(n, _)| *n == "font-size"))
-        {
-            scope.around.units.font_size =
-                font_size(&size, &scope.around.units).unwrap_or(scope.around.units.font_size);
-        }
-        if let Some(text) = value("color", scope) {
-            scope.around.color =
-                css::color_within(&text, scope.around.color).or(scope.around.color);
-        }
-        if let Some(text) = value("letter-spacing", scope) {
-            let spacing = scope.around.units.parse(text.trim(), None).and_then(|v| v.length());
-            scope.letters.are_apart = match spacing {
-                Some(spacing) => spacing != 0.0,
-                None => scope.letters.are_apart && text == "inherit",
-            };
-        }
-        if let Some(text) = value("text-transform", scope) {
-            scope.letters.case = Case::of(text.trim()).unwrap_or(scope.letters.case);
-        }
-        let name = node.tag_name().name();
-        if node.parent_element().is_none() {
-            let units = &mut scope.around.units;
-            units.root_font_size = units.font_size;
-            let black = css::Color::of_bytes([0, 0, 0, 255]);
-            scope.around.color = scope.around.color.or(Some(black));
-        }
-        if name == "svg" {
-            scope.around.units.viewport =
-                style::viewport(node).unwrap_or(scope.around.units.viewport);
-        }
-        if name == "text" {
-            let lists = ["x", "y", "dx", "dy", "rotate"];
-            let places = |node: Node<'_, '_>| {
-                let mut values = lists.iter().filter_map(|name| node.attribute(*name));
-                values.any(|v| v.trim().contains([' ', ',', '\n', '\t']))
-            };
-            scope.is_free = !node.descendants().any(places);
-        }
-        let is_text = scope.is_free && matches!(name, "text" | "tspan" | "textPath" | "a");
-        if is_text && !scope.letters.are_as_written() {
-            self.changes.letters.insert(node.id(), scope.letters);
-        }
     }
 
     /// Looks at an attribute.
@@ -350,203 +300,6 @@ impl<'a, 'i> Walk<'a, 'i> {
             let what = format!("there is no element with the id `{}`; {wants}", shown(id));
             self.tell((name, value), element, at, &what);
         }
-    }
-
-    /// Looks at what style sheets and the element's style say of a property.
-    #[allow(clippy::too_many_arguments)]
-    fn declared(
-        &mut self,
-        node: Node<'a, 'i>,
-        name: &str,
-        declared: &Declared,
-        scope: &Scope,
-        edits: &mut Edits<'a>,
-        later: &mut Later,
-        in_style: &mut String,
-    ) {
-        let element = node.tag_name().name();
-        let of_style =
-            || node.attribute_node("style").map_or(node.range().start, |style| style.range().start);
-        let at = declared.at.unwrap_or_else(of_style);
-        let mut set = |name: &str, value: Option<String>| {
-            edits.push((Cow::Owned(name.to_owned()), value.map(Cow::Owned)));
-        };
-        if declared.value.contains("var(") {
-            self.varied.insert(node.id());
-        }
-        let Some(value) = self.styles.variables.replaced(&declared.value, scope.variables) else {
-            self.tell(
-                (name, &declared.value),
-                element,
-                at,
-                "it stands for nothing; it is passed over",
-            );
-            return set(name, None);
-        };
-        let value = value.trim();
-        if is_general(value) {
-            let words = general(name, &value.to_ascii_lowercase());
-            return set(name, words.map(Cow::into_owned));
-        }
-        let is_root = node.parent_element().is_none();
-        match name {
-            "font" => {
-                for (name, value) in style::font(value).unwrap_or_default() {
-                    set(name, Some(value));
-                }
-                return;
-            }
-            "transform" if is_root => {
-                let units = &scope.around.units;
-                let map = transform::parse(value, units, units.viewport);
-                return set(name, map.map(|map| transform::attribute(&map)));
-            }
-            "transform" | "translate" | "rotate" | "scale" | "transform-box" if !is_root => {
-                return later.transform(name, value);
-            }
-            "transform-origin" if !is_root => return later.transform(name, value),
-            "filter" => later.is_filtered = true,
-            "background-color" if is_root => {
-                let color = css::color_within(value, scope.around.color).map(css::Color::bytes);
-                if let Some([r, g, b, a]) = color.filter(|color| color[3] > 0) {
-                    set(name, Some(format!("#{r:02x}{g:02x}{b:02x}{a:02x}")));
-                } else if color.is_none() && value != "none" {
-                    self.tell(
-                        (name, value),
-                        element,
-                        at,
-                        "only colours are drawn behind a drawing; it is passed over",
-                    );
-                }
-                return;
-            }
-            "background-color" | "text-overflow" => return,
-            "text-transform" if Case::of(value).is_some() => return,
-            "text-transform" => {
-                return self.tell((name, value), element, at, "text is set as it is written");
-            }
-            "white-space" => {
-                let keeps =
-                    value.starts_with("pre") && value != "pre-line" || value == "break-spaces";
-                return set(
-                    "xml:space",
-                    Some(if keeps { "preserve" } else { "default" }.to_owned()),
-                );
-            }
-            "clip-path" => later.clip(value, at),
-            "mask" if !value.starts_with("url(") && value != "none" => {
-                return self.tell(
-                    (name, value),
-                    element,
-                    at,
-                    "only masks that are elements are drawn; it is passed over",
-                );
-            }
-            "width" | "height" if is_root && (value == "auto" || value.ends_with('%')) => {
-                // There is nothing around that it could be a part of.
-                return;
-            }
-            "width" | "height" if value == "auto" => return set(name, None),
-            _ => {}
-        }
-        self.check_links(node, name, value, at);
-        let mut words = Cow::Borrowed(value);
-        if let Some(kind) = Kind::of_style(name) {
-            match kind.words(name, value, &scope.around) {
-                Some(usable) => words = usable,
-                None => {
-                    self.tell(
-                        (name, value),
-                        element,
-                        at,
-                        &format!("{}; it is passed over", kind.wanted()),
-                    );
-                    return set(name, None);
-                }
-            }
-        }
-        let is_in_style = IN_STYLE.contains(&name)
-            || name == "image-rendering"
-                && matches!(&*words, "smooth" | "high-quality" | "crisp-edges" | "pixelated");
-        if is_in_style {
-            in_style.push_str(&format!("{name}:{words};"));
-            set(name, None);
-        } else {
-            set(name, Some(words.into_owned()));
-        }
-    }
-
-    /// Copies what `use` elements show where custom properties around them make it look otherwise than where it stands.
-    fn copy_shown(&mut self) -> Result<()> {
-        let mut left = MAX_COPIED;
-        for (node, scope) in std::mem::take(&mut self.uses) {
-            let link = node.attributes().find(|a| a.name() == "href");
-            let link = link.and_then(|link| link.value().trim().strip_prefix('#'));
-            let Some(shown) = link.and_then(|id| self.ids.get(id)).copied() else { continue };
-            let is_alike =
-                self.around.get(&shown.id()).is_none_or(|around| *around == scope.variables);
-            let is_varied = |node: Node<'_, '_>| self.varied.contains(&node.id());
-            if is_alike
-                || !shown.descendants().any(is_varied)
-                || node.ancestors().any(|above| above == shown)
-            {
-                continue;
-            }
-            let count = shown.descendants().count();
-            if count > left {
-                let what = "there is too much that custom properties change where it is shown";
-                self.told.push((node.range().start, what.to_owned()));
-                break;
-            }
-            left -= count;
-            let id = self.copy(shown, scope)?;
-            let all = self
-                .changes
-                .attributes
-                .entry(node.id())
-                .or_insert_with(|| attributes(node).collect());
-            all.retain(|(name, _)| name != "href" && name != "xlink:href");
-            all.push((Cow::Borrowed("href"), Cow::Owned(format!("#{id}"))));
-        }
-        Ok(())
-    }
-
-    /// Adds a copy of an element, as it is within a scope, to the definitions; gives its id.
-    fn copy(&mut self, shown: Node<'a, 'i>, scope: Scope) -> Result<String> {
-        let number = self.changes.definitions.len();
-        let id = (number..)
-            .map(|n| format!("shown-{n}"))
-            .find(|id| !self.ids.contains_key(id.as_str()))
-            .unwrap_or_default();
-        let own = std::mem::take(&mut self.changes);
-        let pending = std::mem::take(&mut self.pending);
-        let mut stack: Vec<(NodeId, Scope)> = Vec::new();
-        for node in shown.descendants().filter(Node::is_element) {
-            let parent = node.parent_element().map(|parent| parent.id());
-            while stack.last().is_some_and(|(id, _)| Some(*id) != parent) {
-                stack.pop();
-            }
-            let around = stack.last().map_or(scope, |(_, scope)| *scope);
-            stack.push((node.id(), self.element(node, around)?));
-            let all = self
-                .changes
-                .attributes
-                .entry(node.id())
-                .or_insert_with(|| attributes(node).collect());
-            all.retain(|(name, _)| name != "id");
-            if node == shown {
-                all.push((Cow::Borrowed("id"), Cow::Owned(id.clone())));
-            }
-        }
-        self.changes.definitions = own.definitions;
-        for pending in std::mem::replace(&mut self.pending, pending).into_iter().rev() {
-            pending.finish(&mut self.changes, &self.ids, &mut self.told);
-        }
-        let mut written = write::Written::default();
-        let definitions = std::mem::take(&mut self.changes.definitions);
-        write::element(shown, &self.changes, &mut written);
-        self.changes = Changes { definitions: definitions + &written.text, ..own };
-        Ok(id)
     }
 
     /// What was found.

@@ -1,0 +1,138 @@
+//! Declarations of style sheets and `style` attributes as attributes.
+
+use super::scope::Scope;
+use super::{Edits, Walk, general, is_general};
+use crate::css;
+use crate::svg::finish::Later;
+use crate::svg::letters::Case;
+use crate::svg::style::{self, Declared, IN_STYLE};
+use crate::svg::transform;
+use crate::svg::values::Kind;
+use std::borrow::Cow;
+use usvg::roxmltree::Node;
+
+impl<'a, 'i> Walk<'a, 'i> {
+    /// Looks at what style sheets and the element's style say of a property.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn declared(
+        &mut self,
+        node: Node<'a, 'i>,
+        name: &str,
+        declared: &Declared,
+        scope: &Scope,
+        edits: &mut Edits<'a>,
+        later: &mut Later,
+        in_style: &mut String,
+    ) {
+        let element = node.tag_name().name();
+        let of_style =
+            || node.attribute_node("style").map_or(node.range().start, |style| style.range().start);
+        let at = declared.at.unwrap_or_else(of_style);
+        let mut set = |name: &str, value: Option<String>| {
+            edits.push((Cow::Owned(name.to_owned()), value.map(Cow::Owned)));
+        };
+        if declared.value.contains("var(") {
+            self.varied.insert(node.id());
+        }
+        let Some(value) = self.styles.variables.replaced(&declared.value, scope.variables) else {
+            self.tell(
+                (name, &declared.value),
+                element,
+                at,
+                "it stands for nothing; it is passed over",
+            );
+            return set(name, None);
+        };
+        let value = value.trim();
+        if is_general(value) {
+            let words = general(name, &value.to_ascii_lowercase());
+            return set(name, words.map(Cow::into_owned));
+        }
+        let is_root = node.parent_element().is_none();
+        match name {
+            "font" => {
+                for (name, value) in style::font(value).unwrap_or_default() {
+                    set(name, Some(value));
+                }
+                return;
+            }
+            "transform" if is_root => {
+                let units = &scope.around.units;
+                let map = transform::parse(value, units, units.viewport);
+                return set(name, map.map(|map| transform::attribute(&map)));
+            }
+            "transform" | "translate" | "rotate" | "scale" | "transform-box" if !is_root => {
+                return later.transform(name, value);
+            }
+            "transform-origin" if !is_root => return later.transform(name, value),
+            "filter" => later.is_filtered = true,
+            "background-color" if is_root => {
+                let color = css::color_within(value, scope.around.color).map(css::Color::bytes);
+                if let Some([r, g, b, a]) = color.filter(|color| color[3] > 0) {
+                    set(name, Some(format!("#{r:02x}{g:02x}{b:02x}{a:02x}")));
+                } else if color.is_none() && value != "none" {
+                    self.tell(
+                        (name, value),
+                        element,
+                        at,
+                        "only colours are drawn behind a drawing; it is passed over",
+                    );
+                }
+                return;
+            }
+            "background-color" | "text-overflow" => return,
+            "text-transform" if Case::of(value).is_some() => return,
+            "text-transform" => {
+                return self.tell((name, value), element, at, "text is set as it is written");
+            }
+            "white-space" => {
+                let keeps =
+                    value.starts_with("pre") && value != "pre-line" || value == "break-spaces";
+                return set(
+                    "xml:space",
+                    Some(if keeps { "preserve" } else { "default" }.to_owned()),
+                );
+            }
+            "clip-path" => later.clip(value, at),
+            "mask" if !value.starts_with("url(") && value != "none" => {
+                return self.tell(
+                    (name, value),
+                    element,
+                    at,
+                    "only masks that are elements are drawn; it is passed over",
+                );
+            }
+            "width" | "height" if is_root && (value == "auto" || value.ends_with('%')) => {
+                // There is nothing around that it could be a part of.
+                return;
+            }
+            "width" | "height" if value == "auto" => return set(name, None),
+            _ => {}
+        }
+        self.check_links(node, name, value, at);
+        let mut words = Cow::Borrowed(value);
+        if let Some(kind) = Kind::of_style(name) {
+            match kind.words(name, value, &scope.around) {
+                Some(usable) => words = usable,
+                None => {
+                    self.tell(
+                        (name, value),
+                        element,
+                        at,
+                        &format!("{}; it is passed over", kind.wanted()),
+                    );
+                    return set(name, None);
+                }
+            }
+        }
+        let is_in_style = IN_STYLE.contains(&name)
+            || name == "image-rendering"
+                && matches!(&*words, "smooth" | "high-quality" | "crisp-edges" | "pixelated");
+        if is_in_style {
+            in_style.push_str(&format!("{name}:{words};"));
+            set(name, None);
+        } else {
+            set(name, Some(words.into_owned()));
+        }
+    }
+}
