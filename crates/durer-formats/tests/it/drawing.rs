@@ -41,6 +41,7 @@ fn plate(w: f64, h: f64) -> Drawing {
             height: 3.0,
             anchor: Anchor::Middle,
         }],
+        ..Drawing::default()
     }
 }
 
