@@ -255,3 +255,61 @@ fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
         (length("teapot.obj", "silhouette", ""), length("teapot.obj", "silhouette", "--smooth"));
     assert!(smooth > 0.5 * sharp && smooth != sharp, "{smooth} {sharp}");
 }
+
+/// A box as text in STL; each corner of a facet is moved by what `moved` says of its number.
+fn box_of_facets(moved: impl Fn(usize) -> f64) -> String {
+    let sides =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let facets = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let mut text = "solid box\n".to_owned();
+    for (facet, i) in facets.zip(0..) {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (corner, k) in facet.into_iter().zip(0..) {
+            let [x, y, z] = [(1, 6.0), (2, 4.0), (4, 3.0)]
+                .map(|(bit, size)| if corner & bit == 0 { 0.0 } else { size } + moved(3 * i + k));
+            text += &format!("vertex {x:.3} {y:.3} {z:.3}\n");
+        }
+        text += "endloop\nendfacet\n";
+    }
+    text + "endsolid box\n"
+}
+
+#[test]
+fn faces_are_welded_as_far_as_their_digits_or_the_user_say() {
+    let folder = Folder::new();
+    folder.write("exact.stl", box_of_facets(|_| 0.0));
+    folder.write("digit.stl", box_of_facets(|i| if i % 7 == 0 { 0.001 } else { 0.0 }));
+    folder.write("apart.stl", box_of_facets(|i| (i % 5) as f64 * 0.02));
+    let drawing = |name: &str, options: &str| {
+        let ended = folder.must(&format!("render {name} -o o.geojson --json {options}"));
+        let model = ended.json()["models"][0].clone();
+        let count = |what: &str| model["pictures"][0]["drawing"][what].as_u64().unwrap();
+        let told = model["warnings"].to_string().contains("--weld LENGTH");
+        (count("edges"), count("border_edges"), told)
+    };
+    assert_eq!(drawing("exact.stl", ""), (18, 0, false));
+    assert_eq!(drawing("digit.stl", ""), (18, 0, false));
+    assert_eq!(drawing("digit.stl", "--weld 0.01"), (18, 0, false));
+    let (edges, borders, _) = drawing("digit.stl", "--weld none");
+    assert!(borders > 0 && edges > 18, "{edges} {borders}");
+    assert_eq!(drawing("apart.stl", "--weld 0.3"), (18, 0, false));
+    assert!(drawing("apart.stl", "").2);
+    folder.run("render exact.stl -o o.svg --weld -1").fails(2, "--weld");
+    folder.run("render exact.stl -o o.png --weld 1").fails(2, "it is for drawings");
+}
+
+#[test]
+fn hidden_lines_beside_visible_ones_are_left_out_on_paper() {
+    let folder = Folder::new();
+    folder.write("box.stl", box_of_facets(|_| 0.0));
+    let hidden = |options: &str| -> f64 {
+        let ended = folder.must(&format!("render box.stl --elevation 89.95 --json {options}"));
+        let lines = ended.json()["models"][0]["pictures"][0]["drawing"]["lines"].clone();
+        let lines = lines.as_array().unwrap().iter();
+        lines.map(|c| c["hidden"]["length"].as_f64().unwrap()).sum()
+    };
+    assert_eq!(hidden("-o o.svg --hidden dashed"), 0.0);
+    assert!(hidden("-o o.svg --hidden dashed --stubs 0") > 5.0);
+    assert!(hidden("-o o.geojson") > 5.0);
+    assert_eq!(hidden("-o o.geojson --beneath 0.2"), 0.0);
+}

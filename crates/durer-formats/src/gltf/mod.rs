@@ -146,10 +146,8 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
         made: BTreeMap::new(),
         broken: Broken::default(),
     };
-    let roots = tree.roots();
     for &n in nodes.iter().filter(|n| visible[**n]) {
         builder.place(n, &mut model)?;
-        model.scene.trees.resize(model.scene.instances.len(), roots[n] as u32);
     }
     builder.broken.tell(source.missing(), &mut model)?;
     model.scene.up_axis = UpAxis::Y;

@@ -47,15 +47,6 @@ impl Tree {
         world
     }
 
-    /// The root above each node; a root's is itself.
-    pub fn roots(&self) -> Vec<usize> {
-        let mut roots: Vec<usize> = (0..self.parents.len()).collect();
-        for &n in &self.order {
-            roots[n] = self.parents[n].map_or(n, |p| roots[p]);
-        }
-        roots
-    }
-
     /// The nodes of the default scene (of the first one where that is not there; of a file without scenes, all), in
     /// drawing order: depth first, as in the file. A node that stands under another one of the scene
     /// comes once; the nodes of the scene that are no roots are told to `odd`.

@@ -107,8 +107,8 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Meshes in their places; item order.
     pub instances: Vec<Instance>,
-    /// For each instance the number of the tree of nodes, the object or the file that it is a part of; those
-    /// beyond the end, and all where it is empty, are of tree 0. Borders of one tree that lie on each other are
+    /// For each instance the number of the object that it is a part of, where the file tells objects apart that have
+    /// nothing to do with each other; those beyond the end, and all where it is empty, are of tree 0. Borders of one tree that lie on each other are
     /// one ([`crate::visibility::object::Weld`]).
     pub trees: Vec<u32>,
     /// What a unit of the last digit is worth with which the file gives the meshes' coordinates, in their units:

@@ -28,7 +28,7 @@ impl Places {
     pub fn new(points: impl Iterator<Item = DVec3>) -> Self {
         let mut points: Vec<(DVec3, u32)> = points.zip(0..).collect();
         let mut axes = vec![0; points.len()];
-        let mut ranges = vec![0..points.len()];
+        let mut ranges: Vec<std::ops::Range<usize>> = std::iter::once(0..points.len()).collect();
         while let Some(range) = ranges.pop() {
             if range.len() < 2 {
                 continue;

@@ -18,8 +18,8 @@ const CELLS: f64 = (1u64 << 20) as f64;
 /// Which vertices are one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Weld {
-    /// Those of one mesh that lie at one place, up to 2⁻²⁶ of the mesh's extent; and, within one tree of
-    /// nodes ([`Scene::trees`]), ends of borders that lie on each other as far as the precision of
+    /// Those of one mesh that lie at one place, up to 2⁻²⁶ of the mesh's extent; and, within one
+    /// object ([`Scene::trees`]), ends of borders that lie on each other as far as the precision of
     /// their coordinates can tell: 2⁻¹⁶ of the largest, or one unit of the last decimal. Borders that go along
     /// each other are one too, though their vertices are not.
     ///
