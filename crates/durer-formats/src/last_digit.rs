@@ -8,7 +8,7 @@ const LINES: usize = 4096;
 /// digits, the largest counts; of others that with most decimals, for zeros at the end may be left out. 0 where
 /// there are no decimals: whole numbers are whole on purpose.
 pub(crate) fn last_digit(text: &[u8], key: &[u8]) -> f64 {
-    let (mut fixed, mut exponents) = (0, None::<i32>);
+    let (mut fixed, mut largest, mut decimals) = (0, None::<i32>, 0);
     let mut seen = 0;
     for line in text.split(|b| matches!(b, b'\n' | b'\r')) {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty());
@@ -17,8 +17,11 @@ pub(crate) fn last_digit(text: &[u8], key: &[u8]) -> f64 {
         }
         for digit in words.take(3).filter_map(Digit::of) {
             match digit {
-                Digit::Fixed(decimals) => fixed = fixed.max(decimals),
-                Digit::Exponent(power) => exponents = exponents.max(Some(power)),
+                Digit::Fixed(behind) => fixed = fixed.max(behind),
+                Digit::Exponent(power, behind) => {
+                    largest = largest.max(Some(power));
+                    decimals = decimals.max(behind);
+                }
             }
         }
         seen += 1;
@@ -26,9 +29,9 @@ pub(crate) fn last_digit(text: &[u8], key: &[u8]) -> f64 {
             break;
         }
     }
-    match exponents {
+    match largest {
         _ if fixed > 0 => power_of_ten(-fixed),
-        Some(power) => power_of_ten(power),
+        Some(power) => power_of_ten(power - decimals),
         None => 0.0,
     }
 }
@@ -43,8 +46,8 @@ fn power_of_ten(power: i32) -> f64 {
 enum Digit {
     /// Behind so many decimals.
     Fixed(i32),
-    /// Worth this power of ten.
-    Exponent(i32),
+    /// Behind so many decimals of a number with this power of ten.
+    Exponent(i32, i32),
 }
 
 impl Digit {
@@ -64,7 +67,10 @@ impl Digit {
         let decimals = decimals.len().min(400) as i32;
         let Some(exponent) = exponent else { return Some(Self::Fixed(decimals)) };
         let exponent: i32 = std::str::from_utf8(exponent).ok()?.parse().ok()?;
-        Some(Self::Exponent(exponent.clamp(-400, 400) - decimals))
+        // Of zero the power says nothing.
+        let is_zero = mantissa.iter().all(|b| matches!(b, b'0' | b'.'));
+        let power = if is_zero { -400 } else { exponent.clamp(-400, 400) };
+        Some(Self::Exponent(power, decimals))
     }
 }
 
