@@ -6,8 +6,9 @@ use durer::clip::tiles::{Piece, Shape, Tile, mercator};
 use durer::math::{DVec2, I64Vec2};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Points, Writer};
 use durer_formats::tiles::{Layer, Value, encode, gzip};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Makes tiles, on any thread.
 pub struct Maker<'a> {
@@ -17,7 +18,12 @@ pub struct Maker<'a> {
     all: &'a Layers,
     /// Of each row whether it is in any tile.
     seen: Vec<AtomicBool>,
+    /// What tiles that features cover wholly are when they are compressed: inside a large feature all are the same.
+    covered: Mutex<BTreeMap<Vec<u8>, Vec<u8>>>,
 }
+
+/// So many tiles are held.
+const HELD: usize = 4096;
 
 /// A tile.
 pub struct Made {
@@ -28,7 +34,8 @@ pub struct Made {
 impl<'a> Maker<'a> {
     pub fn new(args: &TilesArgs, format: TileFormat, all: &'a Layers) -> Self {
         let seen = all.rows.iter().map(|_| AtomicBool::new(false)).collect();
-        Self { format, extent: args.extent, last_zoom: *args.zoom.end(), all, seen }
+        let covered = Mutex::default();
+        Self { format, extent: args.extent, last_zoom: *args.zoom.end(), all, seen, covered }
     }
 
     /// How many features are in no tile.
@@ -45,11 +52,32 @@ impl<'a> Maker<'a> {
             self.merge_points(&mut pieces);
         }
         let bytes = match self.format {
-            TileFormat::Pmtiles | TileFormat::Mbtiles => gzip(&self.vector(&pieces)),
+            TileFormat::Pmtiles | TileFormat::Mbtiles => self.packed(&pieces),
             TileFormat::Mvt => self.vector(&pieces),
             TileFormat::Geojson => self.geojson(tile, &pieces),
         };
         Made { bytes, features: pieces.len() as u64 }
+    }
+
+    /// The compressed bytes, of tiles that come often from memory.
+    fn packed(&self, pieces: &[Piece]) -> Vec<u8> {
+        let bytes = self.vector(pieces);
+        let covers =
+            |piece: &Piece| matches!(&piece.shape, Shape::Areas(s) if s.points().len() == 4);
+        if !pieces.iter().all(covers) {
+            return gzip(&bytes);
+        }
+        // What a thread that panicked has left is whole.
+        let covered = || self.covered.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(packed) = covered().get(&bytes) {
+            return packed.clone();
+        }
+        let packed = gzip(&bytes);
+        let mut covered = covered();
+        if covered.len() < HELD {
+            covered.insert(bytes, packed.clone());
+        }
+        packed
     }
 
     fn row(&self, piece: &Piece) -> &Row {

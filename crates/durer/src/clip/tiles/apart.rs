@@ -104,7 +104,6 @@ fn edges(rings: &Shapes<I64Vec2>, points: &[IVec2]) -> Vec<Edge> {
             edges.push(Edge { left, right, ends: [i as u32, next as u32], ring: ring as u32 });
         }
     }
-    edges.sort_unstable_by_key(|edge| (edge.left.x, edge.ends[0]));
     edges
 }
 
@@ -146,7 +145,7 @@ impl Edge {
     }
 }
 
-/// Edges by heights: each is in all slabs that it touches.
+/// Edges by heights: each is in all slabs that it touches, in the order of their left ends.
 struct Slabs {
     edges: Vec<Edge>,
     /// Where each slab ends among the edges.
@@ -166,7 +165,9 @@ impl Slabs {
         let most = (i64::from(top) + 1) * room / sum.max(1);
         count = count.min(i32::try_from(most.max(1)).unwrap_or(count));
         if count == 1 {
-            return Some(Self { ends: vec![edges.len()], edges, height: i32::MAX });
+            let mut slabs = Self { ends: vec![edges.len()], edges, height: i32::MAX };
+            slabs.sort();
+            return Some(slabs);
         }
         let height = top / count + 1;
         let slabs = |edge: &Edge| (edge.low() / height) as usize..=(edge.high() / height) as usize;
@@ -184,7 +185,17 @@ impl Slabs {
                 ends[slab] += 1;
             }
         }
-        Some(Self { edges: entries, ends, height })
+        let mut slabs = Self { edges: entries, ends, height };
+        slabs.sort();
+        Some(slabs)
+    }
+
+    fn sort(&mut self) {
+        let mut start = 0;
+        for &end in &self.ends {
+            self.edges[start..end].sort_unstable_by_key(|edge| (edge.left.x, edge.ends[0]));
+            start = end;
+        }
     }
 
     fn slab(&self, number: usize) -> &[Edge] {
