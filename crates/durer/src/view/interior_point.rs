@@ -29,7 +29,7 @@ impl Default for Options {
     }
 }
 
-/// One step: a square has been looked at.
+/// One step: a square has been looked at, or, with a half side of 0, a place in the middle of those as far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Its centre.
@@ -112,11 +112,14 @@ pub fn interior_point(
     let best = search.best?;
     let center = center_of_largest(&rings).unwrap_or(best.point);
     let distance = distance_to_border(center, &rings);
+    t.step(|| Step { center, half: 0.0, distance });
     let least = best.distance - precision;
     if distance > 0.0 && distance >= least {
         return Some(Interior { point: center, distance });
     }
-    Some(balanced(best, least, &rings, bounds.size()))
+    let Interior { point: center, distance } = balanced(best, least, &rings, bounds.size());
+    t.step(|| Step { center, half: 0.0, distance });
+    Some(Interior { point: center, distance })
 }
 
 /// So many times the way to where points are no longer far enough is halved.

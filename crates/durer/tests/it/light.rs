@@ -89,7 +89,7 @@ fn light_of_the_camera_is_exposed_already() {
 }
 
 #[test]
-fn metals_mirror_the_studio_and_matte_things_do_not() {
+fn metals_and_smooth_plastics_mirror_the_studio_and_matte_things_do_not() {
     let metals = scenes::lobes();
     let differs = |scene: &Scene| {
         let studio = options(scene);
@@ -102,6 +102,9 @@ fn metals_mirror_the_studio_and_matte_things_do_not() {
         (material.metallic, material.clearcoat, material.transmission) = (0.0, 0.0, 0.0);
         material.sheen_color = Vec3::ZERO;
         (material.ior, material.specular_tint) = (1.5, Vec3::ONE);
+        material.roughness = 0.5;
     }
     assert_eq!(differs(&plain), 0);
+    plain.materials.iter_mut().for_each(|material| material.roughness = 0.2);
+    assert!(differs(&plain) > 20);
 }
