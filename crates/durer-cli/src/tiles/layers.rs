@@ -75,6 +75,7 @@ struct Doubts {
     far: Found,
     latitudes: Found,
     poles: Found,
+    long: Found,
     ids: Found,
     no_geometry: Found,
 }
@@ -89,6 +90,8 @@ struct Projected {
     latitude: bool,
     /// Goes around a pole.
     pole: bool,
+    /// Has an edge around more than half of the world.
+    long: bool,
 }
 
 /// Features that are projected at a time.
@@ -191,6 +194,9 @@ impl Doubts {
                 "have latitudes beyond 90 degrees; are longitude and latitude in the wrong order, or --coordinates?",
             ),
             self.poles.told("go around a pole; they are closed along it"),
+            self.long.told(
+                "have edges of more than 180 degrees, which go around the world; --short-way lets them cross the date line",
+            ),
             self.ids.told("have ids that are no whole numbers; vector tiles know no others, left out"),
             self.no_geometry.told("have no geometry; left out"),
         ];
@@ -213,6 +219,7 @@ impl Layers {
         doubts.far.add(projected.far, number);
         doubts.latitudes.add(projected.latitude, number);
         doubts.poles.add(projected.pole, number);
+        doubts.long.add(projected.long, number);
         doubts.no_geometry.add(projected.bodies.is_empty() && !projected.far, number);
         if projected.bodies.is_empty() {
             return;
@@ -336,6 +343,9 @@ impl Parts {
         let mut first: Option<f64> = None;
         for ring in rings {
             let mut places = run(ring, args.short_way, args, doubts);
+            if let ([first, .., last], false) = (&places[..], args.short_way) {
+                doubts.long |= is_long(*last, *first);
+            }
             if args.short_way {
                 if goes_around(&places) {
                     doubts.pole = true;
@@ -369,17 +379,28 @@ fn close_along_pole(ring: &mut Vec<DVec2>) {
     ring.extend([(end, first.y), (end, pole), (first.x, pole)].map(DVec2::from));
 }
 
+/// Whether an edge goes around more than half of the world, and not along a pole, where no map shows which way it goes.
+fn is_long(from: DVec2, to: DVec2) -> bool {
+    let is_on_map = |p: DVec2| (0.0..=1.0).contains(&p.y);
+    (to.x - from.x).abs() > 0.5 && (is_on_map(from) || is_on_map(to))
+}
+
 /// The places of positions; where it matters, each in the world nearest to the one before.
 fn run(points: &Points, short_way: bool, args: &TilesArgs, doubts: &mut Projected) -> Vec<DVec2> {
     let degrees = args.coordinates == TileCoordinates::Lonlat;
-    let mut before: Option<f64> = None;
+    let mut before: Option<DVec2> = None;
     let place = |&p: &DVec2| {
         doubts.latitude |= degrees && p.y.abs() > 90.0;
         let mut place = if degrees { mercator::project(p) } else { mercator::of_metres(p) };
-        if let Some(before) = before.filter(|_| short_way) {
-            place.x -= (place.x - before).round();
+        if let Some(before) = before {
+            let across = place.x - before.x;
+            if short_way {
+                place.x -= across.round();
+            } else {
+                doubts.long |= is_long(before, place);
+            }
         }
-        before = Some(place.x);
+        before = Some(place);
         place
     };
     points.xy.iter().map(place).collect()

@@ -322,8 +322,11 @@ fn what_lies_beyond_the_date_line_comes_from_the_other_side() {
         "cross.wkt",
         "LINESTRING (170 5, -170 5)\nPOLYGON ((-180 -80, -90 -70, 0 -75, 90 -70, -180 -80))\n",
     );
-    folder.must("tiles cross.wkt --zoom 0 --buffer 0 -o long.pmtiles");
+    let long = folder.must("tiles cross.wkt --zoom 0 --buffer 0 -o long.pmtiles").err;
+    let told = "2 features (the first is feature 1) have edges of more than 180 degrees";
+    assert!(long.contains(told), "{long}");
     let ended = folder.must("tiles cross.wkt --zoom 0 --buffer 0 --short-way -o short.pmtiles");
+    assert!(!ended.err.contains("180 degrees"), "{}", ended.err);
     assert!(
         ended.err.contains("1 features (the first is feature 2) go around a pole"),
         "{}",
