@@ -3,7 +3,7 @@
 use super::days;
 use crate::geo::members::quoted;
 use crate::geo::number;
-use parquet::basic::{LogicalType, TimeUnit};
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit};
 use parquet::data_type::Decimal;
 use parquet::record::Field;
 use parquet::schema::types::Type;
@@ -29,12 +29,14 @@ impl Meaning {
             TimeUnit::MICROS => 1_000_000,
             TimeUnit::NANOS => 1_000_000_000,
         };
-        match column.get_basic_info().logical_type_ref() {
+        let about = column.get_basic_info();
+        match about.logical_type_ref() {
             Some(LogicalType::Json) => Self::Json,
             Some(LogicalType::Timestamp(t)) => {
                 Self::Instant(parts(&t.unit), t.is_adjusted_to_u_t_c)
             }
             Some(LogicalType::Time(t)) => Self::Clock(parts(&t.unit)),
+            _ if about.converted_type() == ConvertedType::JSON => Self::Json,
             _ => Self::Plain,
         }
     }
