@@ -1,5 +1,6 @@
 //! What must hold for any bytes, read as map data: the bodies of the fuzz targets `geojson`, `wkt`,
-//! `wkb`, `svg`, `shapefile`, `flatgeobuf`, `geopackage`, `topojson`, `csv`, `kml` and `gpx`, which the tests call as well.
+//! `wkb`, `svg`, `shapefile`, `flatgeobuf`, `geopackage`, `geoparquet`,
+//! `topojson`, `csv`, `kml` and `gpx`, which the tests call as well.
 
 use super::words::text;
 use arbitrary::{Result, Unstructured};
@@ -267,6 +268,11 @@ pub fn geopackage(bytes: &[u8]) {
     let at = file.windows(geometry.len()).position(|w| w == geometry).expect("the point");
     file[at + 3..].iter_mut().zip(bytes.iter().take(26)).for_each(|(to, from)| *to = *from);
     settles(GeoFormat::GeoPackage, &file);
+}
+
+/// GeoParquet, which nothing is read of without the feature.
+pub fn geoparquet(bytes: &[u8]) {
+    settles(GeoFormat::GeoParquet, bytes);
 }
 
 const TOPOJSON: &[&str] = &[

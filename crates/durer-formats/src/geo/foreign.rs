@@ -1,14 +1,13 @@
 //! What a file is that is no map data that can be read, for messages.
 
 /// Beginnings of formats, what they are, and what to do.
-const MAGIC: [(&[u8], &str, &str); 18] = [
+const MAGIC: [(&[u8], &str, &str); 17] = [
     (
         b"SQLite format 3\0",
         "an SQLite database that is no GeoPackage, such as MBTiles or SpatiaLite",
         EXPORT,
     ),
     (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile, KMZ or XLSX", "unpack it first"),
-    (b"PAR1", "Parquet, such as GeoParquet", EXPORT),
     (b"II*\0", "a TIFF picture, such as GeoTIFF", PIXELS),
     (b"MM\0*", "a TIFF picture, such as GeoTIFF", PIXELS),
     (b"II+\0", "a TIFF picture, such as GeoTIFF", PIXELS),

@@ -1,6 +1,8 @@
 //! The formats of geodata, and how they are told apart.
 
-use super::{csv, flatgeobuf, foreign, geopackage, markup, shapefile, topojson, wkb, wkt};
+use super::{
+    csv, flatgeobuf, foreign, geopackage, geoparquet, markup, shapefile, topojson, wkb, wkt,
+};
 
 /// A format of geodata.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,6 +27,8 @@ pub enum GeoFormat {
     FlatGeobuf,
     /// GeoPackage, a database of SQLite.
     GeoPackage,
+    /// GeoParquet; by the feature `geoparquet`.
+    GeoParquet,
     /// TopoJSON.
     TopoJson,
     /// A table as text, with geometries as WKT, or as longitude and latitude.
@@ -37,7 +41,7 @@ pub enum GeoFormat {
 
 impl GeoFormat {
     /// All formats, in the order in which messages list them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::GeoJson,
         Self::GeoJsonSeq,
         Self::GeoJsonRs,
@@ -48,6 +52,7 @@ impl GeoFormat {
         Self::Shapefile,
         Self::FlatGeobuf,
         Self::GeoPackage,
+        Self::GeoParquet,
         Self::TopoJson,
         Self::Csv,
         Self::Kml,
@@ -70,6 +75,7 @@ impl GeoFormat {
             Self::Shapefile => "shapefile",
             Self::FlatGeobuf => "flatgeobuf",
             Self::GeoPackage => "geopackage",
+            Self::GeoParquet => "geoparquet",
             Self::TopoJson => "topojson",
             Self::Csv => "csv",
             Self::Kml => "kml",
@@ -90,6 +96,7 @@ impl GeoFormat {
             Self::Shapefile => &["shp"],
             Self::FlatGeobuf => &["fgb"],
             Self::GeoPackage => &["gpkg"],
+            Self::GeoParquet => &["parquet", "geoparquet"],
             Self::TopoJson => &["topojson"],
             Self::Csv => &["csv", "tsv"],
             Self::Kml => &["kml"],
@@ -124,7 +131,8 @@ impl GeoFormat {
 
     /// Whether its files are bytes that are no text.
     pub fn is_binary(self) -> bool {
-        matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf | Self::GeoPackage)
+        matches!(self, Self::Wkb | Self::Shapefile | Self::FlatGeobuf)
+            || matches!(self, Self::GeoPackage | Self::GeoParquet)
     }
 
     /// Whether its coordinates are longitude and latitude on WGS 84 where nothing else is said.
@@ -135,7 +143,8 @@ impl GeoFormat {
     /// Whether it has a place for the number of the coordinate system.
     pub fn tells_system(self) -> bool {
         matches!(self, Self::Wkt | Self::Wkb | Self::WkbHex)
-            || matches!(self, Self::Shapefile | Self::FlatGeobuf | Self::GeoPackage)
+            || matches!(self, Self::Shapefile | Self::FlatGeobuf)
+            || matches!(self, Self::GeoPackage | Self::GeoParquet)
     }
 
     /// The format that the first bytes of a file speak for, if they do.
@@ -143,6 +152,7 @@ impl GeoFormat {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
             _ if geopackage::sniff(bytes) => Some(Self::GeoPackage),
+            _ if geoparquet::sniff(bytes) => Some(Self::GeoParquet),
             _ if foreign::of_content(bytes).is_some() => None,
             _ if shapefile::sniff(bytes) => Some(Self::Shapefile),
             _ if flatgeobuf::sniff(bytes) => Some(Self::FlatGeobuf),
@@ -248,6 +258,6 @@ mod tests {
         assert_eq!(GeoFormat::of_name("a/b.NDJSON"), Some(GeoFormat::GeoJsonSeq));
         assert_eq!(GeoFormat::of_name("geojson"), None);
         assert_eq!(GeoFormat::of_name("a.csv.GZ"), Some(GeoFormat::Csv));
-        assert!(GeoFormat::foreign(b"PAR1").contains("GeoParquet"));
+        assert_eq!(GeoFormat::of_content(b"PAR1"), Some(GeoFormat::GeoParquet));
     }
 }

@@ -28,6 +28,7 @@ mod foreign;
 mod format;
 mod geojson;
 mod geopackage;
+mod geoparquet;
 mod gpx;
 mod gzip;
 mod kml;

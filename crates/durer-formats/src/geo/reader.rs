@@ -1,8 +1,8 @@
 //! Features from bytes in any format.
 
 use super::{
-    Feature, GeoFormat, Member, System, Warnings, csv, flatgeobuf, geojson, geopackage, gpx, kml,
-    shapefile, svg_shapes, topojson, wkb, wkt,
+    Feature, GeoFormat, Member, System, Warnings, csv, flatgeobuf, geojson, geopackage, geoparquet,
+    gpx, kml, shapefile, svg_shapes, topojson, wkb, wkt,
 };
 use crate::{Error, NoResources, Place, Resources, Result, Warning};
 use durer::math::Rect;
@@ -58,6 +58,7 @@ enum Source<R> {
     Shapefile(shapefile::Reader),
     FlatGeobuf(flatgeobuf::Reader),
     GeoPackage(geopackage::Reader),
+    GeoParquet(Box<geoparquet::Reader>),
     Csv(csv::Reader),
     /// Features that have been read.
     Held(std::vec::IntoIter<Feature>),
@@ -103,6 +104,11 @@ impl<R: Read> Reader<R> {
                 let reader = geopackage::Reader::new(whole(source)?, beside, &mut warnings)?;
                 system = reader.system();
                 Source::GeoPackage(reader)
+            }
+            GeoFormat::GeoParquet => {
+                let reader = geoparquet::Reader::new(whole(source)?, beside, &mut warnings)?;
+                system = reader.system.clone();
+                Source::GeoParquet(Box::new(reader))
             }
             GeoFormat::Csv => Source::Csv(csv::Reader::new(text(source)?)?),
             GeoFormat::TopoJson => {
@@ -176,6 +182,7 @@ impl<R: Read> Reader<R> {
             Source::Shapefile(reader) => reader.next_feature(&mut self.warnings),
             Source::FlatGeobuf(reader) => reader.next_feature(&mut self.warnings),
             Source::GeoPackage(reader) => reader.next_feature(&mut self.warnings),
+            Source::GeoParquet(reader) => reader.next_feature(&mut self.warnings),
             Source::Csv(reader) => reader.next_feature(&mut self.warnings),
             Source::Held(features) => Ok(features.next()),
         }

@@ -2,8 +2,8 @@
 
 use super::members::object;
 use super::{
-    Feature, GeoFormat, Member, System, csv, flatgeobuf, geojson, geopackage, shapefile, svg,
-    topojson, wkb, wkt,
+    Feature, GeoFormat, Member, System, csv, flatgeobuf, geojson, geopackage, geoparquet,
+    shapefile, svg, topojson, wkb, wkt,
 };
 use crate::{Error, Place, Result, Warning};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -135,7 +135,9 @@ impl<W: Write> Writer<W> {
                 bytes.iter().try_for_each(|b| write!(self.line, "{b:02X}"))?;
                 self.line.extend((!bytes.is_empty()).then_some(b'\n'));
             }
-            GeoFormat::Svg | GeoFormat::TopoJson => self.held.push(feature.clone()),
+            GeoFormat::Svg | GeoFormat::TopoJson | GeoFormat::GeoParquet => {
+                self.held.push(feature.clone())
+            }
             GeoFormat::Shapefile | GeoFormat::FlatGeobuf | GeoFormat::Csv => {
                 self.held.push(with_id(feature));
             }
@@ -189,6 +191,7 @@ impl<W: Write> Writer<W> {
             GeoFormat::TopoJson => topojson::write(&mut self.out, &self.held, members)?,
             GeoFormat::Csv => csv::write(&mut self.out, &self.held)?,
             GeoFormat::FlatGeobuf => flatgeobuf::write(&mut self.out, &self.held, &self.system)?,
+            GeoFormat::GeoParquet => geoparquet::write(&mut self.out, &self.held, &self.system)?,
             GeoFormat::GeoPackage => warnings = self.finish_package()?,
             GeoFormat::Shapefile => {
                 let whole = shapefile::write(&self.held, &self.system)?;

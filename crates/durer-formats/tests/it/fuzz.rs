@@ -20,7 +20,7 @@ mod words;
 /// What a target does with bytes.
 type Body = fn(&[u8]);
 
-const TARGETS: [(&str, Body); 30] = [
+const TARGETS: [(&str, Body); 31] = [
     ("geojson", geo::geojson),
     ("wkt", geo::wkt),
     ("wkb", geo::wkb),
@@ -28,6 +28,7 @@ const TARGETS: [(&str, Body); 30] = [
     ("shapefile", geo::shapefile),
     ("flatgeobuf", geo::flatgeobuf),
     ("geopackage", geo::geopackage),
+    ("geoparquet", geo::geoparquet),
     ("topojson", geo::topojson),
     ("csv", geo::csv),
     ("kml", geo::kml),

@@ -330,7 +330,6 @@ fn foreign_formats_are_named() {
         (&b"SQLite format 3\0rest"[..], "an SQLite database that is no GeoPackage"),
         (b"PK\x03\x04", "a ZIP archive, such as a packed Shapefile"),
         (b"II*\0", "GeoTIFF"),
-        (b"PAR1", "GeoParquet"),
         (b"<osm version=\"0.6\">", "OpenStreetMap XML"),
         (b"<?xml version=\"1.0\"?><wfs:FeatureCollection>", "GML"),
         (b"", "the file is empty"),

@@ -15,6 +15,7 @@ mod geo;
 mod geo_curves;
 mod geo_formats;
 mod geo_package;
+mod geo_parquet;
 mod geo_shapefile;
 mod gltf;
 mod gltf_extensions;

@@ -16,6 +16,8 @@
 //! ```
 
 mod codes;
+#[cfg(feature = "geoparquet")]
+mod conversion;
 mod datum;
 mod ellipsoid;
 mod projection;
@@ -25,6 +27,8 @@ mod wkt;
 mod world;
 
 use super::{Geometry, Points, System};
+#[cfg(feature = "geoparquet")]
+pub(super) use conversion::Parameter;
 use datum::Datum;
 use durer::math::DVec2;
 use projection::Projection;

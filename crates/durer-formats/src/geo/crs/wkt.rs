@@ -261,7 +261,7 @@ fn parameters(projection: &Projection) -> (&'static str, Vec<(&'static str, f64)
 }
 
 /// The parallel on which a polar projection of this scale at the pole is true, by halving.
-fn parallel_of(body: Ellipsoid, scale: f64) -> f64 {
+pub fn parallel_of(body: Ellipsoid, scale: f64) -> f64 {
     let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;

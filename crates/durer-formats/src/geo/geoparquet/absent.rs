@@ -1,0 +1,41 @@
+//! What stands in for GeoParquet without the feature `geoparquet`.
+
+use crate::geo::reader::Beside;
+use crate::geo::{Feature, System, Warnings};
+use crate::{Error, Place, Result};
+use std::io::Write;
+
+/// Gives no features.
+pub struct Reader {
+    /// Nothing.
+    pub system: System,
+}
+
+impl Reader {
+    /// Tells what would read the file.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn new(_: Vec<u8>, _: &Beside<'_>, _: &mut Warnings) -> Result<Self> {
+        Err(missing("GeoParquet"))
+    }
+
+    /// Never called.
+    pub fn next_feature(&mut self, _: &mut Warnings) -> Result<Option<Feature>> {
+        Ok(None)
+    }
+}
+
+/// Tells what would write the file.
+///
+/// # Errors
+/// Always.
+pub fn write(_: &mut impl Write, _: &[Feature], _: &System) -> Result<()> {
+    Err(missing("writing GeoParquet"))
+}
+
+fn missing(what: &str) -> Error {
+    let hint = "one with `--features geoparquet` does; else convert with GeoJSON, GeoPackage or FlatGeobuf";
+    let what = format!("{what} by this build of durer");
+    Error::Unsupported { place: Place::Whole, what, hint: hint.to_owned() }
+}

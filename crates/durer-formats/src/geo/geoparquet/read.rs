@@ -1,0 +1,167 @@
+//! Features from a file.
+
+use super::values::{Meaning, json};
+use crate::geo::members::object;
+use crate::geo::reader::Beside;
+use crate::geo::{Feature, Geometry, Member, System, Warnings, wkb};
+use crate::text::Tally;
+use crate::{Error, Place, Result};
+use parquet::data_type::ByteArray;
+use parquet::file::reader::FileReader;
+use parquet::file::serialized_reader::SerializedFileReader;
+use parquet::record::{Field, Row, reader::RowIter};
+use serde_json::Value;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Gives the features of a file.
+pub struct Reader {
+    rows: RowIter<'static>,
+    row: u64,
+    /// The column of geometries.
+    geometry: String,
+    /// Columns that are no fields: boxes around geometries, and further geometries.
+    hidden: Vec<String>,
+    /// What columns say of their values, in their order.
+    meanings: Vec<Meaning>,
+    /// What the file says.
+    pub system: System,
+    binary: Tally,
+    broken: Tally,
+    why: String,
+}
+
+impl Reader {
+    /// Reads what the file says of its columns.
+    ///
+    /// # Errors
+    /// What is no Parquet, or has no geometries as well-known binary.
+    pub fn new(bytes: Vec<u8>, _: &Beside<'_>, warnings: &mut Warnings) -> Result<Self> {
+        super::footer::check(&bytes)?;
+        // Of broken files the crate may be of another opinion than its authors.
+        let open = || SerializedFileReader::new(::bytes::Bytes::from(bytes));
+        let file = caught(open)?.map_err(|e| broken(&e.to_string()))?;
+        let about = file.metadata().file_metadata();
+        let text = about.key_value_metadata().into_iter().flatten().find(|pair| pair.key == "geo");
+        let text = text.and_then(|pair| pair.value.clone()).ok_or_else(|| {
+            Error::whole("this is Parquet without the metadata `geo` of GeoParquet, so that no column is known to hold geometries")
+        })?;
+        let geo: Value = serde_json::from_str(&text)
+            .map_err(|e| Error::path("metadata `geo`", format!("it is not JSON: {e}")))?;
+        let geometry = geo["primary_column"].as_str().unwrap_or("geometry").to_owned();
+        let column = &geo["columns"][&geometry];
+        check(column, &geometry, warnings)?;
+        let meanings = about.schema().get_fields().iter().map(|f| Meaning::of(f)).collect();
+        let hidden = hidden(&geo, &geometry, warnings);
+        let system = super::projjson::system(column.get("crs"), warnings);
+        let rows = caught(|| RowIter::from_file_into(Box::new(file)))?;
+        let (row, binary, broken, why) = Default::default();
+        Ok(Self { rows, row, geometry, hidden, meanings, system, binary, broken, why })
+    }
+
+    /// The next feature; `None` at the end.
+    pub fn next_feature(&mut self, warnings: &mut Warnings) -> Result<Option<Feature>> {
+        let row = caught(|| self.rows.next())?;
+        let Some(row) = row else {
+            self.tell(warnings);
+            return Ok(None);
+        };
+        self.row += 1;
+        let place = Place::Path(format!("row {}", self.row));
+        let row = row.map_err(|e| broken(&e.to_string()).at(|_| place.clone()))?;
+        Ok(Some(self.feature(row, &place, warnings)))
+    }
+
+    fn feature(&mut self, row: Row, place: &Place, warnings: &mut Warnings) -> Feature {
+        let (mut fields, mut geometry) = (Vec::new(), None);
+        for ((key, field), meaning) in row.into_columns().into_iter().zip(&self.meanings) {
+            if key == self.geometry {
+                let shape = match &field {
+                    Field::Null => Ok(None),
+                    Field::Bytes(bytes) => shape(bytes, place, warnings).map(Some),
+                    _ => Err(Error::whole("it is not binary")),
+                };
+                geometry = shape.unwrap_or_else(|e| {
+                    self.why = if self.broken.count == 0 {
+                        e.to_string()
+                    } else {
+                        std::mem::take(&mut self.why)
+                    };
+                    self.broken.add(|| place.clone());
+                    None
+                });
+            } else if !self.hidden.contains(&key) {
+                match json(&field, *meaning) {
+                    Some(value) => fields.push(Member::new(&key, value)),
+                    None => self.binary.add(|| place.clone()),
+                }
+            }
+        }
+        let (properties, srid) = (Some(object(&fields)), self.system.code);
+        Feature { geometry, properties, srid, ..Feature::default() }
+    }
+
+    fn tell(&mut self, warnings: &mut Warnings) {
+        let (binary, broken) = (std::mem::take(&mut self.binary), std::mem::take(&mut self.broken));
+        if binary.count > 0 {
+            warnings.push(binary.first, format!("{} binary values are left out", binary.count));
+        }
+        if broken.count > 0 {
+            let (count, why) = (broken.count, &self.why);
+            let message =
+                format!("{count} geometries cannot be read and are left out; of this one: {why}");
+            warnings.push(broken.first, message);
+        }
+    }
+}
+
+/// A geometry as well-known binary.
+fn shape(bytes: &ByteArray, place: &Place, warnings: &mut Warnings) -> Result<Geometry> {
+    let mut reader = wkb::Reader::new(bytes.data());
+    let feature = reader.next_feature();
+    reader.warnings.relocate(|_| place.clone());
+    warnings.append(&mut reader.warnings);
+    feature?.and_then(|f| f.geometry).ok_or_else(|| Error::byte(0, "it is empty"))
+}
+
+/// Refuses geometries that are stored in another way.
+fn check(column: &Value, name: &str, warnings: &mut Warnings) -> Result<()> {
+    let place = format!("column {name}");
+    match column["encoding"].as_str() {
+        Some("WKB") => {}
+        Some(other) => {
+            let what = format!("the encoding `{other}` of geometries");
+            let hint = "WKB is read".to_owned();
+            return Err(Error::Unsupported { place: Place::Path(place), what, hint });
+        }
+        None => return Err(Error::path("metadata `geo`", format!("there is no column {name}"))),
+    }
+    if column["edges"].as_str() == Some("spherical") {
+        let message = "edges are great circles in the file; they are taken as straight";
+        warnings.push(Place::Path(place), message);
+    }
+    Ok(())
+}
+
+/// Columns that are no fields.
+fn hidden(geo: &Value, geometry: &str, warnings: &mut Warnings) -> Vec<String> {
+    let columns = geo["columns"].as_object().into_iter().flatten();
+    let mut hidden = Vec::new();
+    for (name, column) in columns {
+        hidden.extend(column["covering"]["bbox"]["xmin"][0].as_str().map(str::to_owned));
+        if name != geometry {
+            hidden.push(name.clone());
+            let message = "further geometries of each feature are left out";
+            warnings.push(Place::Path(format!("column {name}")), message);
+        }
+    }
+    hidden
+}
+
+fn broken(message: &str) -> Error {
+    Error::whole(format!("the Parquet file is broken: {message}"))
+}
+
+/// What is made, where that does not panic.
+fn caught<T>(make: impl FnOnce() -> T) -> Result<T> {
+    catch_unwind(AssertUnwindSafe(make)).map_err(|_| broken("it says what cannot be"))
+}
