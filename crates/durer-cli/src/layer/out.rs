@@ -24,6 +24,12 @@ pub fn named_format(
         let suffixes = written.map(|f| f.suffixes()[0]).collect::<Vec<_>>().join(", .");
         return fail(format!("the suffix tells no format; use one of .{suffixes}, or --to"));
     };
+    if let Some(feature) = format.missing_feature() {
+        let what = format!("this build of durer does not write {format}");
+        return fail(format!(
+            "{what}; one with --features {feature} does; write .geojson or .gpkg"
+        ));
+    }
     if !format.is_written() {
         return fail(format!("{format} is only read; write .geojson, .fgb or another format"));
     }

@@ -216,3 +216,14 @@ fn one_layer_of_a_topology_is_read() {
     assert_eq!(text(&folder, "o.wkt"), "POINT (1 2)\n");
     folder.run("clip t.json --layer c -o o.wkt").fails(1, "there is no layer c");
 }
+
+#[cfg(not(feature = "geoparquet"))]
+#[test]
+fn what_this_build_lacks_is_named_with_its_feature() {
+    let folder = Folder::new();
+    folder.write("a.wkt", "POINT (1 2)");
+    folder.run("clip a.wkt -o a.parquet").fails(2, "one with --features geoparquet does");
+    folder.write("b.parquet", "PAR1PAR1");
+    folder.run("clip b.parquet -o b.geojson").fails(1, "geoparquet");
+    assert_eq!(folder.names(), ["a.wkt", "b.parquet"]);
+}

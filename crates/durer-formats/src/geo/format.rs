@@ -119,9 +119,15 @@ impl GeoFormat {
         matches!(self, Self::TopoJson | Self::GeoPackage)
     }
 
-    /// Whether it is written, and not only read.
+    /// Whether it is written by this build, and not only read.
     pub fn is_written(self) -> bool {
-        !matches!(self, Self::Kml | Self::Gpx)
+        !matches!(self, Self::Kml | Self::Gpx) && self.missing_feature().is_none()
+    }
+
+    /// The feature without which this build neither reads nor writes it.
+    pub fn missing_feature(self) -> Option<&'static str> {
+        let is_missing = self == Self::GeoParquet && !cfg!(feature = "geoparquet");
+        is_missing.then_some("geoparquet")
     }
 
     /// Whether features keep their properties in it.
