@@ -4,6 +4,7 @@ use super::args::ClipArgs;
 use super::engine::{Cut, Cutter, Rules};
 use super::mask::Mask;
 use super::shapes::Area;
+use super::srids::Srids;
 use super::{Job, rules};
 use crate::failure::Failure;
 use crate::input::display_name;
@@ -27,7 +28,7 @@ pub struct Cells {
 struct Cell {
     mask: Mask,
     bounds: Rect,
-    /// What its pieces are told by.
+    /// The fields that its pieces get.
     fields: Vec<Member>,
 }
 
@@ -38,12 +39,18 @@ const NUMBER: &str = "cell";
 const PREFIX: &str = "cell_";
 
 /// Reads the cells of a file: every feature with polygons is one.
-pub fn read(path: &Path, args: &ClipArgs, messages: &Messages) -> Result<Cells, Failure> {
+pub fn read(
+    path: &Path,
+    args: &ClipArgs,
+    srids: &mut Srids,
+    messages: &Messages,
+) -> Result<Cells, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let (_, mut reader) = open(path, None, None)?;
     let (mut cells, mut number, mut repaired, mut without) = (Vec::new(), 0u64, 0u64, 0u64);
     while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
         number += 1;
+        srids.add(feature.srid);
         let cell = Cell::new(&feature, number, rules(args, &feature), &mut repaired);
         let cell = cell.map_err(|e| fail(format!("feature {number}: {e}")))?;
         without += u64::from(cell.is_none());
@@ -193,10 +200,8 @@ impl Job<'_> {
             let cuts: Vec<_> = features.par_iter().map(cut).collect();
             for (i, (feature, pieces)) in features.iter().zip(cuts).enumerate() {
                 let pieces = pieces.map_err(|e| self.of_feature(first + i as u64, &e))?;
-                self.report.repaired += u64::from(pieces.iter().any(|piece| piece.cut.repaired));
+                self.report.add(pieces.iter().map(|piece| &piece.cut));
                 for Piece { cell, cut } in pieces {
-                    self.report.snapped += cut.snapped as u64;
-                    self.report.flat += cut.flat as u64;
                     if cut.geometry.is_some() {
                         let mut piece = Feature { geometry: cut.geometry, ..feature.clone() };
                         piece.fill_rule = FillRule::EvenOdd;

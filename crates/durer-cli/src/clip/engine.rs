@@ -100,7 +100,7 @@ pub struct Cut {
 #[derive(Debug, Default)]
 pub struct Made {
     pub area: Area,
-    /// Whether the others were not valid.
+    /// The others were not valid.
     pub repaired: bool,
     /// As of [`Cut`].
     pub snapped: usize,

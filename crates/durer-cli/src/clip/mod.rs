@@ -53,8 +53,12 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         (_, Some(path)) => Some(mask::read(path, args, &mut mask_srids, &messages)?),
         _ => None,
     };
-    let cells =
-        args.region.cells.as_ref().map(|path| cells::read(path, args, &messages)).transpose()?;
+    let cells = args
+        .region
+        .cells
+        .as_ref()
+        .map(|path| cells::read(path, args, &mut mask_srids, &messages))
+        .transpose()?;
     let (from, mut reader) = crate::layer::open(&args.input, args.from, args.layer.as_deref())?;
     let to = output_format(args, from)?;
     let shift = Shift::new(&args.systems, &reader.system());
@@ -89,7 +93,7 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
     if args.json { crate::report::print(&report) } else { Ok(()) }
 }
 
-/// What is said where features that are joined have different ordinates.
+/// The warning where features that are joined have different ordinates.
 pub const MIXED: &str = "heights and measures that some features have and others lack are 0 there";
 
 const NO_MASK: &str = "nothing to cut with: give --window, --by, --cells or --tiles; without them features are only \
@@ -452,10 +456,7 @@ impl Job<'_> {
             for (i, (mut feature, cut)) in features.into_iter().zip(cuts).enumerate() {
                 let cut = cut.map_err(|e| self.of_feature(first + i as u64, &e))?;
                 let cut = cut.unwrap_or_default();
-                self.report.repaired += u64::from(cut.repaired);
-                self.report.lost += u64::from(cut.lost);
-                self.report.snapped += cut.snapped as u64;
-                self.report.flat += cut.flat as u64;
+                self.report.add([&cut]);
                 if cut.geometry.is_some() {
                     feature.geometry = cut.geometry;
                     feature.fill_rule = FillRule::EvenOdd;

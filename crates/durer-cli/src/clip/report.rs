@@ -1,5 +1,6 @@
 //! What `durer clip --json` says.
 
+use super::engine::Cut;
 use super::srids::Srids;
 use durer::clip::polygon::signed_area;
 use durer_formats::geo::{Geometry, Points};
@@ -30,7 +31,7 @@ pub struct Report {
     pub repaired: u64,
     /// Points of polygons that are not exactly where edges cross, because rings would cross there.
     pub snapped: u64,
-    /// Whether some features that were joined lack heights or measures that others have.
+    /// Some features that were joined lack heights or measures that others have.
     #[serde(skip)]
     pub mixed: bool,
     /// Features with edges that may be meant to go across the 180th meridian.
@@ -66,6 +67,21 @@ pub struct Report {
     pub total_seconds: f64,
     /// The most memory that the process held, where the system tells.
     pub peak_memory_bytes: Option<u64>,
+}
+
+impl Report {
+    /// Counts what was done to one feature, in one piece or several.
+    pub fn add<'a>(&mut self, cuts: impl IntoIterator<Item = &'a Cut>) {
+        let (mut repaired, mut lost) = (false, false);
+        for cut in cuts {
+            repaired |= cut.repaired;
+            lost |= cut.lost;
+            self.snapped += cut.snapped as u64;
+            self.flat += cut.flat as u64;
+        }
+        self.repaired += u64::from(repaired);
+        self.lost += u64::from(lost);
+    }
 }
 
 fn is_zero(count: &u64) -> bool {

@@ -14,7 +14,7 @@ pub struct Borders {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Border {
     pub points: Vec<DVec2>,
-    /// Whether it is the whole ring, which then does not repeat its first point.
+    /// True for a whole ring, whose first point is not repeated.
     pub closed: bool,
 }
 

@@ -198,7 +198,7 @@ pub struct Drawn {
     pub missing: BTreeSet<char>,
 }
 
-/// What there is on a map besides labels.
+/// The map that labels are put on.
 pub struct Ground<'a> {
     /// The viewport.
     pub seen: &'a Rect,

@@ -106,3 +106,12 @@ fn cells_are_of_polygons_and_go_with_no_other_mask() {
     assert!(told.contains("made valid by the even-odd rule"), "{told}");
     assert!(told.contains("1 features enclose nothing and are no cells"), "{told}");
 }
+
+#[test]
+fn cells_in_another_system_are_told() {
+    let folder = Folder::new();
+    folder.write("a.wkt", "SRID=4326;POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\n");
+    folder.write("cells.wkt", "SRID=3857;POLYGON ((1 1, 3 1, 3 3, 1 3, 1 1))\n");
+    let told = folder.must("clip a.wkt --cells cells.wkt -o o.wkt").err;
+    assert!(told.contains("3857") && told.contains("4326"), "{told}");
+}

@@ -408,14 +408,16 @@ fn wrong_use_and_bad_data_are_told() {
     assert!(!folder.path("a.png").exists());
 }
 
+/// A feature that is a point.
+fn point([x, y]: [u32; 2], properties: &str) -> String {
+    let geometry = format!(r#"{{"type":"Point","coordinates":[{x},{y}]}}"#);
+    format!(r#"{{"type":"Feature","properties":{properties},"geometry":{geometry}}}"#)
+}
+
 #[test]
 fn labels_keep_off_markers_and_stand_in_the_middle_of_squares() {
     let folder = folder();
-    let town = |x: u32| {
-        format!(
-            r#"{{"type":"Feature","properties":{{"n":"Town {x}"}},"geometry":{{"type":"Point","coordinates":[{x},0]}}}}"#
-        )
-    };
+    let town = |x: u32| point([x, 0], &format!(r#"{{"n":"Town {x}"}}"#));
     let towns = [0, 46, 92].map(town).join("\n");
     folder.write("towns.geojsonl", towns);
     let dots = |labels: &str| {
@@ -492,9 +494,8 @@ fn labels_follow_lines_and_ranks_decide_who_comes_first() {
     assert!(rows > 25 && columns < 16, "{rows} rows, {columns} columns");
 
     let town = |name: &str, rank: u32, people: u32| {
-        format!(
-            r#"{{"type":"Feature","properties":{{"n":"{name}","LABELRANK":{rank},"people":{people}}},"geometry":{{"type":"Point","coordinates":[50,50]}}}}"#
-        )
+        let properties = format!(r#"{{"n":"{name}","LABELRANK":{rank},"people":{people}}}"#);
+        point([50, 50], &properties)
     };
     folder.write("towns.geojsonl", [town("MMMMMM", 5, 9), town("i", 2, 1)].join("\n"));
     let width = |options: &str| {

@@ -58,8 +58,13 @@ pub(super) fn trimmed<'a, 'b>(mut pieces: &'b [Piece<'a>]) -> &'b [Piece<'a>] {
     pieces
 }
 
-/// The parts between commas, or another character, that do not stand in parentheses.
+/// Returns the parts between commas, or another character, outside of parentheses.
 pub(crate) fn split<'a, 'b>(pieces: &'b [Piece<'a>], separator: char) -> Vec<&'b [Piece<'a>]> {
+    split_at(pieces, &Token::Other(separator)).into_iter().map(trimmed).collect()
+}
+
+/// Returns the parts between tokens outside of parentheses.
+fn split_at<'a, 'b>(pieces: &'b [Piece<'a>], separator: &Token<'_>) -> Vec<&'b [Piece<'a>]> {
     let mut depth = 0_u32;
     let parts = pieces.split(|piece| {
         match piece.token {
@@ -67,9 +72,9 @@ pub(crate) fn split<'a, 'b>(pieces: &'b [Piece<'a>], separator: char) -> Vec<&'b
             Token::Close(_) => depth = depth.saturating_sub(1),
             _ => {}
         }
-        depth == 0 && piece.token == Token::Other(separator)
+        depth == 0 && piece.token == *separator
     });
-    parts.map(trimmed).collect()
+    parts.collect()
 }
 
 /// The components of a colour as they stand in a function: with commas, or with blanks and a stroke before alpha.
@@ -102,18 +107,9 @@ fn of_components(space: Space, inside: &[Piece<'_>]) -> Option<Color> {
     Some(space.color(components, alpha.clamp(0.0, 1.0)))
 }
 
-/// The parts between blanks that do not stand in parentheses.
+/// Returns the parts between blanks outside of parentheses.
 pub(crate) fn words<'a, 'b>(pieces: &'b [Piece<'a>]) -> Vec<&'b [Piece<'a>]> {
-    let mut depth = 0_u32;
-    let parts = pieces.split(|piece| {
-        match piece.token {
-            Token::Open(_) | Token::Function(_) => depth += 1,
-            Token::Close(_) => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        depth == 0 && piece.token == Token::Blank
-    });
-    parts.filter(|part| !part.is_empty()).collect()
+    split_at(pieces, &Token::Blank).into_iter().filter(|part| !part.is_empty()).collect()
 }
 
 /// A number, a percentage of `all`, or `none`, which counts as 0.

@@ -13,6 +13,9 @@ const MAX_TILE: f64 = 4096.0;
 /// Tiles that do not lie on whole pixels have so many times as many a side.
 const FINER: f64 = 8.0;
 
+/// Tiles are not made finer beyond so many pixels: each path that a pattern fills has its tile painted.
+const FINER_PIXELS: f64 = 1_048_576.0;
+
 /// Sides of tiles that are so near to whole pixels are whole.
 const WHOLE: f64 = 1e-3;
 
@@ -114,7 +117,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// A tile with as many pixels as it will cover where those are whole ones, else with eight times as many a
+    /// A tile with as many pixels as it will cover where those are whole ones, else with up to eight times as many a
     /// side, which are then averaged; `None` where it covers nothing.
     pub fn new(pattern: &usvg::Pattern, pixel_from_path: DAffine2) -> Option<Self> {
         let path_from_pattern = affine(pattern.transform());
@@ -131,7 +134,10 @@ impl Tile {
         let is_whole = |v: DVec2| (v - v.round()).abs().max_element() < WHOLE;
         let (finer, filter) = match is_upright && is_whole(pixels) && is_whole(placed) {
             true => (1.0, Filter::Nearest),
-            false => (FINER, Filter::Area),
+            false => {
+                let fitting = (FINER_PIXELS / (pixels.x * pixels.y)).sqrt();
+                (fitting.floor().clamp(1.0, FINER), Filter::Area)
+            }
         };
         let pixels = (pixels * finer).round().clamp(DVec2::ONE, DVec2::splat(MAX_TILE));
         let path_from_pixel = path_from_pattern
