@@ -313,3 +313,18 @@ fn hidden_lines_beside_visible_ones_are_left_out_on_paper() {
     assert!(hidden("-o o.geojson") > 5.0);
     assert_eq!(hidden("-o o.geojson --beneath 0.2"), 0.0);
 }
+
+#[test]
+fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
+    let folder = Folder::new();
+    // A sheet folded along its diagonal, of which one half faces the eye.
+    folder.write("tent.obj", "v 0 0.5 0\nv 1 1 -1\nv 0 1.5 0\nv -1 1 -1\nf 1 2 3 4\n");
+    let silhouettes = |azimuth: u32| {
+        folder.must(&format!("render tent.obj -o tent.geojson --azimuth {azimuth} --elevation 0"));
+        let drawing: serde_json::Value =
+            serde_json::from_slice(&folder.read("tent.geojson")).unwrap();
+        let features = drawing["features"].as_array().unwrap();
+        features.iter().filter(|f| f["properties"]["class"] == "silhouette").count()
+    };
+    assert_eq!((silhouettes(0), silhouettes(60)), (0, 1));
+}

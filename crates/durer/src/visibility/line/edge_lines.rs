@@ -100,8 +100,6 @@ pub(super) struct Rules<'a> {
     pub crease: f32,
     /// Cosine of the angle down to which a crease goes on; at least `crease`.
     pub crease_end: f32,
-    /// Whether faces are divided along silhouettes: those run inside of polygons too.
-    pub divided: bool,
 }
 
 /// The material of each item; `None` where all have the same.
@@ -160,7 +158,8 @@ impl Rules<'_> {
                     ^ self.bodies.turned(b.item());
                 let pair = Pair { ends, items: [a.item(), b.item()], against };
                 if self.faces.same_polygon(a.item(), b.item()) {
-                    let outline = self.divided && self.facing.differ(&self.stand_ins(pair));
+                    // A polygon that is not flat has its outline between its triangles.
+                    let outline = self.facing.differ(&self.stand_ins(pair));
                     let silhouette = outline.then_some(LineClass::Silhouette);
                     return blunt(silhouette.and_then(|c| self.wanted(c)));
                 }

@@ -285,7 +285,6 @@ impl<'a> Lines<'a> {
             classes: options.classes,
             crease: libm::cos(options.crease) as f32,
             crease_end: libm::cos(options.crease_end.min(options.crease)) as f32,
-            divided: options.smooth,
         };
         let of_edges = connected(edge_lines(&rules), faces.points(), rules.wire());
         drop(rules);
