@@ -25,6 +25,9 @@ pub struct Report {
     z: [f64; 2],
     /// Lowest and highest height.
     heights: Option<[f64; 2]>,
+    /// Depth over width of the ground as drawn, where it has two scales.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aspect: Option<f64>,
     /// What heights are multiplied with.
     exaggeration: f64,
     /// Chains of visible lines of the grid.
@@ -59,6 +62,7 @@ impl Report {
             x: field.x_range(),
             z: field.z_range(),
             heights: field.range(),
+            aspect: options.aspect,
             exaggeration: options.exaggeration,
             lines: plot.drawing.lines.iter().filter(|l| grid(l)).count(),
             length: plot.drawing.length(grid),
