@@ -6,7 +6,7 @@ use crate::input::is_stream;
 use crate::kind::{Kind, Wanted};
 use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions};
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// A place for one picture.
@@ -222,28 +222,72 @@ impl Pattern {
     }
 }
 
-/// Makes the bytes of a file in memory, then puts them in their place. Gives their number.
+/// Where encoders write to: memory, or a new file beside the old one.
+pub struct Out {
+    place: Place,
+    written: u64,
+}
+
+enum Place {
+    Memory(Vec<u8>),
+    File(BufWriter<Beside>),
+}
+
+impl Write for Out {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = match &mut self.place {
+            Place::Memory(memory) => memory.write(bytes)?,
+            Place::File(file) => file.write(bytes)?,
+        };
+        self.written += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.place {
+            Place::Memory(_) => Ok(()),
+            Place::File(file) => file.flush(),
+        }
+    }
+}
+
+/// Writes a file beside its place and puts it there when it is whole; what goes to a stream is made in memory first.
+/// Returns the number of bytes.
 pub fn deliver(
     target: &Target,
-    encode: impl FnOnce(&mut Vec<u8>) -> durer_formats::Result<()>,
+    encode: impl FnOnce(&mut Out) -> durer_formats::Result<()>,
 ) -> Result<u64, Failure> {
-    let name = match target {
-        Target::Stdout => Path::new("standard output"),
-        Target::File(path) => path,
+    let (name, replaced) = match target {
+        Target::Stdout => (Path::new("standard output"), None),
+        Target::File(path) => (path.as_path(), (!is_special(path)).then_some(path)),
     };
-    let mut bytes = Vec::new();
-    encode(&mut bytes).map_err(|e| Failure::of_file(name, e))?;
-    match target {
-        Target::Stdout => {
+    let fail = |e: &io::Error| Failure::of_file(name, in_words(e));
+    let place = match replaced {
+        Some(path) => Place::File(BufWriter::new(Beside::create(path).map_err(|e| fail(&e))?)),
+        None => Place::Memory(Vec::new()),
+    };
+    let mut out = Out { place, written: 0 };
+    encode(&mut out).map_err(|e| match &e {
+        durer_formats::Error::Io(e) => fail(e),
+        _ => Failure::of_file(name, e),
+    })?;
+    match (out.place, target) {
+        (Place::File(file), _) => {
+            let file = file.into_inner().map_err(|e| fail(e.error()))?;
+            file.commit().map_err(|e| fail(&e))?;
+        }
+        (Place::Memory(bytes), Target::File(path)) => write_special(path, &bytes)?,
+        (Place::Memory(bytes), Target::Stdout) => {
             let mut out = io::stdout().lock();
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|e| Failure::of_stdout(&e))?;
         }
-        Target::File(path) if is_special(path) => write_special(path, &bytes)?,
-        Target::File(path) => {
-            replace(path, &bytes).map_err(|e| Failure::of_file(path, in_words(&e)))?;
-        }
     }
-    Ok(bytes.len() as u64)
+    Ok(out.written)
+}
+
+/// Writes a file of bytes as [`deliver`] does.
+pub fn deliver_bytes(target: &Target, bytes: &[u8]) -> Result<u64, Failure> {
+    deliver(target, |out| Ok(out.write_all(bytes)?))
 }
 
 /// Writes to a pipe or device, which cannot be replaced.
@@ -257,13 +301,6 @@ fn write_special(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
         other => other.map_err(|e| fail(&e)),
     }
-}
-
-/// Writes a new file beside the old one and renames it.
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = Beside::create(path)?;
-    file.write_all(bytes)?;
-    file.commit()
 }
 
 #[cfg(test)]

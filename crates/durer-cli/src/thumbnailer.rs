@@ -105,10 +105,7 @@ pub fn run(args: &ThumbnailerArgs) -> Result<(), Failure> {
         return report::print_text(&text);
     }
     let target: Target = output::file_or_stream("FILE", &args.output)?;
-    output::deliver(&target, |out| {
-        out.extend(text.as_bytes());
-        Ok(())
-    })?;
+    output::deliver_bytes(&target, text.as_bytes())?;
     Ok(())
 }
 

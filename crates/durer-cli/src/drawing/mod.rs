@@ -19,6 +19,7 @@ use durer::paper::{self, Frame, LaidOut, Page, Scale, TitleBlock, Views};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
 use durer::scene::{Camera, Projection, Scene};
 use durer::target::drawing::Drawing;
+use durer::target::sheet::Sheet;
 use durer::view::projection::NamedView;
 use durer::visibility::line::hidden_line;
 use durer_formats::drawing::DrawingFormat;
@@ -219,7 +220,7 @@ pub fn render(
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = drawings.iter().collect();
     report.drawing = Some(DrawingReport::new(style.name(), &all, &laid));
-    write(args, kind, sink, &laid, &drawings, &mut report, start)?;
+    write(args, kind, sink, laid.sheet, &drawings, &mut report, start)?;
     report.files = vec![sink.name()];
     Ok((report, unseen))
 }
@@ -243,7 +244,7 @@ fn write(
     args: &RenderArgs,
     kind: Kind,
     sink: &mut Sink,
-    laid: &LaidOut,
+    sheet: Sheet,
     drawings: &[Drawing],
     report: &mut PictureReport,
     start: Instant,
@@ -253,7 +254,7 @@ fn write(
             let Size { width, height } = args.picture.size;
             (report.width, report.height) = (width, height);
             let beside = background(args, kind)?.unwrap_or([0; 4]);
-            let pixels = paper::paint(&laid.sheet, width, height, beside)
+            let pixels = paper::paint(sheet, width, height, beside)
                 .map_err(|e| Failure::Usage(e.to_string()))?;
             report.raster_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
@@ -268,7 +269,7 @@ fn write(
             let empty = Drawing::default();
             let drawing = drawings.first().unwrap_or(&empty);
             output::deliver(target, |out| {
-                durer_formats::drawing::write(out, format, &laid.sheet, drawing)
+                durer_formats::drawing::write(out, format, &sheet, drawing)
             })?;
             report.encode_seconds = start.elapsed().as_secs_f64();
         }

@@ -79,10 +79,7 @@ pub fn finish(
     let done = writer.finish_all(members).map_err(|e| failure(output, &e))?;
     for (suffix, bytes) in done.beside {
         let target = Target::File(output.with_extension(suffix));
-        output::deliver(&target, |out| {
-            out.extend_from_slice(&bytes);
-            Ok(())
-        })?;
+        output::deliver_bytes(&target, &bytes)?;
     }
     messages.warnings(&output.display().to_string(), &done.warnings);
     done.out.commit()?;

@@ -19,6 +19,7 @@ use durer::paper::{self, Page};
 use durer::plot::{self, Axes, Plot};
 use durer::scene::{HeightField, UpAxis};
 use durer::shade::color::encode_rgba8;
+use durer::target::drawing::Drawing;
 use durer::view::projection::{Lens, ViewDirection};
 use durer::visibility::line::floating_horizon;
 use durer_formats::Limits;
@@ -131,22 +132,23 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     })?;
     let draw_seconds = start.elapsed().as_secs_f64();
     messages.progress.stage(|| "writing".to_owned());
+    let lines = plot.drawing.lines.len();
+    let mut report = args.json.then(|| Report::new(&surface, &plot, &options, &target));
     let start = Instant::now();
     let mut flattened = false;
     let bytes = output::deliver(&target, |out| {
-        flattened = write(out, format, &plot, &args.look)?;
+        flattened = write(out, format, plot, &args.look)?;
         Ok(())
     })?;
     if flattened {
         messages.warning(&target.to_string(), encoding::FLATTENED);
     }
-    messages.detail(|| format!("{target}: {} lines, {bytes} bytes", plot.drawing.lines.len()));
+    messages.detail(|| format!("{target}: {lines} lines, {bytes} bytes"));
     drop(messages);
-    if args.json {
-        let mut report = Report::new(&surface, &plot, &options, &target);
+    if let Some(report) = &mut report {
         (report.read_seconds, report.draw_seconds) = (read_seconds, draw_seconds);
         report.write_seconds = start.elapsed().as_secs_f64();
-        reports::print(&report)?;
+        reports::print(report)?;
     }
     Ok(())
 }
@@ -273,7 +275,7 @@ impl Surface {
 /// A field without what is beyond `--y-range`.
 fn within(field: HeightField, args: &PlotArgs) -> Result<HeightField, Failure> {
     let Some([low, high]) = args.surface.y_range else { return Ok(field) };
-    let field = field.map(|y| if (low..=high).contains(&y) { y } else { f64::NAN });
+    let field = field.within([low, high]).map_err(|e| Failure::Usage(format!("--y-range: {e}")))?;
     match field.range() {
         Some(_) => Ok(field),
         None => Err(Failure::Usage(format!("--y-range {low},{high}: no height lies in it"))),
@@ -347,19 +349,23 @@ fn paper_size(page: Page) -> DVec2 {
 
 /// Returns whether the picture had to be laid onto white.
 fn write(
-    out: &mut Vec<u8>,
+    out: &mut output::Out,
     format: Format,
-    plot: &Plot,
+    plot: Plot,
     look: &PlotLookArgs,
 ) -> durer_formats::Result<bool> {
     match format {
+        Format::Drawing(DrawingFormat::GeoJson) => {
+            drawing::write_geojson(out, &plot.drawing).map(|()| false)
+        }
         Format::Drawing(format) => {
-            drawing::write(out, format, &plot.sheet, &plot.drawing).map(|()| false)
+            drawing::write(out, format, &plot.into_sheet(), &Drawing::default()).map(|()| false)
         }
         Format::Picture(format) => {
-            let background = plot.sheet.background.unwrap_or([0; 4]);
-            let Size { width, height } = look.size.of_shape(plot.sheet.size);
-            let pixels = paper::paint(&plot.sheet, width, height, background)?;
+            let sheet = plot.into_sheet();
+            let background = sheet.background.unwrap_or([0; 4]);
+            let Size { width, height } = look.size.of_shape(sheet.size);
+            let pixels = paper::paint(sheet, width, height, background)?;
             picture::write(out, format, &pixels, &look.encoding.encoding())
         }
     }

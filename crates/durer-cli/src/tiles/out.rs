@@ -124,9 +124,5 @@ pub fn deliver(folder: &Path, tile: Tile, suffix: &str, bytes: &[u8]) -> Result<
 }
 
 fn put(path: PathBuf, bytes: &[u8]) -> Result<(), Failure> {
-    let write = |out: &mut Vec<u8>| {
-        out.extend_from_slice(bytes);
-        Ok(())
-    };
-    output::deliver(&Target::File(path), write).map(drop)
+    output::deliver_bytes(&Target::File(path), bytes).map(drop)
 }

@@ -89,7 +89,7 @@ fn points_become_a_surface_and_poles_are_left_out() {
     assert_eq!(report["heights"], serde_json::json!([1.0, 4.0]));
     let pole = "plot --formula 1/x --samples 9x5 -o a.svg --json --y-range -0.6,0.6";
     let heights = folder.must(pole).json()["heights"].clone();
-    assert_eq!(heights, serde_json::json!([-0.5, 0.5]));
+    assert_eq!(heights, serde_json::json!([-0.6, 0.6]));
     // Where the ground is long and narrow both sides are drawn alike, and the report says so.
     let long = "plot --formula x --x 0,60 --z 0,10 -o a.svg --json";
     assert_eq!(folder.must(long).json()["aspect"], 1.0);

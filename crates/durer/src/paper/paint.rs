@@ -10,14 +10,19 @@ use crate::raster::paint::{Canvas, Options, Paint};
 use crate::target::Pixels;
 use crate::target::sheet::{Mark, Pen, Sheet};
 
+/// So many marks are painted at a time: their edges take more memory than they do.
+const AT_ONCE: usize = 1 << 15;
+
 /// Paints a sheet, as large as it can be, in the middle of a picture; `background` is what the picture
 /// shows beside and, where the paper is blank, on the paper.
+///
+/// Marks are freed one by one as they are painted, so that large sheets are not held twice.
 ///
 /// # Errors
 /// [`crate::Error::Limit`] for sides beyond 32,767 pixels; [`crate::Error::Parameter`] for pens that
 /// are not at least 0 wide.
 pub fn paint(
-    sheet: &Sheet,
+    sheet: Sheet,
     width: u32,
     height: u32,
     background: [u8; 4],
@@ -32,10 +37,18 @@ pub fn paint(
         let paper = Path::rectangle(0.0, 0.0, sheet.size.x, sheet.size.y);
         canvas.fill(&paper, FillRule::NonZero, &Paint::Color(color), 1.0);
     }
-    for mark in sheet.layers.iter().flat_map(|l| &l.marks) {
-        put(&mut canvas, mark, &sheet.pens)?;
-    }
     let mut pixels = Pixels::new(width, height, background);
+    // Between two parts translucent pixels would be rounded.
+    let most = if background[3] == 255 { AT_ONCE } else { usize::MAX };
+    let mut count = 0;
+    for mark in sheet.layers.into_iter().flat_map(|l| l.marks) {
+        put(&mut canvas, &mark, &sheet.pens)?;
+        count += 1;
+        if count % most == 0 {
+            canvas.render(&mut pixels)?;
+            canvas.restart();
+        }
+    }
     canvas.render(&mut pixels)?;
     Ok(pixels)
 }
@@ -74,4 +87,38 @@ fn line(canvas: &mut Canvas, points: &[DVec2], closed: bool, pen: &Pen) -> Resul
     let style =
         Stroke { width: pen.width, cap: Cap::Round, join: Join::Round, ..Stroke::default() };
     canvas.stroke(&path, &style, &Paint::Color(pen.color), 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::sheet::SheetLayer;
+
+    #[test]
+    fn many_marks_are_painted_in_parts_as_they_are_at_once() {
+        let fill = |i: usize| {
+            let at = |k: usize| (i.wrapping_mul(2_654_435_761) >> k) as f64 % 97.0;
+            let ring = vec![(at(0), at(7)), (at(14), at(3)), (at(9), at(20))];
+            let color = [i as u8, (i >> 3) as u8, (i >> 8) as u8, 40 + (i % 200) as u8];
+            let rings = vec![ring.into_iter().map(|(x, y)| DVec2::new(x, y)).collect()];
+            Mark::Fill { rings, color }
+        };
+        let mut marks: Vec<Mark> = (0..AT_ONCE + 200).map(fill).collect();
+        let sheet = |marks: Vec<Mark>| {
+            let layers = vec![SheetLayer { name: "fills".to_owned(), marks }];
+            Sheet { size: DVec2::splat(97.0), layers, ..Sheet::default() }
+        };
+        let painted = |marks: Vec<Mark>| paint(sheet(marks), 60, 60, [250, 240, 230, 255]);
+        let parts = painted(marks.clone()).expect("painted");
+        // The last 200 over the picture of those before.
+        let last = marks.split_off(AT_ONCE);
+        let mut whole = painted(marks).expect("painted");
+        assert_ne!(parts, whole);
+        let mut canvas = Canvas::new(60, 60, Options::default()).expect("canvas");
+        let scale = DVec2::splat(60.0 / 97.0);
+        canvas.set_transform(DAffine2::from_scale_angle_translation(scale, 0.0, DVec2::ZERO));
+        last.iter().for_each(|mark| put(&mut canvas, mark, &[]).expect("put"));
+        canvas.render(&mut whole).expect("rendered");
+        assert_eq!(parts, whole);
+    }
 }

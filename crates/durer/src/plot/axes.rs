@@ -75,7 +75,7 @@ pub fn draw(
 fn corners(marks: &mut Marks, field: &HeightField, edges: &[Edge; 2], plane: &PicturePlane) {
     let (columns, rows) = (field.columns(), field.rows());
     for (column, row) in [(0, 0), (columns - 1, 0), (0, rows - 1), (columns - 1, rows - 1)] {
-        let Some(top) = field.point(column, row) else { continue };
+        let Some(top) = field.point(column, row).filter(|p| field.keeps(p.y)) else { continue };
         let at_corner = |p: &&DVec3| p.x == top.x && p.z == top.z;
         let ground = edges.iter().flat_map(|e| &e.ends).find(at_corner);
         if let Some(points) = ground.and_then(|g| plane.project_segment(*g, top)) {

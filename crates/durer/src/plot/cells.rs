@@ -5,6 +5,7 @@
 
 use super::{Options, part};
 use crate::math::{DVec2, DVec3};
+use crate::scene::height_field::cut;
 use crate::scene::{Camera, HeightField};
 use crate::target::drawing::{Region, RegionKind};
 use crate::view::picture_plane::PicturePlane;
@@ -27,15 +28,19 @@ pub fn regions(
     }
     let [columns, rows] = front_to_back(field, camera);
     let [low, high] = field.range().unwrap_or_default();
-    let mut regions = Vec::new();
+    let mut regions = Vec::with_capacity(count as usize);
     for (j, &row) in rows.iter().enumerate().rev() {
         for (i, &column) in columns.iter().enumerate().rev() {
             if field.cell(column, row).is_none() {
                 continue;
             }
             let cell = Cell { field, column, row, near: [before(&columns, i), before(&rows, j)] };
-            let ring: Option<Vec<DVec2>> =
-                cell.ring().into_iter().map(|p| plane.project(p)).collect();
+            let mut ring = cell.ring();
+            cut(&mut ring, field.levels());
+            if ring.len() < 3 {
+                continue;
+            }
+            let ring: Option<Vec<DVec2>> = ring.into_iter().map(|p| plane.project(p)).collect();
             let Some(ring) = ring else { continue };
             if ring.iter().any(|p| !p.is_finite()) {
                 return Err(Error::NonFinite {
@@ -107,7 +112,7 @@ impl Cell<'_> {
         let (has_aside, has_ahead) =
             (dc != 0 && self.has_cell(aside), dr != 0 && self.has_cell(ahead));
         let has_both = has_aside && has_ahead && self.has_cell([dc, dr]);
-        let mut ring = Vec::with_capacity(8);
+        let mut ring = Vec::with_capacity(if has_both { 6 } else { 8 });
         // Corners in order around the cell, each with the side that follows it.
         for k in [0usize, 1, 3, 2] {
             let on_aside = has_aside && (k & 1 == 1) == (dc > 0);
@@ -126,10 +131,14 @@ impl Cell<'_> {
                     ring.extend(if leaves { [p, q] } else { [q, p] });
                 }
                 (true, true) => {
-                    let (a, b) = (self.beyond(k, aside), self.beyond(k, ahead));
-                    let far = if has_both { self.beyond(k, [dc, dr]) } else { self.corner(k) };
-                    let aside_first = matches!(k, 0 | 3);
-                    ring.extend(if aside_first { [a, far, b] } else { [b, far, a] });
+                    if has_both {
+                        // Under three neighbours no bend is seen.
+                        ring.push(self.beyond(k, [dc, dr]));
+                    } else {
+                        let (a, b) = (self.beyond(k, aside), self.beyond(k, ahead));
+                        let (corner, aside_first) = (self.corner(k), matches!(k, 0 | 3));
+                        ring.extend(if aside_first { [a, corner, b] } else { [b, corner, a] });
+                    }
                 }
             }
         }

@@ -3,14 +3,13 @@
 use super::ticks::{offset, short, ticks};
 use super::{BAR, MARGIN, Options, SHADES, bar_width, index_of};
 use crate::math::DVec2;
-use crate::scene::HeightField;
 use crate::target::drawing::Anchor;
 use crate::target::sheet::{Mark, Pen, Sheet};
 
 /// The heights that it tells, with the share of its length at which they stand from its foot; empty where there is no
 /// bar.
-pub fn labels(field: &HeightField, options: &Options) -> Vec<(f64, String)> {
-    let Some([low, high]) = field.range() else { return Vec::new() };
+pub fn labels(heights: Option<[f64; 2]>, options: &Options) -> Vec<(f64, String)> {
+    let Some([low, high]) = heights else { return Vec::new() };
     if !options.color_bar || options.color_map.is_none() {
         return Vec::new();
     }
@@ -36,15 +35,15 @@ fn length(options: &Options) -> f64 {
 }
 
 /// The bar on the right of the page, with its labels.
-pub fn marks(sheet: &mut Sheet, field: &HeightField, options: &Options) -> Vec<Mark> {
-    let (labels, Some(map)) = (labels(field, options), options.color_map) else {
+pub fn marks(sheet: &mut Sheet, heights: Option<[f64; 2]>, options: &Options) -> Vec<Mark> {
+    let (labels, Some(map)) = (labels(heights, options), options.color_map) else {
         return Vec::new();
     };
     if labels.is_empty() {
         return Vec::new();
     }
     let (length, width) = (length(options), BAR[0] * options.text);
-    let left = options.page.x - MARGIN - bar_width(field, options) + BAR[1] * options.text;
+    let left = options.page.x - MARGIN - bar_width(heights, options) + BAR[1] * options.text;
     let foot = (options.page.y + length) * 0.5;
     let at = |part: f64| foot - part * length;
     let corners = |from: f64, to: f64| {

@@ -1,6 +1,6 @@
 //! Plots of surfaces y = f(x, z): visible lines, filled cells, axes, laid out on paper.
 //!
-//! [`surface`] gives the plot's lines, regions and labels as a [`Drawing`] and the same as a [`Sheet`];
+//! [`surface`] gives the plot's lines, regions and labels as a [`Drawing`], which [`Plot::into_sheet`] lays on paper;
 //! the lines come from [`floating_horizon`].
 
 mod axes;
@@ -13,7 +13,7 @@ pub use color_map::ColorMap;
 
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Aabb, Camera, HeightField, Projection};
-use crate::target::drawing::{Drawing, Label, Line, LineClass};
+use crate::target::drawing::{Drawing, Label, Line, LineClass, Region};
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::trace::NoTrace;
 use crate::view::picture_plane::PicturePlane;
@@ -75,10 +75,14 @@ pub struct Axes {
 pub struct Plot {
     /// Its geometry in the plane of the picture.
     pub drawing: Drawing,
-    /// The same on paper, with pens and colours.
-    pub sheet: Sheet,
     /// The camera, in coordinates with exaggerated heights.
     pub camera: Camera,
+    layout: Layout,
+    /// Of each line of the drawing its layer and colour.
+    inks: Vec<Ink>,
+    /// The lowest and the highest height.
+    heights: Option<[f64; 2]>,
+    options: Options,
 }
 
 /// A margin around everything, millimetres.
@@ -99,12 +103,20 @@ const TITLE: [f64; 2] = [1.4, 1.5];
 /// Visible pieces shorter than this, in millimetres, are dots that a pen would only blot.
 const SHORTEST: f64 = 0.02;
 
-/// A line with what it is drawn in.
-struct Colored {
-    line: Line,
-    layer: &'static str,
+/// The layers of lines, the lowest first.
+const LAYERS: [&str; 5] =
+    ["hidden-along-x", "hidden-along-z", "lines-along-x", "lines-along-z", "axes"];
+
+/// What a line is drawn in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Ink {
+    /// Index into [`LAYERS`].
+    layer: usize,
     color: [u8; 4],
 }
+
+/// A line with what it is drawn in.
+type Inked = (Line, Ink);
 
 /// Plots a surface.
 ///
@@ -114,8 +126,9 @@ struct Colored {
 /// use durer::scene::HeightField;
 /// let field = HeightField::from_fn([30, 30], [-2.0, 2.0], [-2.0, 2.0], |x, z| x * x - z * z)?;
 /// let plot = surface(&field, &Options::default())?;
-/// assert_eq!(plot.sheet.size, DVec2::new(180.0, 135.0));
-/// assert!(plot.sheet.layers.iter().any(|l| l.name == "axes"));
+/// let sheet = plot.into_sheet();
+/// assert_eq!(sheet.size, DVec2::new(180.0, 135.0));
+/// assert!(sheet.layers.iter().any(|l| l.name == "axes"));
 /// # Ok::<(), durer::Error>(())
 /// ```
 ///
@@ -136,36 +149,45 @@ pub fn surface(field: &HeightField, options: &Options) -> Result<Plot> {
         None => fit_box(Some(&bounds), &options.direction, &fit)?,
     };
     let plane = PicturePlane::of_camera(&camera, fit.aspect)?;
-    let mut layout = Layout::new(&bounds, &plane, field, &[], 1.0, options);
+    let heights = field.range();
+    let mut layout = Layout::new(&bounds, &plane, heights, &[], 1.0, options);
     let mut marks = Marks::default();
     if let Some(axes) = &options.axes {
         // How much room labels take follows from the scale, and the scale from that.
         for _ in 0..4 {
             marks = axes::draw(field, &seen, &bounds, &plane, axes, options, layout.scale);
-            layout = Layout::new(&bounds, &plane, field, &marks.labels, layout.scale, options);
+            layout = Layout::new(&bounds, &plane, heights, &marks.labels, layout.scale, options);
         }
         marks = axes::draw(field, &seen, &bounds, &plane, axes, options, layout.scale);
     }
-    let mut drawing = Drawing { window: None, ..Drawing::default() };
+    let mut inked = surface_lines(&seen, &camera, &plane, options)?;
+    let least = SHORTEST / layout.scale;
+    inked.retain(|(line, _)| line.length() >= least);
+    let ink = Ink { layer: LAYERS.len() - 1, color: options.ink };
+    inked.extend(marks.lines.into_iter().map(|line| (line, ink)));
+    let (lines, inks): (Vec<Line>, Vec<Ink>) = inked.into_iter().unzip();
+    if lines.iter().flat_map(|l| &l.points).any(|p| !p.is_finite()) {
+        return Err(Error::NonFinite { what: "projected line", index: 0 });
+    }
+    let mut drawing = Drawing { lines, labels: marks.labels, ..Drawing::default() };
     if options.fill {
         drawing.regions = cells::regions(&seen, &camera, &plane, options)?;
     }
-    let curves = floating_horizon::curves(&seen, &camera, &options.lines, &mut NoTrace)?;
+    Ok(Plot { drawing, camera, layout, inks, heights, options: options.clone() })
+}
+
+/// The lines of the grid.
+fn surface_lines(
+    field: &HeightField,
+    camera: &Camera,
+    plane: &PicturePlane,
+    options: &Options,
+) -> Result<Vec<Inked>> {
     let mut lines = Vec::new();
-    for curve in &curves {
-        colored(curve, &seen, &plane, options, &mut lines);
+    for curve in floating_horizon::curves(field, camera, &options.lines, &mut NoTrace)? {
+        colored(&curve, field, plane, options, &mut lines);
     }
-    let least = SHORTEST / layout.scale;
-    lines.retain(|l| l.line.length() >= least);
-    let axis = |line| Colored { line, layer: "axes", color: options.ink };
-    lines.extend(marks.lines.into_iter().map(axis));
-    drawing.labels = marks.labels;
-    drawing.lines = lines.iter().map(|l| l.line.clone()).collect();
-    if drawing.lines.iter().flat_map(|l| &l.points).any(|p| !p.is_finite()) {
-        return Err(Error::NonFinite { what: "projected line", index: 0 });
-    }
-    let sheet = layout.sheet(&drawing, &lines, field, options);
-    Ok(Plot { drawing, sheet, camera })
+    Ok(lines)
 }
 
 /// By how much depth is stretched.
@@ -288,20 +310,20 @@ fn colored(
     field: &HeightField,
     plane: &PicturePlane,
     options: &Options,
-    out: &mut Vec<Colored>,
+    out: &mut Vec<Inked>,
 ) {
     let layer = match (curve.visible, curve.family) {
-        (true, Family::AlongX) => "lines-along-x",
-        (true, Family::AlongZ) => "lines-along-z",
-        (false, Family::AlongX) => "hidden-along-x",
-        (false, Family::AlongZ) => "hidden-along-z",
+        (false, Family::AlongX) => 0,
+        (false, Family::AlongZ) => 1,
+        (true, Family::AlongX) => 2,
+        (true, Family::AlongZ) => 3,
     };
     let plain = if curve.underside { options.underside } else { None };
     let mut add = |points: &[DVec3], color: [u8; 4]| {
         for points in floating_horizon::projected(points, plane) {
             let invisibility = u32::from(!curve.visible);
             let line = Line { class: LineClass::Grid, invisibility, points, closed: false };
-            out.push(Colored { line, layer, color });
+            out.push((line, Ink { layer, color }));
         }
     };
     let (Some(map), None, false) = (options.color_map, plain, options.fill) else {
@@ -341,6 +363,7 @@ fn part(y: f64, low: f64, high: f64) -> f64 {
 }
 
 /// Where the plot lies on the paper.
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Layout {
     /// Millimetres per plane unit.
     scale: f64,
@@ -353,7 +376,7 @@ impl Layout {
     fn new(
         bounds: &Aabb,
         plane: &PicturePlane,
-        field: &HeightField,
+        heights: Option<[f64; 2]>,
         labels: &[Label],
         scale: f64,
         options: &Options,
@@ -367,7 +390,7 @@ impl Layout {
         boxes.for_each(|b| (low, high) = (low.min(b.min()), high.max(b.max())));
         let (before, after) = ((min - low) * scale, (high - max) * scale);
         let title = title_lines(options).len() as f64 * options.text * TITLE[0] * TITLE[1];
-        let (left, right) = (MARGIN + before.x, MARGIN + after.x + bar_width(field, options));
+        let (left, right) = (MARGIN + before.x, MARGIN + after.x + bar_width(heights, options));
         let (below, above) = (MARGIN + before.y, MARGIN + after.y + title);
         let room = options.page - DVec2::new(left + right, below + above);
         let room = room.max(options.page * 0.2);
@@ -384,51 +407,66 @@ impl Layout {
         self.origin + DVec2::new(p.x, -p.y) * self.scale
     }
 
-    fn sheet(
-        &self,
-        drawing: &Drawing,
-        lines: &[Colored],
-        field: &HeightField,
-        options: &Options,
-    ) -> Sheet {
+    /// The points of a line or ring on the paper.
+    fn placed(&self, mut points: Vec<DVec2>) -> Vec<DVec2> {
+        points.iter_mut().for_each(|p| *p = self.place(*p));
+        points
+    }
+}
+
+impl Plot {
+    /// Lays the plot on paper, with pens and colours. Layers, the lowest first: `surface`, `hidden-along-x`,
+    /// `hidden-along-z`, `lines-along-x`, `lines-along-z`, `axes`, `labels`, `colour-bar`; empty ones are left out.
+    ///
+    /// The geometry is moved, not copied: a clone keeps the [drawing](Self::drawing). Lines and labels added to it are
+    /// left out.
+    pub fn into_sheet(self) -> Sheet {
+        let Self { drawing, layout, inks, heights, options, .. } = self;
         let mut sheet = Sheet {
             title: options.title.clone(),
             size: options.page,
             background: options.background,
             ..Sheet::default()
         };
-        let fills = drawing.regions.iter().map(|region| {
-            let ring = |r: &Vec<DVec2>| r.iter().map(|&p| self.place(p)).collect();
-            Mark::Fill { rings: region.rings.iter().map(ring).collect(), color: region.color }
-        });
-        let fills: Vec<Mark> = fills.collect();
-        let mut layers = vec![SheetLayer { name: "surface".to_owned(), marks: fills }];
-        for name in ["hidden-along-x", "hidden-along-z", "lines-along-x", "lines-along-z", "axes"] {
-            let mut marks = Vec::new();
-            for colored in lines.iter().filter(|l| l.layer == name) {
-                let pen = pen_for(&mut sheet.pens, colored, options);
-                let points = colored.line.points.iter().map(|&p| self.place(p)).collect();
-                marks.push(Mark::Stroke { points, closed: false, pen });
-            }
-            layers.push(SheetLayer { name: name.to_owned(), marks });
+        let mut layers = vec![("surface", layout.fills(drawing.regions))];
+        let mut strokes = [(); LAYERS.len()].map(|()| Vec::new());
+        for (line, ink) in drawing.lines.into_iter().zip(inks) {
+            let pen = pen_for(&mut sheet.pens, &line, ink.color, &options);
+            let points = layout.placed(line.points);
+            strokes[ink.layer].push(Mark::Stroke { points, closed: line.closed, pen });
         }
-        layers.push(SheetLayer {
-            name: "labels".to_owned(),
-            marks: self.texts(&mut sheet, drawing, options),
-        });
-        let marks = color_bar::marks(&mut sheet, field, options);
-        layers.push(SheetLayer { name: "colour-bar".to_owned(), marks });
-        sheet.layers = layers.into_iter().filter(|l| !l.marks.is_empty()).collect();
+        layers.extend(LAYERS.into_iter().zip(strokes));
+        layers.push(("labels", layout.texts(&mut sheet, &drawing.labels, &options)));
+        layers.push(("colour-bar", color_bar::marks(&mut sheet, heights, &options)));
+        layers.retain(|(_, marks)| !marks.is_empty());
+        let layer = |(name, marks): (&str, _)| SheetLayer { name: name.to_owned(), marks };
+        sheet.layers = layers.into_iter().map(layer).collect();
         sheet
     }
+}
 
-    fn texts(&self, sheet: &mut Sheet, drawing: &Drawing, options: &Options) -> Vec<Mark> {
+impl Layout {
+    /// Regions as marks; the memory of those that are done is given back on the way.
+    fn fills(&self, mut regions: Vec<Region>) -> Vec<Mark> {
+        let mut marks = Vec::with_capacity(regions.len());
+        regions.reverse();
+        while let Some(Region { rings, color, .. }) = regions.pop() {
+            let rings = rings.into_iter().map(|ring| self.placed(ring)).collect();
+            marks.push(Mark::Fill { rings, color });
+            if regions.len() < regions.capacity() / 2 {
+                regions.shrink_to_fit();
+            }
+        }
+        marks
+    }
+
+    fn texts(&self, sheet: &mut Sheet, labels: &[Label], options: &Options) -> Vec<Mark> {
         let mut marks = Vec::new();
         let mut pen = |height: f64| {
             let pen = Pen { width: height * 0.1, color: options.ink, dashes: Vec::new() };
             index_of(&mut sheet.pens, pen)
         };
-        for label in &drawing.labels {
+        for label in labels {
             let (at, text) = (self.place(label.at), label.text.clone());
             let (height, anchor) = (label.height, label.anchor);
             marks.push(Mark::Text { at, text, height, anchor, pen: pen(height) });
@@ -466,17 +504,17 @@ fn title_lines(options: &Options) -> Vec<String> {
 }
 
 /// The room of the bar of colours with its labels, millimetres.
-fn bar_width(field: &HeightField, options: &Options) -> f64 {
-    let labels = color_bar::labels(field, options);
+fn bar_width(heights: Option<[f64; 2]>, options: &Options) -> f64 {
+    let labels = color_bar::labels(heights, options);
     let widest = labels.iter().map(|(_, text)| text.chars().count()).max();
     widest.map_or(0.0, |count| (BAR[0] + BAR[1] + 1.0 + count as f64 * axes::LETTER) * options.text)
 }
 
-fn pen_for(pens: &mut Vec<Pen>, colored: &Colored, options: &Options) -> usize {
-    let hidden = !colored.line.is_visible();
+fn pen_for(pens: &mut Vec<Pen>, line: &Line, color: [u8; 4], options: &Options) -> usize {
+    let hidden = !line.is_visible();
     let width = options.pen * if hidden { HIDDEN_PEN } else { 1.0 };
     let dashes = if hidden { DASHES.map(|d| d * options.pen).to_vec() } else { Vec::new() };
-    index_of(pens, Pen { width, color: colored.color, dashes })
+    index_of(pens, Pen { width, color, dashes })
 }
 
 fn index_of(pens: &mut Vec<Pen>, pen: Pen) -> usize {

@@ -15,6 +15,9 @@ const LARGEST: f64 = 1e100;
 /// where all four of its corners are there. A cell is two triangles, parted by the diagonal whose
 /// ends differ less in height.
 ///
+/// A surface may be cut off at two [levels](Self::within): what lies below or above is no part of it, and a cell with
+/// corners on both sides, which jumps over all that is between, is left out, as poles of functions make them.
+///
 /// # Guarantees
 /// At least one column and one row, at most [`HeightField::MAX_POINTS`] points; finite ranges that
 /// increase, except that the range of a single column or row may be one number; heights that are
@@ -36,6 +39,8 @@ pub struct HeightField {
     z: [f64; 2],
     /// Row by row; NaN where missing.
     heights: Vec<f64>,
+    /// Where the surface is cut off, below and above.
+    levels: Option<[f64; 2]>,
 }
 
 /// How a cell of a height field is cut into its two triangles.
@@ -79,7 +84,7 @@ impl HeightField {
                 *height = f64::NAN;
             }
         }
-        Ok(Self { columns: size[0], rows: size[1], x, z, heights })
+        Ok(Self { columns: size[0], rows: size[1], x, z, heights, levels: None })
     }
 
     /// The field of a function, called with x and z of each point; what [`Self::new`] says of
@@ -150,26 +155,52 @@ impl HeightField {
         self.heights.iter().filter(|h| h.is_nan()).count()
     }
 
-    /// The lowest and the highest height; `None` where all are missing.
+    /// The same surface, cut off where it is below the first or above the second level. [`Self::height`] still tells
+    /// the heights beyond.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for levels that are not finite or do not increase.
+    pub fn within(self, [low, high]: [f64; 2]) -> Result<Self> {
+        if !(low < high && low.is_finite() && high.is_finite()) {
+            let value = format!("{low} … {high}");
+            let expected = "two finite numbers, the first the smaller";
+            return Err(Error::parameter("levels", value, expected));
+        }
+        Ok(Self { levels: Some([low, high]), ..self })
+    }
+
+    /// The levels at which the surface is cut off, if it is.
+    pub fn levels(&self) -> Option<[f64; 2]> {
+        self.levels
+    }
+
+    /// Whether a height lies between the levels.
+    pub fn keeps(&self, y: f64) -> bool {
+        self.levels.is_none_or(|[low, high]| (low..=high).contains(&y))
+    }
+
+    /// The lowest and the highest height, between the levels; `None` where all are missing or beyond them.
     pub fn range(&self) -> Option<[f64; 2]> {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
         // `min` and `max` pass over NaN.
         let [lo, hi] = self.heights.iter().fold(start, |[lo, hi], &h| [lo.min(h), hi.max(h)]);
-        (lo <= hi).then_some([lo, hi])
+        let Some([low, high]) = self.levels else { return (lo <= hi).then_some([lo, hi]) };
+        let any = self.heights.iter().any(|&h| self.keeps(h));
+        any.then_some([lo.max(low), hi.min(high)])
     }
 
-    /// The box around the grid and all heights; `None` where all heights are missing.
+    /// The box around the grid and all heights of the [range](Self::range); `None` where there are none.
     pub fn bounds(&self) -> Option<Aabb> {
         let [lo, hi] = self.range()?;
         let corner = |x, y, z| DVec3::new(x, y, z);
         Some(Aabb { min: corner(self.x[0], lo, self.z[0]), max: corner(self.x[1], hi, self.z[1]) })
     }
 
-    /// The same surface with each height taken through `f`.
+    /// The same surface with each height, and the levels, taken through `f`, which does not turn their order.
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Self {
         let heights = self.heights.iter().map(|&h| f(h));
         let heights = heights.map(|h| if h.abs() <= LARGEST { h } else { f64::NAN }).collect();
-        Self { heights, ..*self }
+        Self { heights, levels: self.levels.map(|levels| levels.map(&f)), ..*self }
     }
 
     /// The same surface over other ranges.
@@ -209,27 +240,35 @@ impl HeightField {
                 heights.push(far + near);
             }
         }
-        Self::new(size, self.x, self.z, heights)
+        Ok(Self { levels: self.levels, ..Self::new(size, self.x, self.z, heights)? })
     }
 
     /// How the cell between this point and the next column and row is cut; `None` where a corner is
-    /// missing or there is no such cell.
+    /// missing, nothing of it lies between the levels, or there is no such cell.
     pub fn cell(&self, column: usize, row: usize) -> Option<Diagonal> {
-        let first = self.height(column, row)?;
-        let rising = (self.height(column + 1, row + 1)? - first).abs();
-        let falling = (self.height(column + 1, row)? - self.height(column, row + 1)?).abs();
+        let [a, b] = [self.height(column, row)?, self.height(column + 1, row)?];
+        let [c, d] = [self.height(column, row + 1)?, self.height(column + 1, row + 1)?];
+        if let Some([low, high]) = self.levels {
+            let (lowest, highest) = (a.min(b).min(c).min(d), a.max(b).max(c).max(d));
+            let beyond = highest < low || lowest > high;
+            if beyond || (lowest < low && highest > high) {
+                return None;
+            }
+        }
+        let (rising, falling) = ((d - a).abs(), (b - c).abs());
         Some(if falling < rising { Diagonal::Falling } else { Diagonal::Rising })
     }
 
     /// The triangles of the surface, in single precision, relative to `origin`; front faces look up.
     ///
-    /// A face of the mesh is a cell. Cost: one pass.
+    /// A face of the mesh is a cell. Triangles that are cut at a level have vertices of their own. Cost: one pass.
     pub fn to_mesh(&self, origin: DVec3) -> Mesh {
         let (mut positions, mut numbers) = (Vec::new(), Vec::with_capacity(self.heights.len()));
         for row in 0..self.rows {
             for column in 0..self.columns {
                 numbers.push(positions.len() as u32);
-                positions.extend(self.point(column, row).map(|p| (p - origin).as_vec3()));
+                let kept = self.point(column, row).filter(|p| self.keeps(p.y));
+                positions.extend(kept.map(|p| (p - origin).as_vec3()));
             }
         }
         let (mut indices, mut faces) = (Vec::new(), Vec::new());
@@ -237,9 +276,22 @@ impl HeightField {
             for column in 0..self.columns {
                 let Some(diagonal) = self.cell(column, row) else { continue };
                 faces.push((indices.len() / 3) as u32);
-                let corner = |k: usize| (row + (k >> 1)) * self.columns + column + (k & 1);
-                let corners = diagonal.triangles().into_iter().flatten().map(corner);
-                indices.extend(corners.filter_map(|v| numbers.get(v)));
+                for triangle in diagonal.triangles() {
+                    let place = |k: usize| [column + (k & 1), row + (k >> 1)];
+                    let mut ring: Vec<DVec3> = triangle
+                        .iter()
+                        .filter_map(|&k| self.point(place(k)[0], place(k)[1]))
+                        .collect();
+                    if !cut(&mut ring, self.levels) {
+                        let corner = |k| place(k)[1] * self.columns + place(k)[0];
+                        indices.extend(triangle.iter().filter_map(|&k| numbers.get(corner(k))));
+                        continue;
+                    }
+                    let first = positions.len() as u32;
+                    positions.extend(ring.iter().map(|&p| (p - origin).as_vec3()));
+                    let fan = (1..ring.len().saturating_sub(1) as u32).map(|i| [0, i, i + 1]);
+                    indices.extend(fan.flatten().map(|i| first + i));
+                }
             }
         }
         Mesh { positions, indices: Some(indices), faces, ..Mesh::default() }
@@ -252,6 +304,45 @@ impl HeightField {
         let instance = Instance { mesh: 0, world_from_mesh, name: String::new() };
         Scene { meshes: vec![self.to_mesh(origin)], instances: vec![instance], ..Scene::default() }
     }
+}
+
+/// Leaves of a convex ring what lies between two levels. Returns whether it was cut.
+pub(crate) fn cut(ring: &mut Vec<DVec3>, levels: Option<[f64; 2]>) -> bool {
+    let Some([low, high]) = levels else { return false };
+    if ring.iter().all(|p| (low..=high).contains(&p.y)) {
+        return false;
+    }
+    for (level, sign) in [(low, 1.0), (high, -1.0)] {
+        let whole = std::mem::take(ring);
+        let inside = |p: &DVec3| (p.y - level) * sign >= 0.0;
+        for (i, p) in whole.iter().enumerate() {
+            let q = &whole[(i + 1) % whole.len()];
+            if inside(p) {
+                ring.push(*p);
+            }
+            if inside(p) != inside(q) {
+                // Always from the inside, so that neighbours find the same point.
+                let (p, q) = if inside(p) { (p, q) } else { (q, p) };
+                let cut = *p + (*q - *p) * ((level - p.y) / (q.y - p.y));
+                ring.push(DVec3 { y: level, ..cut });
+            }
+        }
+    }
+    true
+}
+
+/// The part, 0 … 1, of a segment between two heights that lies between two levels.
+pub(crate) fn part_between([from, to]: [f64; 2], levels: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let Some([low, high]) = levels else { return Some([0.0, 1.0]) };
+    let (lowest, highest) = (from.min(to), from.max(to));
+    if highest < low || lowest > high || (lowest < low && highest > high) {
+        return None;
+    }
+    // Where the segment passes a level.
+    let at = |level: f64| ((level - from) / (to - from)).clamp(0.0, 1.0);
+    let beyond = |y: f64| if y < low { Some(low) } else { (y > high).then_some(high) };
+    let part = [beyond(from).map_or(0.0, at), beyond(to).map_or(1.0, at)];
+    (part[0] < part[1]).then_some(part)
 }
 
 /// Where point `i` of `count` lies; the ends are exact.

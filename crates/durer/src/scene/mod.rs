@@ -2,7 +2,7 @@
 
 mod bounds;
 mod camera;
-mod height_field;
+pub(crate) mod height_field;
 mod light;
 mod material;
 mod mesh;

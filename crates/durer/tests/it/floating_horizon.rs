@@ -52,9 +52,9 @@ fn triangles(field: &HeightField) -> Vec<[DVec3; 3]> {
 }
 
 /// How deep the ray from `p` towards the eye goes into a triangle: the least distance of its point
-/// of passage from the triangle's sides in barycentric terms, about 0 on a side; `None` where it does
-/// not pass.
-fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+/// of passage from the triangle's sides in barycentric terms, about 0 on a side, and where on the ray that is;
+/// `None` where it does not pass.
+fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Option<(f64, f64)> {
     let (e1, e2) = (*b - *a, *c - *a);
     let h = to_eye.cross(e2);
     let det = e1.dot(h);
@@ -66,18 +66,30 @@ fn passes(p: DVec3, to_eye: DVec3, length: f64, [a, b, c]: &[DVec3; 3]) -> Optio
     let q = s.cross(e1);
     let v = to_eye.dot(q) / det;
     let t = e2.dot(q) / det;
-    (t > 1e-7 && t < length).then_some(u.min(v).min(1.0 - u - v)).filter(|&inside| inside > -1e-9)
+    let inside = u.min(v).min(1.0 - u - v);
+    (t > 1e-7 && t < length && inside > -1e-9).then_some((inside, t))
 }
 
-/// Whether something hides the point: how far inside of a triangle at most.
-fn hidden_by(p: DVec3, camera: &Camera, triangles: &[[DVec3; 3]]) -> Option<f64> {
+/// Whether something hides the point: how far inside of a triangle, or of what the levels leave of it, at most.
+fn hidden_by(
+    p: DVec3,
+    camera: &Camera,
+    triangles: &[[DVec3; 3]],
+    levels: Option<[f64; 2]>,
+) -> Option<f64> {
     let (to_eye, length) = match camera.projection {
         Projection::Perspective { .. } => (camera.eye - p, 1.0),
         Projection::Orthographic { .. } => {
             ((camera.eye - camera.target).normalize(), f64::INFINITY)
         }
     };
-    triangles.iter().filter_map(|t| passes(p, to_eye, length, t)).max_by(f64::total_cmp)
+    let hides = |triangle: &[DVec3; 3]| {
+        let (inside, t) = passes(p, to_eye, length, triangle)?;
+        let y = p.y + to_eye.y * t;
+        let inside = levels.map_or(inside, |[low, high]| inside.min(y - low).min(high - y));
+        (inside > -1e-9).then_some(inside)
+    };
+    triangles.iter().filter_map(hides).max_by(f64::total_cmp)
 }
 
 /// Compares all lines with rays; gives the samples and those that disagree.
@@ -88,7 +100,7 @@ fn disagreements(field: &HeightField, camera: &Camera) -> (usize, Vec<(Curve, DV
         for pair in curve.points.windows(2) {
             for part in [0.03, 0.5, 0.97] {
                 let p = pair[0].lerp(pair[1], part);
-                let found = hidden_by(p, camera, &triangles);
+                let found = hidden_by(p, camera, &triangles, field.levels());
                 samples += 1;
                 // A ray through a side of a triangle may go either way.
                 let agrees = match found {
@@ -342,14 +354,52 @@ proptest! {
         holes in proptest::collection::vec(0..42usize, 0..6),
         eye in (-9.0..9.0f64, -6.0..6.0f64, -9.0..9.0f64),
         perspective: bool,
+        levels in proptest::option::of((-1.4..-0.2f64, 0.2..1.4f64)),
     ) {
         let mut heights = heights;
         holes.iter().for_each(|&i| heights[i] = f64::NAN);
-        let field = HeightField::new([7, 6], [-4.0, 4.0], [-4.0, 4.0], heights).expect("field");
+        let mut field = HeightField::new([7, 6], [-4.0, 4.0], [-4.0, 4.0], heights).expect("field");
+        if let Some((low, high)) = levels {
+            field = field.within([low, high]).expect("levels");
+        }
         let eye = DVec3::new(eye.0, eye.1, eye.2);
         let camera = Camera { eye, target: DVec3::new(0.1, 0.2, 0.3), up: DVec3::Y, ..camera(0.0, 0.0, perspective) };
         prop_assume!(camera.check().is_ok());
         let (samples, wrong) = disagreements(&field, &camera);
         prop_assert!(wrong.is_empty(), "{} of {samples}: {:?}", wrong.len(), wrong.first());
     }
+}
+
+#[test]
+fn levels_cut_the_surface_between_its_points() {
+    // A plane that rises from −2 to 2 along x.
+    let field = HeightField::from_fn([5, 4], [0.0, 8.0], [0.0, 3.0], |x, _| x * 0.5 - 2.0);
+    let field = field.and_then(|f| f.within([-0.75, 1.25])).expect("field");
+    assert_eq!(field.range(), Some([-0.75, 1.25]));
+    let bounds = field.to_scene().bounds().expect("bounds");
+    assert!((bounds.min.x - 2.5).abs() < 1e-6 && (bounds.max.x - 6.5).abs() < 1e-6, "{bounds:?}");
+    let found = curves(&field, &camera(10.0, 50.0, false), &ALL, &mut NoTrace).expect("curves");
+    for curve in &found {
+        let [first, last] = [curve.points[0], curve.points[curve.points.len() - 1]];
+        if curve.family == Family::AlongX {
+            assert!((first.x - 2.5).abs() < 1e-9 && (last.x - 6.5).abs() < 1e-9, "{curve:?}");
+            assert!((first.y + 0.75).abs() < 1e-9 && (last.y - 1.25).abs() < 1e-9, "{curve:?}");
+        } else {
+            assert!(first.x == 4.0 || first.x == 6.0, "{curve:?}");
+        }
+    }
+    assert_eq!(found.len(), 4 + 2);
+    // A cell that jumps over all between the levels is none of the surface, nor are the sides that jump.
+    let pole = HeightField::from_fn([8, 2], [-3.5, 3.5], [0.0, 1.0], |x, _| 1.0 / x);
+    let pole = pole.and_then(|f| f.within([-1.5, 1.5])).expect("field");
+    assert_eq!(pole.cell(3, 0), None);
+    let found = curves(&pole, &camera(10.0, 50.0, false), &ALL, &mut NoTrace).expect("curves");
+    let within = |p: &DVec3| p.y.abs() < 1.5 + 1e-9 && p.x.abs() > 0.5;
+    assert!(found.iter().flat_map(|c| &c.points).all(within));
+    assert!(
+        HeightField::from_fn([2, 2], [0.0, 1.0], [0.0, 1.0], |x, _| x)
+            .expect("field")
+            .within([1.0, 0.0])
+            .is_err()
+    );
 }

@@ -14,8 +14,8 @@ fn plot(x: [f64; 2], z: [f64; 2], f: impl Fn(f64, f64) -> f64, options: &Options
 
 /// All texts with their boxes on the page, of letters 0.6 as wide as high.
 fn texts(plot: &Plot) -> Vec<(String, Rect)> {
-    let marks = plot.sheet.layers.iter().flat_map(|layer| &layer.marks);
-    let boxed = |mark: &Mark| {
+    let marks = plot.clone().into_sheet().layers.into_iter().flat_map(|layer| layer.marks);
+    let boxed = |mark: Mark| {
         let Mark::Text { at, text, height, anchor, .. } = mark else { return None };
         let width = text.chars().count() as f64 * height * 0.6;
         let left = match anchor {
@@ -23,8 +23,8 @@ fn texts(plot: &Plot) -> Vec<(String, Rect)> {
             Anchor::Middle => width * 0.5,
             Anchor::End => width,
         };
-        let low = *at - DVec2::new(left, *height);
-        Some((text.clone(), Rect::new(low, low + DVec2::new(width, *height)).ok()?))
+        let low = at - DVec2::new(left, height);
+        Some((text, Rect::new(low, low + DVec2::new(width, height)).ok()?))
     };
     marks.filter_map(boxed).collect()
 }
@@ -86,8 +86,8 @@ fn a_bar_tells_the_heights_of_colors() {
     let options = Options { color_map: Some(ColorMap::ALL[0]), ..Options::default() };
     let f = |x: f64, _: f64| x;
     let count = |options: &Options| {
-        let plot = plot([0.0, 8.0], [0.0, 8.0], f, options);
-        plot.sheet.layers.iter().find(|layer| layer.name == "colour-bar").map(|l| l.marks.len())
+        let sheet = plot([0.0, 8.0], [0.0, 8.0], f, options).into_sheet();
+        sheet.layers.iter().find(|layer| layer.name == "colour-bar").map(|l| l.marks.len())
     };
     assert!(count(&options).is_some_and(|marks| marks > 35));
     assert_eq!(count(&Options { color_bar: false, ..options.clone() }), None);

@@ -160,7 +160,16 @@ impl Canvas {
     /// filling the target before. Keeps the memory, so that picture after picture costs less on one canvas than on a
     /// new one each.
     pub fn clear(&mut self, color: Color) {
+        self.restart();
         self.background = Some(color);
+    }
+
+    /// Forgets what has been painted so far and what is open, and paints what follows over the pixels of the target:
+    /// so a long list is painted in parts. Keeps the memory.
+    ///
+    /// Where the target is opaque and colours are mixed in sRGB, parts give the same bytes as the whole.
+    pub fn restart(&mut self) {
+        self.background = None;
         self.commands.clear();
         self.lines.clear();
         self.open.clear();

@@ -44,7 +44,7 @@ pub struct Picture {
     quantum: f64,
     /// Where each point of the field is seen; only where `whole` says so.
     points: Vec<DVec2>,
-    /// Whether a point is there and lies in the quarter.
+    /// Whether a point is there, between the levels, and lies in the quarter.
     whole: Vec<bool>,
     /// Opposite corners around all points.
     min: DVec2,
@@ -173,11 +173,14 @@ impl Picture {
             min,
             max,
         };
+        let levels = points.field.levels().map(|l| l.map(|y| y - points.middle.y));
         for point in points.iter() {
-            let place = point.map(|p| picture.place(p));
+            // What is beyond a level is cut there.
+            let kept = point.map(|p| levels.map_or(p, |[l, h]| DVec3 { y: p.y.clamp(l, h), ..p }));
+            let place = kept.map(|p| picture.place(p));
             let inside = place.filter(|p| picture.is_inside(p));
             let at = inside.map_or(DVec2::ZERO, |p| picture.project(&p));
-            picture.whole.push(inside.is_some());
+            picture.whole.push(inside.is_some() && kept == point);
             picture.points.push(at);
             if inside.is_some() {
                 (picture.min, picture.max) = (picture.min.min(at), picture.max.max(at));
@@ -256,15 +259,14 @@ impl Picture {
     }
 
     /// The part of the segment between two points of the field (by number and place relative to the
-    /// middle) that lies in the picture.
-    pub fn part(&self, numbers: [usize; 2], ends: [DVec3; 2]) -> Option<Part> {
+    /// middle) that lies in the picture, of that which lies between the levels.
+    pub fn part(&self, numbers: [usize; 2], ends: [DVec3; 2], between: [f64; 2]) -> Option<Part> {
         let places = ends.map(|p| self.place(p));
         if let [true, true] = numbers.map(|n| self.whole[n]) {
             let depths = places.map(|p| p.ahead);
             return Some(Part { range: [0.0, 1.0], ends: numbers.map(|n| self.points[n]), depths });
         }
-        self.quarter?;
-        let (mut from, mut to) = (0.0f64, 1.0f64);
+        let [mut from, mut to] = between;
         for (a, b) in self.insides(&places[0]).into_iter().zip(self.insides(&places[1])) {
             match (a >= 0.0, b >= 0.0) {
                 (false, false) => return None,
@@ -281,18 +283,22 @@ impl Picture {
         Some(Part { range: [from, to], ends: cut.map(|p| self.project(&p)), depths })
     }
 
-    /// The corners, in order, of the part of a triangle that lies in the picture; at most six.
-    pub fn polygon(&self, numbers: [usize; 3], corners: [DVec3; 3], out: &mut Vec<DVec2>) {
+    /// The corners of a triangle of the field, where all of it lies in the picture.
+    pub fn triangle(&self, numbers: [usize; 3], out: &mut Vec<DVec2>) -> bool {
         out.clear();
-        if let [true, true, true] = numbers.map(|n| self.whole[n]) {
+        let whole = numbers.map(|n| self.whole[n]) == [true; 3];
+        if whole {
             out.extend(numbers.map(|n| self.points[n]));
-            return;
         }
-        if self.quarter.is_none() {
-            return;
-        }
-        let mut ring: Vec<Place> = corners.map(|p| self.place(p)).to_vec();
-        for border in 0..3 {
+        whole
+    }
+
+    /// The corners, in order, of the part of a convex polygon that lies in the picture; at most three more.
+    pub fn polygon(&self, corners: &[DVec3], out: &mut Vec<DVec2>) {
+        out.clear();
+        let mut ring: Vec<Place> = corners.iter().map(|p| self.place(*p)).collect();
+        let borders = if self.quarter.is_some() { 3 } else { 0 };
+        for border in 0..borders {
             let mut cut = Vec::with_capacity(6);
             for (i, p) in ring.iter().enumerate() {
                 let q = &ring[(i + 1) % ring.len()];

@@ -4,6 +4,7 @@ use super::horizon::Horizon;
 use super::sight::{Picture, Sight, side_of_eye};
 use super::{Family, Options, Piece, Step, chain};
 use crate::math::{DVec2, DVec3};
+use crate::scene::height_field::{cut, part_between};
 use crate::scene::{Camera, HeightField};
 use crate::trace::Tracer;
 
@@ -92,16 +93,23 @@ impl Place {
     }
 }
 
-/// The segments of all lines that are wanted and whose ends are there.
-fn segments(field: &HeightField, options: &Options, mut f: impl FnMut(Place, [DVec3; 2])) {
+/// The segments of all lines that are wanted and whose ends are there, with the parts of them between the levels.
+fn segments(
+    field: &HeightField,
+    options: &Options,
+    mut f: impl FnMut(Place, [DVec3; 2], [f64; 2]),
+) {
     let (columns, rows) = (field.columns(), field.rows());
     for (family, lines, points) in
         [(Family::AlongX, rows, columns), (Family::AlongZ, columns, rows)]
     {
         for line in (0..lines).filter(|&l| wanted(field, options, family, l)) {
             for segment in 0..points - 1 {
-                if let [Some(a), Some(b)] = chain::ends(field, family, line, segment) {
-                    f(Place { family, line, segment }, [a, b]);
+                let [Some(a), Some(b)] = chain::ends(field, family, line, segment) else {
+                    continue;
+                };
+                if let Some(part) = part_between([a.y, b.y], field.levels()) {
+                    f(Place { family, line, segment }, [a, b], part);
                 }
             }
         }
@@ -120,7 +128,7 @@ fn everything(
     pieces: &mut Vec<Piece>,
     t: &mut impl Tracer<Step>,
 ) {
-    segments(field, options, |place, _| keep(place.piece([0.0, 1.0], true, false), pieces, t));
+    segments(field, options, |place, _, part| keep(place.piece(part, true, false), pieces, t));
 }
 
 /// Right above or below the eye upright pictures have no place. There only one cell hides, and not
@@ -141,18 +149,21 @@ fn at_the_foot(
     let row = place(eye.z + middle.z, field.z_range(), field.rows());
     // The sides of the cell below the eye, and of its neighbours for what rounding puts next door.
     let near = |i: usize, at: f64| (i as f64 - at).abs() <= 2.0;
-    segments(field, options, |place, ends| {
+    segments(field, options, |place, ends, between| {
         let [c, r] = place.point();
         if !near(c, column) || !near(r, row) {
             return;
         }
         let numbers = place.numbers(field.columns());
         let ends = ends.map(|p| p - middle);
-        let parts = pictures.iter().filter_map(|p| p.part(numbers, ends));
+        let parts = pictures.iter().filter_map(|p| p.part(numbers, ends, between));
         let mut held: Vec<[f64; 2]> = parts.map(|p| p.range).collect();
         held.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        for range in gaps(&held) {
-            keep(place.piece(range, true, false), pieces, t);
+        for [from, to] in gaps(&held) {
+            let range = [from.max(between[0]), to.min(between[1])];
+            if range[0] < range[1] {
+                keep(place.piece(range, true, false), pieces, t);
+            }
         }
     });
 }
@@ -175,6 +186,8 @@ fn gaps(ranges: &[[f64; 2]]) -> Vec<[f64; 2]> {
 struct Walk<'a> {
     field: &'a HeightField,
     middle: DVec3,
+    /// The levels of the field, relative to the middle.
+    levels: Option<[f64; 2]>,
     sight: Sight,
     picture: &'a Picture,
     options: &'a Options,
@@ -184,6 +197,7 @@ struct Walk<'a> {
     done: Vec<u8>,
     hidden: Vec<[f64; 2]>,
     polygon: Vec<DVec2>,
+    ring: Vec<DVec3>,
 }
 
 /// Strips per row and column of the field, so that one cell meets few of them.
@@ -203,6 +217,7 @@ impl<'a> Walk<'a> {
         Self {
             field,
             middle,
+            levels: field.levels().map(|levels| levels.map(|y| y - middle.y)),
             sight,
             picture,
             options,
@@ -211,6 +226,7 @@ impl<'a> Walk<'a> {
             done: vec![0; field.columns() * field.rows()],
             hidden: Vec::new(),
             polygon: Vec::new(),
+            ring: Vec::new(),
         }
     }
 
@@ -263,7 +279,12 @@ impl<'a> Walk<'a> {
         let numbers = triangle.map(|k| corners[k].0);
         let points = triangle.map(|k| corners[k].1);
         let mut polygon = std::mem::take(&mut self.polygon);
-        self.picture.polygon(numbers, points, &mut polygon);
+        if !self.picture.triangle(numbers, &mut polygon) {
+            self.ring.clear();
+            self.ring.extend(points);
+            cut(&mut self.ring, self.levels);
+            self.picture.polygon(&self.ring, &mut polygon);
+        }
         let underside = double_area(&polygon) < 0.0;
         for (family, ends) in SIDES {
             if ends.iter().all(|k| triangle.contains(k)) {
@@ -312,7 +333,9 @@ impl<'a> Walk<'a> {
             return;
         }
         self.done[a] |= bit;
-        let Some(part) = self.picture.part([a, b], [p, q]) else { return };
+        let between = part_between([p.y, q.y], self.levels);
+        let part = between.and_then(|between| self.picture.part([a, b], [p, q], between));
+        let Some(part) = part else { return };
         let mut hidden = std::mem::take(&mut self.hidden);
         self.horizon.hidden(part.ends[0], part.ends[1], &mut hidden);
         let tell = |range: [f64; 2], visible: bool| {
