@@ -140,6 +140,7 @@ fn links_lead_to_files() {
         "CONTRIBUTING.md",
         "CHANGELOG.md",
         "docs/performance.md",
+        "docs/notes/performance-diary.md",
         "docs/clip.md",
         "docs/drawing.md",
         "docs/draw.md",
