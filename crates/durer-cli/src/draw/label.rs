@@ -1,13 +1,14 @@
 //! Labels of a map: where they go, and their outlines.
 
 use super::along::{self, Run};
+use super::block::{Block, HALO, LETTERS};
 use super::layers::Style;
 use super::places::{self, Fit, Land, NEARLY, Places};
 use crate::failure::Failure;
 use durer::clip::polygon::{Polygon, Shapes, rectangle};
 use durer::curve::Path;
-use durer::curve::text::{Font, TextLine};
-use durer::math::{DAffine2, DVec2, Rect};
+use durer::curve::text::Font;
+use durer::math::{DVec2, Rect};
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Join, Stroke};
 use durer::raster::paint::{Canvas, Paint};
@@ -24,22 +25,21 @@ use std::collections::BTreeSet;
 /// place is sought.
 const WIDTH: f64 = 2.0;
 
-/// The halo reaches so far around letters, as a share of their size.
-const HALO: f64 = 0.16;
-
 /// Room between a marker and its label, as a share of the letters' size.
 const GAP: f64 = 0.25;
 
 /// Room between an area and its label's halo, as a share of the letters' size.
 const APART: f64 = 0.15;
 
-/// The em square's share that letters take between a label's top and bottom line.
-const LETTERS: f64 = 0.73;
+/// A name in two lines comes first where its area holds so much more of it than of one line.
+const BETTER: f64 = 0.1;
 
 /// What is to be written.
 #[derive(Debug)]
 pub struct Label {
     pub text: String,
+    /// What is written where the text finds no room.
+    pub short: Option<String>,
     pub anchor: Anchor,
     /// Those of small numbers are placed first.
     pub rank: f64,
@@ -224,9 +224,7 @@ pub fn draw(
         let style = styles[label.layer];
         let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
         let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
-        let line = font.line(&label.text, style.label_size);
-        let missing = label.text.chars().filter(|c| !font.has(*c)).collect();
-        planned.push(Planned::new(label, line, missing, style, ground.land));
+        planned.push(Planned::new(label, font, style, ground.land));
     }
     // The sort is stable: what is equal stays in the order of the file.
     planned.sort_by(Planned::order);
@@ -239,7 +237,7 @@ pub fn draw(
         for (i, planned) in layer.iter().enumerate() {
             if i == held {
                 // Islands that names would hide are kept free; names that have an area of their own stand already.
-                let tiny = layer.iter().filter(|p| p.fit == Fit::Tiny && p.alone);
+                let tiny = layer.iter().filter(|p| p.tiny && p.alone);
                 for heart in tiny.filter_map(|p| p.label.anchor.heart()) {
                     placer.place([heart]);
                 }
@@ -263,10 +261,13 @@ pub fn draw(
 /// A label that knows where it may stand.
 struct Planned {
     label: Label,
-    line: TextLine,
+    /// The ways to write it: in one line, then in two or shorter, where an area does not hold one.
+    blocks: Vec<Block>,
     /// Letters that its font does not have.
     missing: Vec<char>,
     fit: Fit,
+    /// Whether its area hardly holds any way to write it.
+    tiny: bool,
     /// The share of it that its area holds.
     held: f64,
     /// Whether its area has no neighbours.
@@ -278,41 +279,73 @@ struct Planned {
 /// A place for a label.
 #[derive(Debug, Clone, PartialEq)]
 enum Spot {
-    /// Upright, with the start of its base line here.
-    At(DVec2),
+    /// Upright, the block of this number with its corner here.
+    At(usize, DVec2),
     /// Along a line.
     Along(Run),
 }
 
 impl Planned {
-    fn new(label: Label, line: TextLine, missing: Vec<char>, style: &Style, land: &Land) -> Self {
-        let anchor = &label.anchor;
-        let size = DVec2::new(line.advance.max(1.0), LETTERS * style.label_size);
-        let Some(area) = &anchor.area else {
-            let runs = along::runs(&anchor.line, size.x, style.label_size);
-            let upright = beside(anchor.at, anchor.beside, &line, style);
-            let spots = runs.into_iter().map(Spot::Along).chain(upright.into_iter().map(Spot::At));
-            let spots = spots.collect();
-            return Self { label, line, missing, fit: Fit::Over, held: 0.0, alone: false, spots };
+    fn new(label: Label, font: &Font<'_>, style: &Style, land: &Land) -> Self {
+        let size = style.label_size;
+        let one = Block::new(vec![font.line(&label.text, size)], size);
+        let missing = label.text.chars().filter(|c| !font.has(*c)).collect();
+        let Some(area) = &label.anchor.area else {
+            let extent = one.extent();
+            let runs = along::runs(&label.anchor.line, extent.x, size);
+            let upright = beside(label.anchor.at, label.anchor.beside, &one, style);
+            let spots = runs.into_iter().map(Spot::Along);
+            let spots =
+                spots.chain(upright.into_iter().map(|corner| Spot::At(0, corner))).collect();
+            let (fit, held, blocks) = (Fit::Over, 0.0, vec![one]);
+            let (tiny, alone) = (false, false);
+            return Self { label, blocks, missing, fit, tiny, held, alone, spots };
         };
-        let halo = DVec2::splat(2.0 * HALO * style.label_size);
-        let poles = anchor.poles(area, (size.x / size.y).clamp(1.0, 8.0));
-        let gap = APART * style.label_size + 0.5 * style.stroke_width;
-        let Places { fit, held, alone, middles } =
-            places::around(area, &poles, size + halo, gap, land);
-        let spot = |middle: DVec2| Spot::At(middle + DVec2::new(-size.x, size.y) / 2.0);
-        let spots = middles.into_iter().map(spot).collect();
-        Self { label, line, missing, fit, held, alone, spots }
+        let around = |block: &Block| {
+            let (extent, halo) = (block.extent(), DVec2::splat(2.0 * HALO * size));
+            let poles = label.anchor.poles(area, (extent.x / extent.y).clamp(1.0, 8.0));
+            let gap = APART * size + 0.5 * style.stroke_width;
+            places::around(area, &poles, extent + halo, gap, land)
+        };
+        let Places { mut fit, mut held, alone, middles } = around(&one);
+        let spots = |number: usize, block: &Block, middles: Vec<DVec2>| -> Vec<Spot> {
+            middles.into_iter().map(|m| Spot::At(number, block.corner(m))).collect()
+        };
+        let mut found = spots(0, &one, middles);
+        let mut blocks = vec![one];
+        let mut tiny = fit == Fit::Tiny;
+        if fit != Fit::Held {
+            let short = label.short.as_ref().map(|s| Block::new(vec![font.line(s, size)], size));
+            for (block, whole) in [(Block::stacked(&label.text, font, size), true), (short, false)]
+            {
+                let Some(block) = block else { continue };
+                let more = around(&block);
+                tiny &= more.fit == Fit::Tiny;
+                let better = more.fit < fit || (more.fit == fit && more.held > held + BETTER);
+                let more_spots = spots(blocks.len(), &block, more.middles);
+                if whole && better {
+                    (fit, held) = (more.fit, more.held);
+                    found.splice(..0, more_spots);
+                } else {
+                    found.extend(more_spots);
+                }
+                blocks.push(block);
+            }
+        }
+        Self { label, blocks, missing, fit, tiny, held, alone, spots: found }
     }
 
     /// The room that it takes at a place, in boxes.
     fn taken(&self, spot: &Spot, style: &Style) -> Vec<Rect> {
         match spot {
-            Spot::At(corner) => taken(*corner, &self.line, style).into_iter().collect(),
+            Spot::At(block, corner) => self.blocks[*block].taken(*corner),
             Spot::Along(run) => {
                 let half = (0.5 * LETTERS + HALO) * style.label_size;
-                let middles = self.line.glyphs.iter().map(|g| (g.start + g.end) / 2.0);
-                let halves = self.line.glyphs.iter().map(|g| half.max((g.end - g.start) / 2.0));
+                let glyphs = || {
+                    self.blocks.first().and_then(Block::line).into_iter().flat_map(|l| &l.glyphs)
+                };
+                let middles = glyphs().map(|g| (g.start + g.end) / 2.0);
+                let halves = glyphs().map(|g| half.max((g.end - g.start) / 2.0));
                 let around = |(at, half): (DVec2, f64)| Rect::new(at - half, at + half).ok();
                 let at = middles.filter_map(|along| run.place(along));
                 at.zip(halves).filter_map(around).collect()
@@ -323,9 +356,11 @@ impl Planned {
     /// Its outlines at a place.
     fn outlines(&self, spot: &Spot, style: &Style) -> Path {
         match spot {
-            Spot::At(corner) => self.line.path.transformed(DAffine2::from_translation(*corner)),
+            Spot::At(block, corner) => self.blocks[*block].outlines(*corner),
             Spot::Along(run) => {
-                self.line.along(&run.line, run.start, 0.5 * LETTERS * style.label_size)
+                let line = self.blocks.first().and_then(Block::line);
+                let down = 0.5 * LETTERS * style.label_size;
+                line.map_or_else(Path::new, |line| line.along(&run.line, run.start, down))
             }
         }
     }
@@ -344,29 +379,21 @@ impl Planned {
 }
 
 /// Starts of the base line, the best first.
-fn beside(at: DVec2, beside: bool, line: &TextLine, style: &Style) -> Vec<DVec2> {
-    let size = style.label_size;
+fn beside(at: DVec2, beside: bool, block: &Block, style: &Style) -> Vec<DVec2> {
+    let (size, advance) = (style.label_size, block.extent().x);
     // Capitals stand in the middle of the line.
     let middle = at + DVec2::new(0.0, LETTERS * 0.5 * size);
-    let centered = middle - DVec2::new(line.advance * 0.5, 0.0);
+    let centered = middle - DVec2::new(advance * 0.5, 0.0);
     let apart = GAP * size + 0.5 * (style.marker_size + style.stroke_width);
     let above = DVec2::new(0.0, LETTERS * 0.5 * size + apart);
     if beside {
         let right = middle + DVec2::new(apart, 0.0);
-        let left = middle - DVec2::new(apart + line.advance, 0.0);
+        let left = middle - DVec2::new(apart + advance, 0.0);
         vec![right, left, centered - above, centered + above]
     } else {
         let shift = DVec2::new(0.0, 0.6 * size);
         vec![centered, centered - shift, centered + shift]
     }
-}
-
-/// The room that a label takes.
-fn taken(corner: DVec2, line: &TextLine, style: &Style) -> Option<Rect> {
-    let halo = HALO * style.label_size;
-    let min = corner - DVec2::new(halo, LETTERS * style.label_size + halo);
-    let max = corner + DVec2::new(line.advance + halo, line.descent + halo);
-    Rect::new(min, max).ok()
 }
 
 fn write(canvas: &mut Canvas, outlines: &Path, style: &Style) -> durer::Result<()> {

@@ -119,7 +119,8 @@ struct LayerArgs {
     ///
     /// Within areas, along lines, beside points. Labels overlap neither each other nor markers: those of upper
     /// layers come first, then those that --label-priority says, then those of larger features; what finds no room is
-    /// left out.
+    /// left out. Names that their area does not hold are written in two lines, where that is better, and NAME of Natural
+    /// Earth as ABBREV says, where nothing else has room.
     #[arg(long, value_name = "FIELD")]
     label: Vec<String>,
     /// Place labels with small numbers of this property first, or `-FIELD`: with large ones [default: LABELRANK,

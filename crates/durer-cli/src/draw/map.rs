@@ -29,6 +29,10 @@ const NEAR: f64 = 1.0 / 4096.0;
 /// Natural Earth's property of how important a label is: small numbers first.
 const LABELRANK: &str = "LABELRANK";
 
+/// Where Natural Earth has names, and shorter ones for those that find no room.
+const NAME: &str = "NAME";
+const ABBREV: &str = "ABBREV";
+
 /// So many names of properties are listed where a label's is not there.
 const LISTED: usize = 12;
 
@@ -403,7 +407,8 @@ impl Map {
         let label = |feature: &Feature| {
             let text = text_of(feature, field)?;
             let anchor = Anchor::of(feature.geometry.as_ref()?, &self.screen, &self.seen)?;
-            Some(Label { text, anchor, rank: rank(feature, &by), layer })
+            let short = if field == NAME { text_of(feature, ABBREV) } else { None };
+            Some(Label { text, short, anchor, rank: rank(feature, &by), layer })
         };
         features.iter().filter_map(label).collect()
     }

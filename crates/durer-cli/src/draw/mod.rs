@@ -2,6 +2,7 @@
 
 mod along;
 mod args;
+mod block;
 mod borders;
 mod fonts;
 mod joined;

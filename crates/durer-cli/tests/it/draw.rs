@@ -514,3 +514,40 @@ fn labels_follow_lines_and_ranks_decide_who_comes_first() {
         "{wrong:?}"
     );
 }
+
+#[test]
+fn names_without_room_are_written_in_two_lines_or_short() {
+    let folder = Folder::new();
+    let area = |name: &str| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{{name}}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[[20,5],[80,5],[80,45],[20,45],[20,5]]]}}}}"
+        )
+    };
+    // The box of all letters in a picture of one unit a pixel.
+    let ink = |name: &str| {
+        folder.write("a.geojson", &area(name));
+        folder.must("draw a.geojson -o a.png --size 100x50 --window 0,0,100,50 --stroke none --fill white --label NAME --label-halo none");
+        let picture = picture(&folder, "a.png");
+        let dark: Vec<(usize, usize)> = picture
+            .pixels()
+            .enumerate()
+            .filter(|(_, p)| p[0] < 128)
+            .map(|(i, _)| (i % 100, i / 100))
+            .collect();
+        let span = |all: Vec<usize>| all.iter().max().zip(all.iter().min()).map(|(a, b)| a - b);
+        (span(dark.iter().map(|p| p.0).collect()), span(dark.iter().map(|p| p.1).collect()))
+    };
+    let (width, height) = ink("\"NAME\":\"Northern Isles\"");
+    assert!(
+        width.is_some_and(|w| (40..60).contains(&w)) && height.is_some_and(|h| h > 18),
+        "{width:?} {height:?}"
+    );
+    let (width, height) = ink("\"NAME\":\"Isles\"");
+    assert!(
+        width.is_some_and(|w| w < 40) && height.is_some_and(|h| h < 12),
+        "{width:?} {height:?}"
+    );
+    let long = "\"NAME\":\"Northernmostislandsofall\",\"ABBREV\":\"N.I.\"";
+    let (width, _) = ink(long);
+    assert!(width.is_some_and(|w| w < 30), "{width:?}");
+}

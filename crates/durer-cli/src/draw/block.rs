@@ -1,0 +1,108 @@
+//! The lines of a label.
+
+use durer::curve::Path;
+use durer::curve::text::{Font, TextLine};
+use durer::math::{DAffine2, DVec2, Rect};
+
+/// The em square's share that letters take between a label's top and bottom line.
+pub const LETTERS: f64 = 0.73;
+
+/// The halo reaches so far around letters, as a share of their size.
+pub const HALO: f64 = 0.16;
+
+/// The lines of a block are so far apart, as a share of the letters' size.
+const LEADING: f64 = 1.05;
+
+/// One line or more, centred one below another. Its corner is the start of the first base line, if that line were as long
+/// as the longest.
+#[derive(Debug)]
+pub struct Block {
+    lines: Vec<TextLine>,
+    width: f64,
+    size: f64,
+}
+
+impl Block {
+    /// A block of lines of letters of a size, pixels.
+    pub fn new(lines: Vec<TextLine>, size: f64) -> Self {
+        let width = lines.iter().map(|line| line.advance).fold(1.0, f64::max);
+        Self { lines, width, size }
+    }
+
+    /// A text in two lines, broken at the blank that makes it narrowest.
+    pub fn stacked(text: &str, font: &Font<'_>, size: f64) -> Option<Self> {
+        let halves = text.match_indices(' ').map(|(at, _)| [text[..at].trim(), text[at..].trim()]);
+        let full = halves.filter(|halves| halves.iter().all(|half| !half.is_empty()));
+        let blocks = full.map(|h| Self::new(h.map(|half| font.line(half, size)).to_vec(), size));
+        blocks.min_by(|a, b| a.width.total_cmp(&b.width))
+    }
+
+    /// The only line, where there is one.
+    pub fn line(&self) -> Option<&TextLine> {
+        self.lines.first().filter(|_| self.lines.len() == 1)
+    }
+
+    /// From the left to the right and from the top of the first to the bottom of the last line's letters.
+    pub fn extent(&self) -> DVec2 {
+        let down = LEADING * self.lines.len().saturating_sub(1) as f64;
+        DVec2::new(self.width, (LETTERS + down) * self.size)
+    }
+
+    /// The corner of a block whose middle is given.
+    pub fn corner(&self, middle: DVec2) -> DVec2 {
+        middle + DVec2::new(-self.width * 0.5, LETTERS * self.size - self.extent().y * 0.5)
+    }
+
+    /// Each line with the start of its base line.
+    fn placed(&self, corner: DVec2) -> impl Iterator<Item = (&TextLine, DVec2)> {
+        self.lines.iter().enumerate().map(move |(i, line)| {
+            let (aside, down) = ((self.width - line.advance) * 0.5, LEADING * self.size * i as f64);
+            (line, corner + DVec2::new(aside, down))
+        })
+    }
+
+    /// The room that it takes, in boxes.
+    pub fn taken(&self, corner: DVec2) -> Vec<Rect> {
+        let halo = HALO * self.size;
+        let taken = |(line, start): (&TextLine, DVec2)| {
+            let min = start - DVec2::new(halo, LETTERS * self.size + halo);
+            let max = start + DVec2::new(line.advance + halo, line.descent + halo);
+            Rect::new(min, max).ok()
+        };
+        self.placed(corner).filter_map(taken).collect()
+    }
+
+    /// Its outlines.
+    pub fn outlines(&self, corner: DVec2) -> Path {
+        let mut path = Path::new();
+        for (line, start) in self.placed(corner) {
+            path.extend(&line.path.transformed(DAffine2::from_translation(start)));
+        }
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_broken_where_they_get_narrowest() {
+        let bytes = include_bytes!("../../fonts/DejaVuSans.ttf");
+        let font = Font::new(bytes, 0).expect("font");
+        let whole = Block::new(vec![font.line("United Arab Emirates", 12.0)], 12.0);
+        let stacked = Block::stacked("United Arab Emirates", &font, 12.0).expect("blanks");
+        let halves = ["United Arab", "Emirates"].map(|half| font.line(half, 12.0).advance);
+        assert_eq!(stacked.extent().x, halves[0].max(halves[1]));
+        assert!(stacked.extent().y > 2.0 * whole.extent().y);
+        // Both lines are centred about the middle of the block.
+        let middle = DVec2::new(50.0, 40.0);
+        let boxes = stacked.taken(stacked.corner(middle));
+        for own in &boxes {
+            assert!(((own.min().x + own.max().x) / 2.0 - middle.x).abs() < 1e-9);
+        }
+        assert!(boxes[0].max().y < 50.0 && boxes[1].min().y > 30.0 && boxes.len() == 2);
+        assert!(Block::stacked("Emirates", &font, 12.0).is_none());
+        assert!(Block::stacked(" Emirates ", &font, 12.0).is_none());
+    }
+}
