@@ -329,7 +329,11 @@ fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
             .or_else(|| Kind::Paint.is_known(&lower).then_some(Cow::Owned(lower)));
     }
     let (link, fallback) = value.split_at(value.find(')')? + 1);
-    let fallback = fallback.trim();
+    let fallback = match fallback.trim() {
+        // Pictures and elements of other files are no paint.
+        "" if is_elsewhere(link) => return Some(Cow::Borrowed("none")),
+        fallback => fallback,
+    };
     let known = |words: &str| words.is_empty() || words == "none" || words == "currentColor";
     if known(fallback) || fallback.starts_with("icc-color") {
         return Some(Cow::Borrowed(value));
@@ -340,6 +344,12 @@ fn paint<'v>(value: &'v str, around: &Around) -> Option<Cow<'v, str>> {
         _ => color(fallback, around)?,
     };
     Some(Cow::Owned(format!("{link} {words}")))
+}
+
+/// Whether a `url(…)` refers to something outside of its file.
+pub(super) fn is_elsewhere(link: &str) -> bool {
+    let inner = link.get(4..).unwrap_or_default().trim_end_matches(')');
+    !inner.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'').starts_with('#')
 }
 
 /// Lengths in pixels.

@@ -263,6 +263,17 @@ fn what_is_not_understood_is_told_with_its_line() {
             "`fill` of `rect` is `url(#x)`: there is no element with the id `x`",
         ),
         ("<use href='#x'/>", "`href` of `use` is `#x`: there is no element"),
+        (
+            "<use href='x.svg#x'/>",
+            "elements of other files, and pictures, are not read; nothing is drawn",
+        ),
+        ("<rect fill='url(x.png)'/>", "and pictures, are not read; nothing is painted"),
+        ("<rect vector-effect='non-scaling-stroke'/>", "strokes are scaled"),
+        ("<g font-variant='small-caps'/>", "`font-variant: small-caps` is not drawn"),
+        (
+            "<g text-decoration='underline wavy'/>",
+            "`text-decoration: underline wavy` is drawn as plain lines",
+        ),
         ("<g style='mask:linear-gradient(red,blue)'/>", "only masks that are elements are drawn"),
     ] {
         let (_, told) = draw(body);
@@ -483,4 +494,15 @@ fn spaced_words_and_spans_keep_their_gaps() {
     };
     let [left, _, right, _] = extent(&middle(20)).unwrap();
     assert!((left + right).abs_diff(2 * 20 - 4) <= 1, "{left} {right}");
+}
+
+#[test]
+fn pictures_are_no_paint() {
+    // Browsers paint nothing, or what stands in their place.
+    assert_eq!(extent(&painted("<rect width='9' height='9' fill='url(a.png)'/>")), None);
+    let other = painted("<rect width='9' height='9' fill='url(a.svg#b) red'/>");
+    assert_eq!(extent(&other), Some([0, 0, 9, 9]));
+    // Plain lines under words are nothing to be told.
+    let (_, told) = draw("<g text-decoration='underline' vector-effect='none'/>");
+    assert!(told.is_empty(), "{told:?}");
 }

@@ -10,8 +10,8 @@ use super::filters;
 use super::finish::{Later, Pending};
 use super::letters::SHARE;
 use super::references::MAX_DEPTH;
-use super::style::{Styles, initial, shown, takes};
-use super::values::{Fate, Kind, can_be_drawn};
+use super::style::{Styles, initial, not_drawn, shown, takes};
+use super::values::{Fate, Kind, can_be_drawn, is_elsewhere};
 use super::write::{self, Changes, Written, attributes, is_of_svg};
 use crate::{Place, Result, Warning};
 use scope::Scope;
@@ -231,6 +231,13 @@ impl<'a, 'i> Walk<'a, 'i> {
             }
         }
         self.check_links(node, name, &said, at);
+        if is_of_svg(&node)
+            && PRESENTATION.contains(&name)
+            && let Some(told) = not_drawn(name, &said)
+            && self.seen.insert(told.clone())
+        {
+            self.told.push((at, told));
+        }
         if is_property && said != "inherit" && is_general(&said) {
             return edits.push((Cow::Borrowed(name), general(name, &said)));
         }
@@ -289,6 +296,14 @@ impl<'a, 'i> Walk<'a, 'i> {
             "href" if matches!(element, "use" | "textPath" | "tref") => "nothing is drawn",
             _ => return,
         };
+        let elsewhere = match name {
+            "href" => !value.trim().is_empty() && !value.trim().starts_with('#'),
+            _ => value.starts_with("url(") && value.ends_with(')') && is_elsewhere(value),
+        };
+        if elsewhere {
+            let what = format!("elements of other files, and pictures, are not read; {wants}");
+            return self.tell((name, value), element, at, &what);
+        }
         let link = match name {
             "href" => value.trim().strip_prefix('#'),
             // Without something in its place.
@@ -324,6 +339,9 @@ impl<'a, 'i> Walk<'a, 'i> {
         Ok(Amended { written, warnings, pictures: self.pictures })
     }
 }
+
+/// Attributes that are properties of which not all is drawn.
+const PRESENTATION: [&str; 3] = ["vector-effect", "font-variant", "text-decoration"];
 
 /// Whether a value is one that all properties may have.
 fn is_general(value: &str) -> bool {

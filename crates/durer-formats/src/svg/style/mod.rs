@@ -9,7 +9,7 @@ mod selector;
 mod sheet;
 mod variables;
 
-pub(super) use properties::{IN_STYLE, font, initial, takes};
+pub(super) use properties::{IN_STYLE, font, initial, not_drawn, takes};
 pub(super) use sheet::shown;
 
 use super::values::Around;

@@ -177,21 +177,10 @@ pub(super) fn usable(
     if name.starts_with("--") {
         return Ok(vec![declaration.clone()]);
     }
-    if NOT_DRAWN.contains(&name.as_str()) {
-        let is_usual =
-            ["none", "normal", "auto", "0", "1"].contains(&value.as_str()) || is_general(value);
-        return if is_usual {
-            Ok(Vec::new())
-        } else {
-            Err(format!("`{name}: {}` is not drawn", shown(value)))
-        };
+    if let Some(told) = not_drawn(name, value) {
+        return Err(told);
     }
-    if name == "vector-effect" && value == "non-scaling-stroke" {
-        return Err(
-            "`vector-effect: non-scaling-stroke` is not drawn; strokes are scaled".to_owned()
-        );
-    }
-    if !is_known(name) {
+    if NOT_DRAWN.contains(&name.as_str()) || !is_known(name) {
         return Ok(Vec::new());
     }
     let said = |name: &str, value: &str| Declaration {
@@ -236,6 +225,25 @@ pub(super) fn usable(
     }
     Err(format!("`{name}` of `style` is `{}`: {}; it is passed over", shown(value), kind.wanted()))
 }
+
+/// What is to be told of a declaration that changes a picture in browsers, but not here.
+pub(crate) fn not_drawn(name: &str, value: &str) -> Option<String> {
+    let is_usual = ["none", "normal", "auto", "0", "1"].contains(&value) || is_general(value);
+    let fate = match name {
+        _ if is_usual || has_variables(value) => return None,
+        "vector-effect" if value == "non-scaling-stroke" => "not drawn; strokes are scaled",
+        "text-decoration" if !value.split_whitespace().all(|word| LINES.contains(&word)) => {
+            "drawn as plain lines in the colour of the text"
+        }
+        "font-variant" => "not drawn",
+        _ if NOT_DRAWN.contains(&name) => "not drawn",
+        _ => return None,
+    };
+    Some(format!("`{name}: {}` is {fate}", shown(value)))
+}
+
+/// What is drawn of `text-decoration`.
+const LINES: [&str; 5] = ["underline", "overline", "line-through", "blink", "solid"];
 
 /// Lengths that are none in style sheets without a unit, in browsers.
 const NEED_UNITS: [&str; 5] = ["font-size", "height", "letter-spacing", "width", "word-spacing"];
