@@ -67,7 +67,7 @@ pub struct Cli {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Render models to pictures (PNG, JPEG, WebP, animations), or draw them as SVG, PDF, DXF, HPGL or GeoJSON
+    /// Render models to pictures (PNG, JPEG, WebP, animations), or draw them as SVG, PDF, DXF, HPGL, G-code or GeoJSON
     #[command(after_long_help = RENDER_EXAMPLES, after_help = "--help shows more, and examples.")]
     Render(Box<RenderArgs>),
     /// Cut map data to windows, polygons or tiles
@@ -146,8 +146,8 @@ pub struct RenderArgs {
     pub models: Vec<PathBuf>,
     /// Where the picture goes
     ///
-    /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl or .geojson; `-` for standard
-    /// output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into
+    /// A .png, .jpg or .webp file, or a drawing as .svg, .pdf, .dxf, .hpgl, .gcode or .geojson; `-` for
+    /// standard output; a folder (existing, or ending in `/`) for NAME.png of each model. A --turntable goes into
     /// one .png, .webp or .gif, which is animated; or into a file for each frame: in a folder, or by a name with a
     /// place for the frame's number, e.g. `frame_%04d.png`. A missing folder for several pictures is made. A
     /// file is replaced only by a whole picture.

@@ -51,6 +51,14 @@ impl Kind {
         matches!(self, Self::Drawing(_))
     }
 
+    /// The format of vectors, where it has them.
+    pub fn drawing(self) -> Option<DrawingFormat> {
+        match self {
+            Self::Drawing(format) => Some(format),
+            Self::Picture(_) | Self::Gif => None,
+        }
+    }
+
     /// The format of one picture; PNG where it has none of its own.
     pub fn picture(self) -> PictureFormat {
         match self {
@@ -148,7 +156,7 @@ const PICTURES: &str =
     "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp";
 const ANY: &str = "pictures are written as PNG, JPEG or WebP; end the name in .png, .jpg or .webp \
                    (a --turntable in one file: .png, .webp, .gif; drawings: .svg, .pdf, .dxf, .hpgl, \
-                   .geojson)";
+                   .gcode, .geojson)";
 const PLANES: &str =
     "its pixels are numbers, which only PNG keeps in all programs; end the name in .png";
 
@@ -181,6 +189,8 @@ mod tests {
             ("a.png", None),
             ("a.jpg", Some("jpeg")),
             ("a.plt", Some("hpgl")),
+            ("a.NC", None),
+            ("a.ngc", Some("gcode")),
             ("tmp.Xa41", Some("png")),
             ("tmp", Some("webp")),
         ] {

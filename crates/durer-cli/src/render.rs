@@ -321,6 +321,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         model.warn(durer_formats::Place::Whole, why);
     }
     tell_loose_faces(&name, &mut model, &pictures, messages);
+    tell_scale(&name, &mut model, &pictures, messages);
     tell_flattened(&name, &mut model, &pictures, messages);
     Ok(ModelReport {
         model: name,
@@ -366,6 +367,16 @@ fn tell_loose_faces(
 ) {
     let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
     if let Some(message) = drawings.filter_map(DrawingReport::loose_faces).next() {
+        let known = model.warnings.len();
+        model.warn(durer_formats::Place::Whole, message);
+        messages.warnings(name, &model.warnings[known..]);
+    }
+}
+
+/// The scale is known when the drawing has been laid onto its paper.
+fn tell_scale(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
+    let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
+    if let Some(message) = drawings.filter_map(|d| d.told_scale.clone()).next() {
         let known = model.warnings.len();
         model.warn(durer_formats::Place::Whole, message);
         messages.warnings(name, &model.warnings[known..]);

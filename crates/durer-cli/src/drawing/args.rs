@@ -1,5 +1,6 @@
 //! What can be said of drawings.
 
+use super::machine::MachineArgs;
 use crate::values;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -53,13 +54,13 @@ pub struct DrawingArgs {
     /// of --lines, and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines 0.25 wide.
     #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
     pub pen: Option<Pens>,
-    /// Whether areas are hatched instead of filled [default: shade for .hpgl, else none]
+    /// Whether areas are hatched instead of filled [default: shade for .hpgl and .gcode, else none]
     ///
     /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. The caps
     /// of a --section are hatched among lines anyway; `none` fills them.
     #[arg(long, value_name = "HOW")]
     pub hatch: Option<Hatch>,
-    /// Which neighbouring areas become one [default: shade; face for .geojson]
+    /// Which neighbouring areas become one [default: shade; band for .dxf, face for .geojson]
     #[arg(long, value_name = "HOW")]
     pub merge: Option<Merge>,
     /// Whether areas end at their borders or reach under what covers them [default: trapped for .svg, .pdf
@@ -78,9 +79,19 @@ pub struct DrawingArgs {
     /// units of the model, closes wider gaps. `none` takes vertices as they are in the file.
     #[arg(long, value_name = "LENGTH|auto|none", allow_hyphen_values = true, default_value = "auto", value_parser = weld)]
     pub weld: Weld,
-    /// Put lines in an order with short ways for a pen
+    /// How far curves may lie from the mesh's lines, in millimetres on paper; 0 draws lines as polylines
+    /// [default: 0.02; 0 for pictures]
+    ///
+    /// Lines become circles, arcs, ellipses and cubic curves where those lie that near to all their points. Where a
+    /// line turns regularly, it is taken for a round one, whose facets the curve leaves as an arc through their corners
+    /// does: five turns in a row or more, one way, by at most 30 degrees, over chords of like lengths. So a polygon of 12
+    /// sides is a circle, and one of 8 is not; corners, junctions and ends stay where they are. .geojson
+    /// has polylines.
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = values::not_negative)]
+    pub fit: Option<f64>,
+    /// Write curves to .dxf as polylines with arcs, for programs that know no circles, ellipses and splines
     #[arg(long)]
-    pub pen_order: bool,
+    pub dxf_polylines: bool,
     /// The paper: A0 … A6, letter, legal, tabloid, WxH in millimetres, or fit [default: fit]
     ///
     /// Named sizes are turned as the drawing needs; A4-landscape and A4-portrait are not.
@@ -92,10 +103,11 @@ pub struct DrawingArgs {
     /// How large things are on the paper: 1:10, 2:1, …, or auto
     ///
     /// `auto` takes the largest of 1:1, 1:2, 1:5, 1:10 … and 2:1, 5:1, 10:1 … that fits, and is the default
-    /// for parallel views with --page or --sheet; otherwise the paper is filled.
+    /// for parallel views with --page or --sheet. Without them a .dxf is 1:1, for machines, and so is an .svg of 20 to
+    /// 420 mm where the unit is known, from the file or --unit; all else fills the paper, 180 mm without a page.
     #[arg(long, value_name = "SCALE", value_parser = parsed::<Scale>)]
     pub scale: Option<Scale>,
-    /// What a unit of the model is [default: m for glTF, else mm]
+    /// What a unit of the model is [default: m for glTF, COLLADA and FBX, else mm]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
     /// Four views on one page with a title block
@@ -107,6 +119,9 @@ pub struct DrawingArgs {
     /// A date for the title block; there is none where it is not given
     #[arg(long, value_name = "TEXT", requires = "sheet")]
     pub date: Option<String>,
+    /// Pens and what moves them.
+    #[command(flatten)]
+    pub machine: MachineArgs,
 }
 
 /// The options above by name, for those that mean nothing without a drawing.
@@ -123,7 +138,14 @@ pub const NAMES: &[&str] = &[
     "smooth",
     "intersections",
     "weld",
+    "fit",
+    "dxf_polylines",
     "pen_order",
+    "pens",
+    "feed",
+    "travel",
+    "pen_down",
+    "pen_up",
     "page",
     "margin",
     "scale",
@@ -215,6 +237,8 @@ pub enum Merge {
     Face,
     /// Those of one material and shade
     Shade,
+    /// Those of one material and like shades, of 16: round faces become bands
+    Band,
     /// Those of one material
     Material,
     /// Those of one part
@@ -309,6 +333,7 @@ impl From<Merge> for region::Merge {
         match merge {
             Merge::Face => Self::Face,
             Merge::Shade => Self::Shade,
+            Merge::Band => Self::Band,
             Merge::Material => Self::Material,
             Merge::Part => Self::Part,
         }

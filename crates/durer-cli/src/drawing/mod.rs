@@ -1,6 +1,7 @@
 //! `durer render` to drawings: vector files, and pictures painted from drawings.
 
 pub mod args;
+pub mod machine;
 pub mod report;
 
 use crate::args::{RenderArgs, ViewArgs};
@@ -22,7 +23,7 @@ use durer::target::drawing::Drawing;
 use durer::target::sheet::Sheet;
 use durer::view::projection::NamedView;
 use durer::visibility::line::hidden_line;
-use durer_formats::drawing::DrawingFormat;
+use durer_formats::drawing::{DrawingFormat, DxfStrokes, FileOptions};
 use report::DrawingReport;
 use std::time::Instant;
 
@@ -35,6 +36,19 @@ const STUBS: f64 = 1.0;
 /// How near hidden lines are to visible ones to be left out on paper, percent of the drawing's larger side: 0.36 mm
 /// of 180, a pen's width.
 const BENEATH: f64 = 0.2;
+
+/// How far fitted curves may lie from lines on vector drawings, millimetres: machines that cut paper and sheet metal
+/// are no more exact.
+const FIT: f64 = 0.02;
+
+/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF as far as its
+/// digits reach, for SVG what a desk or a screen has room for.
+const SMALLEST: f64 = 0.1;
+const LARGEST: f64 = 900_000.0;
+const HANDY: std::ops::RangeInclusive<f64> = 20.0..=420.0;
+
+/// Lines are simplified at least by this part of the drawing's extent: what is nearer comes from rounding.
+const FINEST: f64 = 1e-5;
 
 /// Free space on paper, millimetres: on pages, and around drawings without one.
 const PAGE_MARGIN: f64 = 10.0;
@@ -90,7 +104,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     if !is_wanted(args, kind) {
         return match NAMES.iter().find(|id| given(id)) {
             Some(id) => Err(Failure::Usage(format!(
-                "--{}: it is for drawings; write a .svg, .pdf, .dxf, .hpgl or .geojson, or give \
+                "--{}: it is for drawings; write a .svg, .pdf, .dxf, .hpgl, .gcode or .geojson, or give \
                  --style, e.g. --style hidden-line",
                 option(id)
             ))),
@@ -106,6 +120,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
         }
     }
     background(args, kind)?;
+    args.drawing.machine.check(kind.drawing())?;
     if args.drawing.fill == Some(Fill::Trapped) && hatch(args, kind) == Hatch::Shade {
         let message = "--fill trapped: hatching is drawn on areas that do not overlap; use --fill \
                        disjoint, or --hatch none";
@@ -115,6 +130,15 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
     if asked && args.drawing.style == Some(DrawStyle::Wireframe) {
         let message = "--hatch shade: a wireframe shows no areas; use --style hidden-line, regions, \
                        regions+lines or shadows";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
+    if geojson && args.drawing.fit.is_some_and(|fit| fit > 0.0) {
+        let message = "--fit: GeoJSON has no curves, and no paper; leave it out";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    if args.drawing.dxf_polylines && kind != Kind::Drawing(DrawingFormat::Dxf) {
+        let message = "--dxf-polylines: it is for .dxf files; leave it out";
         return Err(Failure::Usage(message.to_owned()));
     }
     if args.drawing.sheet.is_none() {
@@ -195,7 +219,8 @@ pub fn render(
     for camera in cameras {
         let cap_material = subject.cap_material;
         let shown = with_tones(style, args.drawing.hatch);
-        let options = DrawOptions { cap_material, ..draw_options(args, kind, shown, camera) };
+        let mut options = DrawOptions { cap_material, ..draw_options(args, kind, shown, camera) };
+        options.lines.tolerance = line_tolerance(args, kind, subject);
         let usage = |e: durer::Error| Failure::Usage(e.to_string());
         let drawing = pipeline::draw(subject.scene, &options).map_err(usage)?;
         let DrawOptions { camera, aspect, .. } = &options;
@@ -216,10 +241,15 @@ pub fn render(
         drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
         laid = lay_out(args, kind, subject, frame, &drawings)?;
     }
+    if args.drawing.machine.orders(kind.drawing()) {
+        paper::order::sheet(&mut laid.sheet);
+    }
     report.geometry_seconds = geometry_seconds;
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = drawings.iter().collect();
-    report.drawing = Some(DrawingReport::new(style.name(), &all, &laid));
+    let told_scale = told_scale(args, kind, subject, &laid);
+    report.drawing =
+        Some(DrawingReport { told_scale, ..DrawingReport::new(style.name(), &all, &laid) });
     write(args, kind, sink, laid.sheet, &drawings, &mut report, start)?;
     report.files = vec![sink.name()];
     Ok((report, unseen))
@@ -235,7 +265,7 @@ fn with_tones(style: DrawStyle, hatch: Option<Hatch>) -> DrawStyle {
 
 fn hatch(args: &RenderArgs, kind: Kind) -> Hatch {
     args.drawing.hatch.unwrap_or(match kind {
-        Kind::Drawing(DrawingFormat::Hpgl) => Hatch::Shade,
+        Kind::Drawing(format) if format.is_for_pens() => Hatch::Shade,
         _ => Hatch::None,
     })
 }
@@ -268,13 +298,46 @@ fn write(
             let start = Instant::now();
             let empty = Drawing::default();
             let drawing = drawings.first().unwrap_or(&empty);
+            let options =
+                FileOptions { dxf: dxf_strokes(args), machine: args.drawing.machine.options() };
             output::deliver(target, |out| {
-                durer_formats::drawing::write(out, format, &sheet, drawing)
+                durer_formats::drawing::write(out, format, &sheet, drawing, &options)
             })?;
             report.encode_seconds = start.elapsed().as_secs_f64();
         }
     }
     Ok(())
+}
+
+/// How far fitted curves may lie from lines, millimetres on paper.
+fn curve_fit(args: &RenderArgs, kind: Kind) -> f64 {
+    args.drawing.fit.unwrap_or(if kind.is_vector() { FIT } else { 0.0 })
+}
+
+/// How much lines are simplified, as a part of the drawing's extent: on large paper less than elsewhere, so that curves
+/// still find the points that they go through.
+fn line_tolerance(args: &RenderArgs, kind: Kind, subject: &Subject) -> f64 {
+    let usual = hidden_line::Options::default().tolerance;
+    let fit = curve_fit(args, kind);
+    let truth = subject.scene.bounding_sphere().map_or(0.0, |s| 2.0 * s.radius)
+        * unit(args, subject).millimetres();
+    let extent = match (args.drawing.page, args.drawing.scale) {
+        (Some(Page::Exact(size) | Page::Either(size)), _) => size.max_element(),
+        (_, Some(Scale::Given(scale))) => truth * scale,
+        _ if kind == Kind::Drawing(DrawingFormat::Dxf) => truth,
+        _ => 0.0,
+    };
+    match fit > 0.0 && extent > 0.0 && extent.is_finite() {
+        true => (fit * 0.5 / extent).clamp(FINEST, usual),
+        false => usual,
+    }
+}
+
+fn dxf_strokes(args: &RenderArgs) -> DxfStrokes {
+    match args.drawing.dxf_polylines || args.drawing.fit == Some(0.0) {
+        true => DxfStrokes::Polylines,
+        false => DxfStrokes::Pieces,
+    }
 }
 
 fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera) -> DrawOptions {
@@ -284,7 +347,11 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         lights => Lighting::Given(lights.to_vec()),
     };
     let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
-    let merge = drawing.merge.unwrap_or(if geojson { Merge::Face } else { Merge::Shade });
+    let merge = drawing.merge.unwrap_or(match kind {
+        Kind::Drawing(DrawingFormat::GeoJson) => Merge::Face,
+        Kind::Drawing(DrawingFormat::Dxf) => Merge::Band,
+        _ => Merge::Shade,
+    });
     let all = geojson || drawing.stubs == Some(0.0);
     let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
     let viewed = paper || !kind.is_vector();
@@ -302,7 +369,6 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             intersections: drawing.intersections.into(),
             smooth: drawing.smooth,
             weld: drawing.weld,
-            pen_order: drawing.pen_order,
             stubs: drawing.stubs.unwrap_or(if geojson { 0.0 } else { STUBS }) / 100.0,
             beneath: drawing.beneath.unwrap_or(if all { 0.0 } else { BENEATH }) / 100.0,
             ..default
@@ -385,8 +451,20 @@ fn sheet_cameras(scene: &Scene) -> [Camera; 4] {
 }
 
 fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
-    let metres = subject.format.to_ascii_lowercase().contains("gl");
-    args.drawing.unit.unwrap_or(if metres { Unit::M } else { Unit::Mm })
+    known_unit(args, subject).unwrap_or(Unit::Mm)
+}
+
+/// The model's unit, where it is given or the format says it. Readers bring lengths to metres, and those of 3MF to
+/// millimetres.
+fn known_unit(args: &RenderArgs, subject: &Subject) -> Option<Unit> {
+    let format = subject.format.to_ascii_lowercase();
+    let is_one = |names: &[&str]| names.iter().any(|name| format.contains(name));
+    let of_format = match () {
+        () if is_one(&["gl", "collada", "fbx"]) => Some(Unit::M),
+        () if is_one(&["3mf"]) => Some(Unit::Mm),
+        () => None,
+    };
+    args.drawing.unit.or(of_format)
 }
 
 fn lay_out(
@@ -396,7 +474,7 @@ fn lay_out(
     frame: Option<u32>,
     drawings: &[Drawing],
 ) -> Result<LaidOut, Failure> {
-    let options = paper_options(args, kind, subject, frame)?;
+    let options = paper_options(args, kind, subject, frame, drawings)?;
     let name = args.drawing.title.clone().unwrap_or_else(|| subject.name.to_owned());
     let laid = match drawings {
         [front, top, right, iso] => {
@@ -413,11 +491,41 @@ fn lay_out(
     laid.map_err(|e| Failure::Usage(format!("--{e}")))
 }
 
+/// Whether a drawing without page and scale is 1:1: for machines, and where that makes a handy sheet.
+fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, drawings: &[Drawing]) -> bool {
+    let sides = drawings.iter().filter_map(Drawing::bounds).map(|b| b.size().max_element());
+    let size = sides.fold(0.0, f64::max) * unit(args, subject).millimetres();
+    match kind {
+        Kind::Drawing(DrawingFormat::Dxf) => (SMALLEST..=LARGEST).contains(&size),
+        Kind::Drawing(DrawingFormat::Svg) => {
+            known_unit(args, subject).is_some() && HANDY.contains(&size)
+        }
+        _ => false,
+    }
+}
+
+/// What the scale is, where whoever cuts or measures the drawing may be wrong about it.
+fn told_scale(args: &RenderArgs, kind: Kind, subject: &Subject, laid: &LaidOut) -> Option<String> {
+    let asked = matches!(args.drawing.scale, Some(Scale::Given(_)));
+    if kind != Kind::Drawing(DrawingFormat::Dxf) || args.drawing.sheet.is_some() {
+        return None;
+    }
+    if !asked && laid.scale != 1.0 {
+        let scale = paper::scale_text(laid.scale);
+        return Some(format!("the drawing is {scale}; --scale 1:1 makes it as large as the model"));
+    }
+    known_unit(args, subject).is_none().then(|| {
+        let format = subject.format.split(',').next().unwrap_or_default();
+        format!("a unit of the model is taken as 1 mm, as {format} has none; --unit tells another")
+    })
+}
+
 fn paper_options(
     args: &RenderArgs,
     kind: Kind,
     subject: &Subject,
     frame: Option<u32>,
+    drawings: &[Drawing],
 ) -> Result<paper::Options, Failure> {
     let drawing = &args.drawing;
     let view = &args.view;
@@ -436,7 +544,11 @@ fn paper_options(
     });
     let on_page = drawing.page.is_some() || drawing.sheet.is_some();
     let parallel = view.fov.is_none() && view.eye.is_none() && view.camera.is_none();
-    let scale = if on_page && parallel { Scale::Standard } else { Scale::Fit };
+    let scale = match (on_page, parallel) {
+        (true, true) => Scale::Standard,
+        (false, true) if is_true_size(args, kind, subject, drawings) => Scale::Given(1.0),
+        _ => Scale::Fit,
+    };
     // A painted window fills the picture, as pixels of surfaces do.
     let filled = !kind.is_vector() && window && drawing.page.is_none();
     let margin = if on_page {
@@ -454,6 +566,7 @@ fn paper_options(
         frame: if window { Frame::Window } else { Frame::Content },
         hidden: drawing.hidden.into(),
         pens: drawing.pen.unwrap_or_default(),
+        fit: curve_fit(args, kind),
         background: background(args, kind)?,
     })
 }

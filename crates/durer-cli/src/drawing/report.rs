@@ -28,6 +28,9 @@ pub struct DrawingReport {
     pub border_edges: u64,
     /// Lines by class, those that have some.
     pub lines: Vec<ClassReport>,
+    /// What is to be told of the scale.
+    #[serde(skip)]
+    pub told_scale: Option<String>,
 }
 
 /// The lines of one class.
@@ -76,6 +79,7 @@ impl DrawingReport {
             edges: drawings.iter().map(|d| d.edges.edges).sum(),
             border_edges: drawings.iter().map(|d| d.edges.borders).sum(),
             lines: LineClass::ALL.iter().filter_map(class).collect(),
+            told_scale: None,
         }
     }
 

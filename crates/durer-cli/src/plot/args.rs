@@ -2,6 +2,7 @@
 
 use crate::args::RunningArgs;
 use crate::color;
+use crate::drawing::machine::MachineArgs;
 use crate::encoding::EncodingArgs;
 use crate::sides::{Sides, sides};
 use crate::values::{self, Size};
@@ -34,8 +35,8 @@ pub struct PlotArgs {
     pub input: Option<PathBuf>,
     /// Where the plot goes
     ///
-    /// A file whose suffix tells the format: .svg, .pdf, .dxf, .hpgl, .geojson, or .png, .jpg, .webp; `-` for
-    /// standard output, with --to. A file is replaced only by a whole plot.
+    /// A file whose suffix tells the format: .svg, .pdf, .dxf, .hpgl, .gcode, .geojson, or .png, .jpg, .webp;
+    /// `-` for standard output, with --to. A file is replaced only by a whole plot.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     pub output: PathBuf,
     /// The format of OUT [default: by its suffix]
@@ -50,6 +51,9 @@ pub struct PlotArgs {
     /// What is drawn.
     #[command(flatten)]
     pub look: PlotLookArgs,
+    /// Pens and what moves them.
+    #[command(flatten)]
+    pub machine: MachineArgs,
     /// Threads and messages.
     #[command(flatten)]
     pub running: RunningArgs,

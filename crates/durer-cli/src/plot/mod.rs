@@ -13,7 +13,7 @@ use crate::messages::Messages;
 use crate::output::{self, Target};
 use crate::report as reports;
 use crate::values::{self, Size};
-use args::{Hidden, Lines, PlotLookArgs};
+use args::{Hidden, Lines};
 use durer::math::{DVec2, DVec3};
 use durer::paper::{self, Page};
 use durer::plot::{self, Axes, Plot};
@@ -23,7 +23,7 @@ use durer::target::drawing::Drawing;
 use durer::view::projection::{Lens, ViewDirection};
 use durer::visibility::line::floating_horizon;
 use durer_formats::Limits;
-use durer_formats::drawing::{self, DrawingFormat};
+use durer_formats::drawing::{self, DrawingFormat, FileOptions};
 use durer_formats::formula::Formula;
 use durer_formats::height_map::{self, HeightMapOptions};
 use durer_formats::picture::{self, PictureFormat};
@@ -54,7 +54,7 @@ pub fn format(text: &str) -> Result<Format, String> {
     let picture = PictureFormat::of_suffix(text).map(Format::Picture);
     picture
         .or_else(|| DrawingFormat::of_suffix(text).map(Format::Drawing))
-        .ok_or_else(|| "a plot is svg, pdf, dxf, hpgl, geojson, png, jpg or webp".to_owned())
+        .ok_or_else(|| "a plot is svg, pdf, dxf, hpgl, gcode, geojson, png, jpg or webp".to_owned())
 }
 
 /// `--exaggeration`.
@@ -114,10 +114,12 @@ pub fn page(text: &str) -> Result<Page, String> {
 pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let format = format_of(args)?;
-    args.look.encoding.check(match format {
+    let kind = match format {
         Format::Picture(format) => Kind::Picture(format),
         Format::Drawing(format) => Kind::Drawing(format),
-    })?;
+    };
+    args.look.encoding.check(kind)?;
+    args.machine.check(kind.drawing())?;
     let target = target(args)?;
     let messages = Messages::new(&args.running, 1);
     messages.progress.stage(|| "reading".to_owned());
@@ -137,7 +139,7 @@ pub fn run(args: &PlotArgs) -> Result<(), Failure> {
     let start = Instant::now();
     let mut flattened = false;
     let bytes = output::deliver(&target, |out| {
-        flattened = write(out, format, plot, &args.look)?;
+        flattened = write(out, format, plot, args)?;
         Ok(())
     })?;
     if flattened {
@@ -352,21 +354,26 @@ fn write(
     out: &mut output::Out,
     format: Format,
     plot: Plot,
-    look: &PlotLookArgs,
+    args: &PlotArgs,
 ) -> durer_formats::Result<bool> {
     match format {
         Format::Drawing(DrawingFormat::GeoJson) => {
             drawing::write_geojson(out, &plot.drawing).map(|()| false)
         }
         Format::Drawing(format) => {
-            drawing::write(out, format, &plot.into_sheet(), &Drawing::default()).map(|()| false)
+            let mut sheet = plot.into_sheet();
+            if args.machine.orders(Some(format)) {
+                paper::order::sheet(&mut sheet);
+            }
+            let options = FileOptions { machine: args.machine.options(), ..FileOptions::default() };
+            drawing::write(out, format, &sheet, &Drawing::default(), &options).map(|()| false)
         }
         Format::Picture(format) => {
             let sheet = plot.into_sheet();
             let background = sheet.background.unwrap_or([0; 4]);
-            let Size { width, height } = look.size.of_shape(sheet.size);
+            let Size { width, height } = args.look.size.of_shape(sheet.size);
             let pixels = paper::paint(sheet, width, height, background)?;
-            picture::write(out, format, &pixels, &look.encoding.encoding())
+            picture::write(out, format, &pixels, &args.look.encoding.encoding())
         }
     }
 }

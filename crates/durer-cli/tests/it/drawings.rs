@@ -63,11 +63,12 @@ fn a_cube_has_nine_visible_edges_and_three_hidden() {
 #[test]
 fn every_format_is_written_by_suffix_and_by_name() {
     let folder = Folder::with_models();
-    let starts: [(&str, &[u8]); 5] = [
+    let starts: [(&str, &[u8]); 6] = [
         ("svg", b"<svg"),
         ("pdf", b"%PDF-1.5"),
         ("dxf", b"  0\nSECTION"),
         ("hpgl", b"IN;"),
+        ("gcode", b"; cube\n; sheet "),
         ("geojson", b"{\"type\":\"FeatureCollection\""),
     ];
     for (format, start) in starts {
@@ -100,10 +101,21 @@ fn options_that_do_not_fit_say_what_does() {
         ("-o a.geojson --sheet third-angle", "GeoJSON has no paper"),
         ("-o a.svg --lines edges", "silhouette"),
         ("-o a.svg --stubs 60", "below 50"),
+        ("-o a.svg --fit -1", "--fit"),
+        ("-o a.png --fit 0.1", "give --style"),
+        ("-o a.geojson --fit 0.1", "GeoJSON has no curves"),
+        ("-o a.svg --dxf-polylines", "it is for .dxf files"),
         ("-o a.png --stubs 1", "give --style"),
         ("-o a.png --fill disjoint", "give --style"),
         ("-o a.hpgl --style regions --fill trapped", "use --fill disjoint"),
         ("-o a.svg --style regions --hatch shade --fill trapped", "--hatch none"),
+        ("-o a.svg --feed 100", "--feed: it is for G-code; write a .gcode"),
+        ("-o a.hpgl --pen-up M5", "--pen-up: it is for G-code"),
+        ("-o a.gcode --pen-up M5?", "without ! ? ~"),
+        ("-o a.gcode --feed 0", "above 0"),
+        ("-o a.pdf --pens 2", "--pens: it is for plotters"),
+        ("-o a.geojson --pen-order", "GeoJSON has no pens"),
+        ("-o a.png --pen-order", "give --style"),
         (
             "-o a.svg --style wireframe --hatch shade",
             "hidden-line, regions, regions+lines or shadows",
@@ -172,6 +184,53 @@ fn hidden_line_drawings_are_hatched_where_that_is_asked_for() {
     assert_eq!(hatched["lines"], both["lines"]);
     // Plotters hatch areas without being asked, but a line drawing stays one.
     assert_eq!(length(&drawn("-o a.hpgl"), "hatch"), 0.0);
+}
+
+#[test]
+fn gcode_takes_its_commands_and_speeds_from_options() {
+    let folder = Folder::with_models();
+    let drawn = |options: &str| {
+        folder.must(&format!("render cube.obj -o a.nc {options}"));
+        String::from_utf8(folder.read("a.nc")).unwrap()
+    };
+    let text = drawn("--pen-down G1\\nG4 --pen-up G0 --feed 700 --travel 2000 --hidden dashed");
+    // Outlines and edges have different pens, the hidden lines a third.
+    assert_eq!(text.matches("\nM0\n").count(), 2, "{text}");
+    assert!(text.contains(" F2000\nG1\nG4\nG1 X") && text.contains(" F700\n"), "{text}");
+    let text = drawn("--pens 1 --hidden dashed");
+    assert!(!text.contains("M0") && text.contains("\nM3 S1000\nG4 P0.2\nG1 X"), "{text}");
+    assert_eq!(text.matches("; layer ").count(), 3, "{text}");
+    // Plots too.
+    folder.must("plot --formula x*z -o plot.gcode --feed 10");
+    assert!(String::from_utf8(folder.read("plot.gcode")).unwrap().contains(" F10\n"));
+    folder.run("plot --formula x*z -o plot.svg --feed 10").fails(2, "it is for G-code");
+}
+
+#[test]
+fn a_pen_goes_short_ways_where_that_is_asked_for() {
+    let folder = folder();
+    let travel = |options: &str| -> f64 {
+        folder.must(&format!("render bracket.stl -o a.svg --hatch shade {options}"));
+        let text = String::from_utf8(folder.read("a.svg")).unwrap();
+        // Hatching is of straight lines: M x y l dx dy, or h dx.
+        let ends = text.lines().skip_while(|l| !l.contains("visible-hatch")).filter_map(ends);
+        let ends: Vec<[f64; 4]> = ends.collect();
+        assert!(ends.len() > 50, "{}", ends.len());
+        ends.windows(2).map(|w| (w[1][0] - w[0][2]).hypot(w[1][1] - w[0][3])).sum()
+    };
+    assert!(travel("--pen-order") < 0.3 * travel(""));
+}
+
+/// Where a straight stroke of an SVG begins and ends.
+fn ends(line: &str) -> Option<[f64; 4]> {
+    let path = line.split_once(" d=\"M")?.1.split_once('"')?.0;
+    let (start, step) = path.split_once('l')?;
+    let pair = |text: &str| {
+        let at = text.rfind([' ', '-']).filter(|at| *at > 0)?;
+        Some([text[..at].parse::<f64>().ok()?, text[at..].trim().parse::<f64>().ok()?])
+    };
+    let ([x, y], [dx, dy]) = (pair(start)?, pair(step)?);
+    Some([x, y, x + dx, y + dy])
 }
 
 #[test]
@@ -327,4 +386,74 @@ fn polygons_that_are_not_flat_have_their_outline_between_their_triangles() {
         features.iter().filter(|f| f["properties"]["class"] == "silhouette").count()
     };
     assert_eq!((silhouettes(0), silhouettes(60)), (0, 1));
+}
+
+/// A plate with a round hole, of so many sides each.
+fn plate(sides: u32) -> String {
+    let ring = |radius: f64, z: f64| {
+        let angle = move |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(sides);
+        (0..sides).map(move |i| {
+            let (sin, cos) = angle(i).sin_cos();
+            format!("v {:.6} {:.6} {z}\n", radius * cos, radius * sin)
+        })
+    };
+    let rings = [(20.0, 0.0), (20.0, 4.0), (8.0, 0.0), (8.0, 4.0)];
+    let mut text: String = rings.iter().flat_map(|(radius, z)| ring(*radius, *z)).collect();
+    for i in 0..sides {
+        let at = |ring: u32, i: u32| ring * sides + i % sides + 1;
+        for [a, b] in [[0, 1], [1, 3], [3, 2], [2, 0]] {
+            text += &format!("f {} {} {} {}\n", at(a, i), at(a, i + 1), at(b, i + 1), at(b, i));
+        }
+    }
+    text
+}
+
+/// The entities of a DXF file, and the values of a group code.
+fn entities(file: &[u8], code: &str) -> (Vec<String>, Vec<f64>) {
+    let text = String::from_utf8_lossy(file).into_owned();
+    let (_, after) = text.split_once("ENTITIES\n").unwrap();
+    let lines: Vec<&str> = after.lines().map(str::trim).collect();
+    let tags = || lines.chunks_exact(2).take_while(|tag| tag[1] != "ENDSEC");
+    let kinds = tags().filter(|tag| tag[0] == "0").map(|tag| tag[1].to_owned()).collect();
+    (kinds, tags().filter(|tag| tag[0] == code).map(|tag| tag[1].parse().unwrap()).collect())
+}
+
+#[test]
+fn holes_are_circles_as_large_as_they_are() {
+    let folder = Folder::with_models();
+    folder.write("plate.obj", plate(36).as_bytes());
+    let ended = folder.must("render plate.obj -o a.dxf --view front");
+    assert!(
+        ended.err.contains("a unit of the model is taken as 1 mm, as OBJ has none"),
+        "{}",
+        ended.err
+    );
+    let (kinds, radii) = entities(&folder.read("a.dxf"), "40");
+    assert_eq!((kinds, radii), (vec!["CIRCLE".to_owned(); 2], vec![20.0, 8.0]));
+    let ended = folder.must("render plate.obj -o a.dxf --view front --unit cm");
+    assert!(!ended.err.contains("warning"), "{}", ended.err);
+    let radii = entities(&folder.read("a.dxf"), "40").1;
+    assert!((radii[0] - 200.0).abs() < 1e-5 && (radii[1] - 80.0).abs() < 1e-5, "{radii:?}");
+    let ended = folder.must("render plate.obj -o a.dxf --view front --page A4");
+    assert!(ended.err.contains("the drawing is 2:1"), "{}", ended.err);
+    folder.must("render plate.obj -o a.dxf --view front --dxf-polylines");
+    assert_eq!(entities(&folder.read("a.dxf"), "42").0, ["LWPOLYLINE"; 2]);
+    folder.must("render plate.obj -o a.dxf --view front --fit 0");
+    let (kinds, places) = entities(&folder.read("a.dxf"), "10");
+    assert_eq!((kinds, places.len()), (vec!["LWPOLYLINE".to_owned(); 2], 72));
+    // What has a unit is as large as it is in SVG, too.
+    let json = folder.must("render plate.obj -o a.svg --view front --unit mm --json").json();
+    assert_eq!(json["models"][0]["pictures"][0]["drawing"]["scale_text"], "1:1");
+}
+
+#[test]
+fn round_faces_are_few_hatches() {
+    let folder = Folder::with_models();
+    folder.write("plate.obj", plate(180).as_bytes());
+    let count = |options: &str| {
+        folder.must(&format!("render plate.obj -o a.dxf --style regions {options}"));
+        entities(&folder.read("a.dxf"), "10").0.iter().filter(|k| *k == "HATCH").count()
+    };
+    let (bands, shades) = (count(""), count("--merge shade"));
+    assert!(bands <= 20 && shades > 60, "{bands} bands, {shades} shades");
 }

@@ -54,7 +54,7 @@ fn commands_name_the_suffixes_that_they_can_write() {
             assert!(!ended.err.contains(".pdf"), "{}", ended.err);
         }
     }
-    folder.run("render cube.obj -o x.bmp").fails(2, ".svg, .pdf, .dxf, .hpgl, .geojson");
+    folder.run("render cube.obj -o x.bmp").fails(2, ".svg, .pdf, .dxf, .hpgl, .gcode, .geojson");
     folder.run("render cube.obj -o x.gif").fails(2, "a GIF is for a --turntable");
     let plane = folder.run("render cube.obj -o a.png --depth x.gif");
     assert!(
@@ -64,7 +64,7 @@ fn commands_name_the_suffixes_that_they_can_write() {
     );
     folder
         .run("plot --formula x*z -o x.gif")
-        .fails(2, "a plot is svg, pdf, dxf, hpgl, geojson, png, jpg or webp");
+        .fails(2, "a plot is svg, pdf, dxf, hpgl, gcode, geojson, png, jpg or webp");
 }
 
 #[cfg(unix)]

@@ -37,7 +37,7 @@ fn arguments(line: &str) -> Option<Vec<String>> {
 /// The same command for a small picture.
 fn made_small(mut arguments: Vec<String>) -> Vec<String> {
     // Drawings in vectors are small anyway.
-    let vectors = [".svg", ".pdf", ".dxf", ".hpgl", ".geojson"];
+    let vectors = [".svg", ".pdf", ".dxf", ".hpgl", ".gcode", ".geojson"];
     let output = arguments.iter().skip_while(|a| *a != "-o").nth(1);
     if output.is_some_and(|a| vectors.iter().any(|v| a.ends_with(v))) {
         return arguments;

@@ -30,6 +30,8 @@ const COMMANDS: &[(&str, &str)] = &[
     ("render bracket.stl --hidden layer", "lines.pdf"),
     ("render bracket.stl --sheet third-angle", "sheet.dxf"),
     ("render bracket.stl --style wireframe", "wires.hpgl"),
+    ("render bracket.stl --style shadows --hidden dashed", "shadows.gcode"),
+    ("render bracket.stl --hatch shade --pen-order", "ordered.svg"),
     ("render bracket.stl --style regions", "regions.geojson"),
     ("render teapot.obj --style regions+lines", "regions.svg"),
     ("render bracket.stl --style shadows --hatch shade", "shadows.pdf"),

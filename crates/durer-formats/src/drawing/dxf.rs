@@ -2,11 +2,12 @@
 //! what reads DXF 2000 reads it.
 //!
 //! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the
-//! sheet is one with a colour, a line weight and a line type, CONTINUOUS or HIDDEN; strokes are
-//! LWPOLYLINE, text is TEXT, areas are HATCH with solid fill.
+//! sheet is one with a colour, a line weight and a line type, CONTINUOUS or HIDDEN; polylines are
+//! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, text is TEXT, areas are HATCH with solid fill.
 //!
 //! Written from Autodesk's *DXF Reference* (2004).
 
+use super::dxf_curve;
 use super::number::push;
 use crate::Result;
 use durer::math::DVec2;
@@ -37,11 +38,21 @@ const PAPER: u32 = 0x1b;
 /// From here on handles are given out in order.
 const FIRST: u32 = 0x30;
 
+/// As what strokes are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum DxfStrokes {
+    /// LWPOLYLINE throughout, arcs as bulges; ellipses and cubic curves as arcs within 0.005 mm.
+    #[default]
+    Polylines,
+    /// LINE, ARC, CIRCLE, ELLIPSE and SPLINE, a piece each; several lines in a row are one LWPOLYLINE.
+    Pieces,
+}
+
 /// Writes a sheet as an ASCII DXF file, encoded in the ANSI code page with `\U+XXXX` for what is not ASCII.
 ///
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
-pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
+pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result<()> {
     let mut body = Tags { text: String::new(), next: FIRST };
     tables(&mut body, sheet);
     blocks(&mut body);
@@ -49,7 +60,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
     for layer in &sheet.layers {
         let name = symbol(&layer.name);
         for mark in &layer.marks {
-            entity(&mut body, sheet, &name, mark);
+            entity(&mut body, sheet, &name, mark, strokes);
         }
     }
     body.tag(0, "ENDSEC");
@@ -63,30 +74,35 @@ pub fn write(out: &mut impl Write, sheet: &Sheet) -> Result<()> {
 }
 
 /// Group codes and values, a line each.
-struct Tags {
+pub(super) struct Tags {
     text: String,
     /// The next free handle.
     next: u32,
 }
 
 impl Tags {
-    fn tag(&mut self, code: u16, value: &str) -> &mut Self {
+    pub fn tag(&mut self, code: u16, value: &str) -> &mut Self {
         self.text += &format!("{code:>3}\n{value}\n");
         self
     }
 
-    fn int(&mut self, code: u16, value: i64) -> &mut Self {
+    pub fn int(&mut self, code: u16, value: i64) -> &mut Self {
         self.tag(code, &value.to_string())
     }
 
-    fn handle(&mut self, code: u16, value: u32) -> &mut Self {
+    pub fn handle(&mut self, code: u16, value: u32) -> &mut Self {
         self.tag(code, &format!("{value:X}"))
     }
 
     /// A real number; micrometres are the last digits.
-    fn real(&mut self, code: u16, value: f64) -> &mut Self {
+    pub fn real(&mut self, code: u16, value: f64) -> &mut Self {
+        self.precise(code, value, 6)
+    }
+
+    /// A real number with so many digits after the point.
+    pub fn precise(&mut self, code: u16, value: f64, digits: usize) -> &mut Self {
         let mut text = String::new();
-        push(&mut text, value, 6);
+        push(&mut text, value, digits);
         // Readers want the zero before the point, and some the point.
         let text = match (text.strip_prefix('.'), text.strip_prefix("-.")) {
             (Some(rest), _) => format!("0.{rest}"),
@@ -97,15 +113,15 @@ impl Tags {
         self.tag(code, &text)
     }
 
-    fn point(&mut self, code: u16, p: DVec2) -> &mut Self {
+    pub fn point(&mut self, code: u16, p: DVec2) -> &mut Self {
         self.real(code, p.x).real(code + 10, p.y)
     }
 
-    fn point3(&mut self, code: u16, p: DVec2) -> &mut Self {
+    pub fn point3(&mut self, code: u16, p: DVec2) -> &mut Self {
         self.point(code, p).real(code + 20, 0.0)
     }
 
-    fn class(&mut self, name: &str) -> &mut Self {
+    pub fn class(&mut self, name: &str) -> &mut Self {
         self.tag(100, name)
     }
 
@@ -228,7 +244,9 @@ fn layers(tags: &mut Tags, sheet: &Sheet) {
     layer(tags, "0", None);
     for l in &sheet.layers {
         let pen = l.marks.iter().find_map(|m| match m {
-            Mark::Stroke { pen, .. } | Mark::Text { pen, .. } => sheet.pens.get(*pen),
+            Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
+                sheet.pens.get(*pen)
+            }
             Mark::Fill { .. } => None,
         });
         layer(tags, &symbol(&l.name), pen);
@@ -313,18 +331,25 @@ fn objects(tags: &mut Tags) {
     tags.class("AcDbDictionary").int(281, 1).tag(0, "ENDSEC");
 }
 
-fn entity(tags: &mut Tags, sheet: &Sheet, layer: &str, mark: &Mark) {
+fn entity(tags: &mut Tags, sheet: &Sheet, layer: &str, mark: &Mark, strokes: DxfStrokes) {
     let place = |p: &DVec2| DVec2::new(p.x, sheet.size.y - p.y);
     match mark {
         Mark::Stroke { points, closed, pen } => {
             let points: Vec<DVec2> = points.iter().map(place).collect();
-            begin(tags, "LWPOLYLINE", layer, sheet.pens.get(*pen));
-            tags.class("AcDbPolyline").int(90, points.len() as i64);
-            // 128: the line type runs on over corners.
-            tags.int(70, if *closed { 129 } else { 128 }).real(43, 0.0);
-            points.iter().for_each(|p| {
-                tags.point(10, *p);
-            });
+            let to = Target { layer, pen: sheet.pens.get(*pen) };
+            match &points[..] {
+                [a, b] if !closed && strokes == DxfStrokes::Pieces => {
+                    dxf_curve::line(tags, &to, *a, *b);
+                }
+                _ => {
+                    let straight: Vec<(DVec2, f64)> = points.iter().map(|p| (*p, 0.0)).collect();
+                    dxf_curve::polyline(tags, &to, &straight, *closed);
+                }
+            }
+        }
+        Mark::Curve { curve, pen } => {
+            let to = Target { layer, pen: sheet.pens.get(*pen) };
+            dxf_curve::write(tags, &to, curve, sheet.size.y, strokes);
         }
         Mark::Text { at, text, height, anchor, pen } => {
             begin(tags, "TEXT", layer, sheet.pens.get(*pen));
@@ -349,9 +374,15 @@ fn entity(tags: &mut Tags, sheet: &Sheet, layer: &str, mark: &Mark) {
     }
 }
 
+/// Where an entity goes, and with what it is drawn.
+pub(super) struct Target<'a> {
+    pub layer: &'a str,
+    pub pen: Option<&'a Pen>,
+}
+
 /// The common start of an entity. Colour and weight are the layer's; they stand here where a layer
 /// may have marks of several pens.
-fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
+pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
     let handle = tags.fresh();
     tags.tag(0, kind).handle(5, handle).handle(330, MODEL).class("AcDbEntity").tag(8, layer);
     if let Some(pen) = pen {

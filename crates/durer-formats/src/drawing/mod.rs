@@ -1,18 +1,24 @@
-//! Drawings to files: sheets of paper to SVG, PDF, DXF and HPGL, drawings themselves to GeoJSON.
+//! Drawings to files: sheets of paper to SVG, PDF, DXF, HPGL and G-code, drawings themselves to GeoJSON.
 //!
 //! All writers give the same bytes for the same value: no dates, no random names.
 
 mod dxf;
+mod dxf_curve;
+mod gcode;
 mod geojson;
 mod hpgl;
+mod machine;
 mod number;
 mod pdf;
 mod pdf_text;
 mod svg;
+mod svg_curve;
 
-pub use dxf::write as write_dxf;
+pub use dxf::{DxfStrokes, write as write_dxf};
+pub use gcode::write as write_gcode;
 pub use geojson::write as write_geojson;
 pub use hpgl::write as write_hpgl;
+pub use machine::MachineOptions;
 pub use pdf::write as write_pdf;
 pub use svg::write as write_svg;
 
@@ -33,13 +39,16 @@ pub enum DrawingFormat {
     Dxf,
     /// Hewlett-Packard Graphics Language, for plotters.
     Hpgl,
+    /// Moves and switches of machines (RS-274).
+    Gcode,
     /// Pieces with their properties, in plane units.
     GeoJson,
 }
 
 impl DrawingFormat {
     /// All of them.
-    pub const ALL: &'static [Self] = &[Self::Svg, Self::Pdf, Self::Dxf, Self::Hpgl, Self::GeoJson];
+    pub const ALL: &'static [Self] =
+        &[Self::Svg, Self::Pdf, Self::Dxf, Self::Hpgl, Self::Gcode, Self::GeoJson];
 
     /// The name used on the command line; also the suffix of files.
     pub const fn name(self) -> &'static str {
@@ -48,8 +57,14 @@ impl DrawingFormat {
             Self::Pdf => "pdf",
             Self::Dxf => "dxf",
             Self::Hpgl => "hpgl",
+            Self::Gcode => "gcode",
             Self::GeoJson => "geojson",
         }
+    }
+
+    /// Whether it drives a machine with pens, which needs no order told.
+    pub const fn is_for_pens(self) -> bool {
+        matches!(self, Self::Hpgl | Self::Gcode)
     }
 
     /// The format that a file name's suffix stands for, without its dot, in any case.
@@ -57,6 +72,7 @@ impl DrawingFormat {
         let lower = suffix.to_ascii_lowercase();
         match lower.as_str() {
             "plt" => Some(Self::Hpgl),
+            "nc" | "ngc" => Some(Self::Gcode),
             "json" => Some(Self::GeoJson),
             _ => Self::ALL.iter().copied().find(|f| f.name() == lower),
         }
@@ -81,21 +97,32 @@ impl FromStr for DrawingFormat {
     }
 }
 
+/// What some of the formats are told.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FileOptions {
+    /// For DXF.
+    pub dxf: DxfStrokes,
+    /// For HPGL and G-code.
+    pub machine: MachineOptions,
+}
+
 /// Writes a drawing in one of the formats: the sheet, or for GeoJSON what was laid onto it.
 ///
 /// # Errors
-/// [`Error::Io`] where writing fails.
+/// [`Error::Io`] where writing fails; what [`MachineOptions::check`] finds.
 pub fn write(
     out: &mut impl Write,
     format: DrawingFormat,
     sheet: &Sheet,
     drawing: &Drawing,
+    options: &FileOptions,
 ) -> Result<()> {
     match format {
         DrawingFormat::Svg => write_svg(out, sheet),
         DrawingFormat::Pdf => write_pdf(out, sheet),
-        DrawingFormat::Dxf => write_dxf(out, sheet),
-        DrawingFormat::Hpgl => write_hpgl(out, sheet),
+        DrawingFormat::Dxf => write_dxf(out, sheet, options.dxf),
+        DrawingFormat::Hpgl => hpgl::write_for(out, sheet, &options.machine),
+        DrawingFormat::Gcode => write_gcode(out, sheet, &options.machine),
         DrawingFormat::GeoJson => write_geojson(out, drawing),
     }
 }

@@ -3,6 +3,7 @@
 use super::number::{push, short};
 use super::pdf_text::{self, Words};
 use crate::Result;
+use durer::curve::{PathElement, pieces};
 use durer::math::DVec2;
 use durer::paper::{dashes, text_strokes};
 use durer::target::sheet::{Mark, Pen, Sheet};
@@ -16,6 +17,8 @@ const POINTS: f64 = 72.0 / 25.4;
 const LONGEST: f64 = 14_400.0;
 /// Digits after the point of a millimetre.
 const DIGITS: usize = 3;
+/// How near cubic curves are to arcs, millimetres.
+const CUBICS: f64 = 1e-4;
 /// The compressor's level: zlib's default.
 const LEVEL: u8 = 6;
 
@@ -166,6 +169,14 @@ fn put(
             path(text, points, *closed);
             *text += "S\n";
         }
+        Mark::Curve { curve, pen } => {
+            let Some(pen) = sheet.pens.get(*pen) else { return };
+            set_pen(text, state, pen, alphas);
+            let length = pieces::length(curve);
+            set_dashes(text, state, dashes::fitted(&pen.dashes, length, curve.closed));
+            pieces::path(curve, CUBICS).elements().iter().for_each(|e| element(text, e));
+            *text += "S\n";
+        }
         Mark::Text { at, text: words, height, anchor, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, alphas);
@@ -250,4 +261,25 @@ fn path(text: &mut String, points: &[DVec2], closed: bool) {
     if closed && !points.is_empty() {
         *text += "h\n";
     }
+}
+
+/// Control points have a digit more than ends, which are those of polylines too.
+fn element(text: &mut String, element: &PathElement) {
+    let (points, operator): (&[DVec2], _) = match element {
+        PathElement::MoveTo(p) => (&[*p], "m"),
+        PathElement::LineTo(p) => (&[*p], "l"),
+        // Curves of sheets have none of these.
+        PathElement::QuadTo(a, p) => (&[*a, *a, *p], "c"),
+        PathElement::CubicTo(a, b, p) => (&[*a, *b, *p], "c"),
+        PathElement::Close => (&[], "h"),
+    };
+    for (i, p) in points.iter().enumerate() {
+        let digits = if i + 1 < points.len() { DIGITS + 1 } else { DIGITS };
+        push(text, p.x, digits);
+        text.push(' ');
+        push(text, p.y, digits);
+        text.push(' ');
+    }
+    *text += operator;
+    text.push('\n');
 }

@@ -2,14 +2,16 @@
 //! element per stroke, short numbers.
 
 use super::number::{push, short};
+use super::svg_curve;
 use crate::Result;
+use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::paper::{dashes, text_strokes};
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use std::io::Write;
 
 /// Digits after the point of a millimetre: a micrometre is far below what any plotter resolves.
-const DIGITS: usize = 3;
+pub(super) const DIGITS: usize = 3;
 
 /// Writes a sheet as an SVG document of the sheet's size.
 ///
@@ -49,7 +51,7 @@ fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Resul
         identifier(&layer.name)
     );
     let pen_of = |m: &Mark| match m {
-        Mark::Stroke { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
+        Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
         Mark::Fill { .. } => None,
     };
     let common = layer.marks.iter().find_map(pen_of);
@@ -77,10 +79,27 @@ fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usiz
         Mark::Stroke { points, closed, pen } => {
             *text += "<path";
             *text += &own_pen(*pen);
-            *text += &dash_array(sheet.pens.get(*pen), points, *closed);
+            let length = dashes::length(points, *closed);
+            *text += &dash_array(sheet.pens.get(*pen), length, *closed);
             *text += " d=\"";
             path(text, points, *closed);
             *text += "\"/>\n";
+        }
+        Mark::Curve { curve, pen } => {
+            let length = pieces::length(curve);
+            let style = own_pen(*pen) + &dash_array(sheet.pens.get(*pen), length, curve.closed);
+            match curve.whole().filter(|arc| arc.is_circular()) {
+                Some(circle) => {
+                    let numbers = circle.center.extend(circle.axis.length()).to_array();
+                    let [x, y, r] = numbers.map(|v| short(v, DIGITS + 1));
+                    *text += &format!("<circle{style} cx=\"{x}\" cy=\"{y}\" r=\"{r}\"/>\n");
+                }
+                None => {
+                    *text += &format!("<path{style} d=\"");
+                    svg_curve::path(text, curve);
+                    *text += "\"/>\n";
+                }
+            }
         }
         Mark::Fill { rings, color } => {
             // Without a group's pen there is no stroke to be turned off.
@@ -105,8 +124,7 @@ fn stroke_style(pen: &Pen) -> String {
 }
 
 /// The dashes of one stroke, made to fit it.
-fn dash_array(pen: Option<&Pen>, points: &[DVec2], closed: bool) -> String {
-    let length = dashes::length(points, closed);
+fn dash_array(pen: Option<&Pen>, length: f64, closed: bool) -> String {
     match pen.and_then(|pen| dashes::fitted(&pen.dashes, length, closed)) {
         Some(dashes) => {
             // One digit more: errors add up along the stroke.
@@ -175,14 +193,14 @@ fn path(text: &mut String, points: &[DVec2], closed: bool) {
 }
 
 /// Two coordinates given in micrometres.
-fn pair(text: &mut String, p: DVec2) {
+pub(super) fn pair(text: &mut String, p: DVec2) {
     push(text, p.x / 1000.0, DIGITS);
     separator(text, p.y);
     push(text, p.y / 1000.0, DIGITS);
 }
 
 /// A blank, unless the sign of the next number parts it from the last.
-fn separator(text: &mut String, next: f64) {
+pub(super) fn separator(text: &mut String, next: f64) {
     if next >= 0.0 {
         text.push(' ');
     }

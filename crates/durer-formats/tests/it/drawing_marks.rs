@@ -3,7 +3,9 @@
 use durer::math::DVec2;
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
-use durer_formats::drawing::{write_dxf, write_hpgl, write_pdf, write_svg};
+use durer::target::{Arc, Curve, Piece};
+use durer_formats::drawing::{DxfStrokes, write_dxf, write_hpgl, write_pdf, write_svg};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
     list.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
@@ -77,7 +79,7 @@ fn hpgl_is_as_the_pen_moves() {
         stroke(&[(95.0, 70.0), (95.0, 70.0)], false, 0),
     ];
     let hpgl = utf8(written(|out| write_hpgl(out, &sheet(marks.clone()))));
-    let expected = "IN;\nSP1;\nPU40,40;PD80,40,80,80,40,40;\nPU200,40;PD3600,40;\n\
+    let expected = "IN;\nSP1;PW.5,1;\nPU80,40;PD80,80,40,40,80,40;\nPU200,40;PD3600,40;\n\
                     PU3800,400;PD3800,400;\nPU0,0;\nSP0;\n";
     assert_eq!(hpgl, expected);
 }
@@ -94,7 +96,7 @@ fn dxf_entities_have_their_flags_weights_and_colours() {
             color: [1, 2, 3, 255],
         },
     ];
-    let dxf = utf8(written(|out| write_dxf(out, &sheet(marks.clone()))));
+    let dxf = utf8(written(|out| write_dxf(out, &sheet(marks.clone()), DxfStrokes::Polylines)));
     let lines: Vec<&str> = dxf.lines().collect();
     let pairs: Vec<(&str, &str)> =
         lines.as_chunks::<2>().0.iter().map(|[code, value]| (code.trim(), *value)).collect();
@@ -185,4 +187,99 @@ fn pdf_changes_its_state_only_where_it_must() {
     let long = Sheet { size: DVec2::new(6000.0, 80.0), ..sheet(Vec::new()) };
     let pdf = written(|out| write_pdf(out, &long));
     assert!(String::from_utf8_lossy(&pdf).contains("/UserUnit 2"));
+}
+
+/// A circle, an open chain of a line, an arc and a cubic curve, and a whole ellipse.
+fn curves() -> Vec<Mark> {
+    let at = DVec2::new;
+    let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };
+    let whole = |arc: Arc| {
+        let start = arc.at(arc.start);
+        Curve { start, pieces: vec![Piece::Arc(arc, start)], closed: true }
+    };
+    let quarter = arc(at(30.0, 20.0), at(10.0, 0.0), 1.0, -FRAC_PI_2, FRAC_PI_2);
+    let chain = Curve {
+        start: at(10.0, 10.0),
+        pieces: vec![
+            Piece::Line(at(30.0, 10.0)),
+            Piece::Arc(quarter, at(40.0, 20.0)),
+            Piece::Cubic(at(40.0, 25.0), at(45.0, 30.0), at(50.0, 30.0)),
+        ],
+        closed: false,
+    };
+    let curves = [
+        whole(arc(at(20.0, 50.0), at(8.0, 0.0), 1.0, 0.0, TAU)),
+        chain,
+        whole(arc(at(70.0, 50.0), at(0.0, 10.0), 0.5, 0.0, -TAU)),
+    ];
+    curves.into_iter().map(|curve| Mark::Curve { curve, pen: 0 }).collect()
+}
+
+#[test]
+fn svg_has_circles_arcs_and_cubic_curves() {
+    let svg = utf8(written(|out| write_svg(out, &sheet(curves()))));
+    let lines: Vec<&str> =
+        svg.lines().filter(|l| l.starts_with("<circle") || l.starts_with("<path")).collect();
+    assert_eq!(
+        lines,
+        [
+            "<circle cx=\"20\" cy=\"50\" r=\"8\"/>",
+            "<path d=\"M10 10h20a10 10 0 0 1 10 10c0 5 5 10 10 10\"/>",
+            "<path d=\"M70 60a10 5 90 0 0 4.33-15a10 5 90 0 0-8.66 0a10 5 90 0 0 4.33 15z\"/>",
+        ]
+    );
+    // Dashes fit the length of the curve: 50.265 mm of 11 periods.
+    let dashed = Mark::Curve { curve: circle_of(&curves()), pen: 1 };
+    let svg = utf8(written(|out| write_svg(out, &sheet(vec![dashed.clone()]))));
+    assert!(svg.contains("<circle stroke-dasharray=\"3.0464 1.5232\" cx"), "{svg}");
+}
+
+fn circle_of(marks: &[Mark]) -> Curve {
+    let Mark::Curve { curve, .. } = &marks[0] else { panic!("{marks:?}") };
+    curve.clone()
+}
+
+#[test]
+fn dxf_has_entities_for_curves_or_polylines_with_bulges() {
+    let found = |strokes| {
+        let text = utf8(written(|out| write_dxf(out, &sheet(curves()), strokes)));
+        let (_, entities) = text.split_once("ENTITIES\n").expect("entities");
+        let lines: Vec<&str> = entities.split("  0\nENDSEC").next().unwrap_or("").lines().collect();
+        let tags: Vec<(String, String)> = lines
+            .chunks(2)
+            .map(|tag| (tag[0].trim().to_owned(), tag[1].to_owned()))
+            .filter(|tag| !["5", "330", "100", "8", "370"].contains(&tag.0.as_str()))
+            .collect();
+        let text: Vec<String> =
+            tags.iter().map(|(code, value)| format!("{code}={value}")).collect();
+        text.join(" ")
+    };
+    let pieces = found(DxfStrokes::Pieces);
+    for part in [
+        "0=CIRCLE 10=20.0 20=30.0 30=0.0 40=8.0",
+        "0=LINE 10=10.0 20=70.0 30=0.0 11=30.0 21=70.0 31=0.0",
+        // A quarter, counter-clockwise where y looks up.
+        "0=ARC 10=30.0 20=60.0 30=0.0 40=10.0 50=0.0 51=90.0",
+        "0=SPLINE 210=0.0 220=0.0 230=1.0 70=8 71=3 72=8 73=4 74=0 40=0.0 40=0.0 40=0.0 40=0.0 40=1.0",
+        "10=40.0 20=60.0 30=0.0 10=40.0 20=55.0 30=0.0 10=45.0 20=50.0 30=0.0 10=50.0 20=50.0 30=0.0",
+        "0=ELLIPSE 10=70.0 20=30.0 30=0.0 11=0.0 21=-10.0 31=0.0 210=0.0 220=0.0 230=1.0 40=0.5 41=0.0 42=6.2831853072",
+    ] {
+        assert!(pieces.contains(part), "{part} in {pieces}");
+    }
+    let polylines = found(DxfStrokes::Polylines);
+    assert_eq!(polylines.matches("0=LWPOLYLINE").count(), 3);
+    // The tangent of a quarter of the turn, clockwise.
+    assert!(polylines.contains("10=30.0 20=70.0 42=-0.4142135624 10=40.0 20=60.0"), "{polylines}");
+}
+
+#[test]
+fn hpgl_draws_curves_as_chords() {
+    let hpgl = utf8(written(|out| write_hpgl(out, &sheet(curves()[..1].to_vec()))));
+    let down = hpgl.split("PD").nth(1).and_then(|t| t.split(';').next()).expect("a stroke");
+    let numbers: Vec<f64> = down.split(',').map(|n| n.parse().expect("a number")).collect();
+    assert!(numbers.len() > 80);
+    for p in numbers.chunks(2) {
+        let radius = (DVec2::new(p[0], p[1]) / 40.0).distance(DVec2::new(20.0, 30.0));
+        assert!((radius - 8.0).abs() < 0.02, "{radius}");
+    }
 }

@@ -9,6 +9,7 @@ mod conformance_meshes;
 mod conformance_svg;
 mod crs;
 mod drawing;
+mod drawing_machines;
 mod drawing_marks;
 mod fuzz;
 mod geo;

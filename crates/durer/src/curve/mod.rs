@@ -2,8 +2,10 @@
 
 pub mod b_spline;
 pub mod bezier;
+pub mod fit;
 mod flatten;
 mod path;
+pub mod pieces;
 pub mod stroke_font;
 pub mod text;
 

@@ -3,7 +3,7 @@
 use crate::math::DVec2;
 
 /// Chains that bend by more than this at a point are divided there; as the cosine of 25°.
-const CORNER: f64 = 0.906;
+pub(super) const CORNER: f64 = 0.906;
 
 /// No stroke gets more dashes than this; with more it looks solid anyway.
 const MOST_DASHES: f64 = 100_000.0;

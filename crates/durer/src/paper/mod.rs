@@ -4,6 +4,7 @@
 //! block; [`paint`] makes pixels of a sheet. Writers of files take sheets.
 
 pub mod dashes;
+mod fitted;
 pub mod order;
 mod page;
 mod paint;
@@ -17,10 +18,11 @@ pub use pens::Pens;
 pub use third_angle::{Views, third_angle};
 pub use title_block::TitleBlock;
 
-use crate::curve::stroke_font;
+use crate::curve::{pieces, stroke_font};
 use crate::math::{DVec2, Rect};
 use crate::target::drawing::{Anchor, Drawing, Line, LineClass};
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use crate::target::{Curve, Piece};
 use crate::{Error, Result};
 
 /// What becomes of hidden lines.
@@ -66,6 +68,9 @@ pub struct Options {
     pub hidden: Hidden,
     /// Which pen draws what.
     pub pens: Pens,
+    /// How far curves may lie from the polylines that are fitted by them, millimetres; with 0, lines are drawn as
+    /// polylines. See [`crate::curve::fit::Options::tolerance`] and [`crate::curve::fit::Options::round`].
+    pub fit: f64,
     /// What the paper is filled with.
     pub background: Option<[u8; 4]>,
 }
@@ -80,6 +85,7 @@ impl Default for Options {
             frame: Frame::Content,
             hidden: Hidden::Drop,
             pens: Pens::default(),
+            fit: 0.0,
             background: None,
         }
     }
@@ -94,13 +100,16 @@ const LARGEST: f64 = 1e6;
 
 impl Options {
     /// # Errors
-    /// [`Error::Parameter`] for a margin below 0, or a unit or scale that is not above 0.
+    /// [`Error::Parameter`] for a margin or a fit below 0, or a unit or scale that is not above 0.
     pub fn check(&self) -> Result<()> {
         if !(self.margin >= 0.0 && self.margin <= LARGEST) {
             return Err(Error::parameter("margin", self.margin, "at least 0 mm"));
         }
         if !(self.unit > 0.0 && self.unit.is_finite()) {
             return Err(Error::parameter("unit", self.unit, "a length above 0 mm"));
+        }
+        if !(self.fit >= 0.0 && self.fit.is_finite()) {
+            return Err(Error::parameter("fit", self.fit, "at least 0 mm"));
         }
         match self.scale {
             Scale::Given(s) if !(s > 0.0 && s.is_finite()) => {
@@ -249,26 +258,18 @@ fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
         Hidden::Dashed => 1,
         Hidden::Layer => DEEPEST,
     };
+    let is_drawn = |l: &&Line| deepest > 0 || l.is_visible();
+    let all: Vec<Strokes> =
+        views.iter().map(|v| Strokes::new(v, factor, options.fit, is_drawn)).collect();
     for depth in (0..=deepest).rev() {
         for &class in LineClass::ALL.iter().rev() {
             let (name, pen) = layer_and_pen(class, depth, options);
-            let here = |l: &&Line| {
-                l.class == class
-                    && l.invisibility.min(deepest) == depth
-                    && (deepest > 0 || l.is_visible())
-            };
+            let here = |l: &Line| l.class == class && l.invisibility.min(deepest) == depth;
             let mut marks = Vec::new();
             let pen_index = sheet.pens.iter().position(|p| *p == pen).unwrap_or(sheet.pens.len());
-            for view in views {
-                for line in view.drawing.lines.iter().filter(here) {
-                    stroke(
-                        &mut marks,
-                        line,
-                        view.origin,
-                        factor,
-                        pen_index,
-                        !pen.dashes.is_empty(),
-                    );
+            for strokes in &all {
+                for i in (0..strokes.lines.len()).filter(|i| here(strokes.lines[*i])) {
+                    strokes.put(&mut marks, i, pen_index, !pen.dashes.is_empty());
                 }
             }
             if !marks.is_empty() {
@@ -297,29 +298,65 @@ fn onto_paper(p: DVec2, origin: DVec2, factor: f64) -> DVec2 {
     origin + DVec2::new(p.x, -p.y) * factor
 }
 
-fn stroke(
-    marks: &mut Vec<Mark>,
-    line: &Line,
+/// The lines of a view that are drawn.
+struct Strokes<'a> {
+    lines: Vec<&'a Line>,
+    /// For each line its curve on paper, where it is not drawn as a polyline; none at all without fitting.
+    curves: Vec<Option<Curve>>,
+    /// As for [`onto_paper`].
     origin: DVec2,
     factor: f64,
-    pen: usize,
-    dashed: bool,
-) {
-    let points: Vec<DVec2> = line.points.iter().map(|p| onto_paper(*p, origin, factor)).collect();
-    if points.len() < 2 || !points.iter().all(|p| p.is_finite()) {
-        return;
+}
+
+impl<'a> Strokes<'a> {
+    fn new(
+        view: &Placed<'a>,
+        factor: f64,
+        tolerance: f64,
+        is_drawn: impl Fn(&&Line) -> bool,
+    ) -> Self {
+        let lines: Vec<&Line> = view.drawing.lines.iter().filter(is_drawn).collect();
+        let origin = view.origin;
+        let curves = match tolerance > 0.0 {
+            true => fitted::curves(&lines, origin, factor, tolerance),
+            false => Vec::new(),
+        };
+        Self { lines, curves, origin, factor }
     }
-    let closed = line.closed;
-    if dashed {
-        let parts = dashes::at_corners(&points, closed);
-        marks.extend(parts.into_iter().map(|(points, closed)| Mark::Stroke {
-            points,
-            closed,
-            pen,
-        }));
-    } else {
-        marks.push(Mark::Stroke { points, closed, pen });
+
+    /// Appends the marks of a line; dashed ones are divided at corners.
+    fn put(&self, marks: &mut Vec<Mark>, i: usize, pen: usize, dashed: bool) {
+        let curve = self.curves.get(i).and_then(Option::as_ref);
+        if let Some(curve) = curve.filter(|c| !c.is_straight()) {
+            let parts = match dashed {
+                true => pieces::at_corners(curve, dashes::CORNER),
+                false => vec![curve.clone()],
+            };
+            marks.extend(parts.into_iter().map(|curve| Mark::Curve { curve, pen }));
+            return;
+        }
+        let line = self.lines[i];
+        let place = |p: &DVec2| onto_paper(*p, self.origin, self.factor);
+        let points: Vec<DVec2> = match curve {
+            Some(curve) => corners(curve),
+            None => line.points.iter().map(place).collect(),
+        };
+        if points.len() < 2 || !points.iter().all(|p| p.is_finite()) {
+            return;
+        }
+        let parts = match dashed {
+            true => dashes::at_corners(&points, line.closed),
+            false => vec![(points, line.closed)],
+        };
+        let stroke = |(points, closed)| Mark::Stroke { points, closed, pen };
+        marks.extend(parts.into_iter().map(stroke));
     }
+}
+
+/// The points of a curve of lines; the first one is not repeated.
+fn corners(curve: &Curve) -> Vec<DVec2> {
+    let last = curve.pieces.last().map(Piece::end).filter(|_| !curve.closed);
+    curve.iter().map(|(start, _)| start).chain(last).collect()
 }
 
 fn put_regions(sheet: &mut Sheet, views: &[Placed], factor: f64) {

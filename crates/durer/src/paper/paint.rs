@@ -2,7 +2,7 @@
 
 use super::{dashes, text_strokes};
 use crate::Result;
-use crate::curve::Path;
+use crate::curve::{Path, pieces};
 use crate::math::{DAffine2, DVec2};
 use crate::raster::coverage::FillRule;
 use crate::raster::line::wide::{Cap, Join, Stroke};
@@ -12,6 +12,9 @@ use crate::target::sheet::{Mark, Pen, Sheet};
 
 /// So many marks are painted at a time: their edges take more memory than they do.
 const AT_ONCE: usize = 1 << 15;
+
+/// How near what is painted is to curves, millimetres: far below a pixel.
+const FINE: f64 = 0.002;
 
 /// Paints a sheet, as large as it can be, in the middle of a picture; `background` is what the picture
 /// shows beside and, where the paper is blank, on the paper.
@@ -71,6 +74,14 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
             }
             None => Ok(()),
         },
+        Mark::Curve { curve, pen } => match pens.get(*pen) {
+            Some(pen) if pen.dashes.is_empty() => draw(canvas, &pieces::path(curve, FINE), pen),
+            Some(pen) => {
+                let parts = dashes::cut(&pieces::points(curve, FINE), curve.closed, &pen.dashes);
+                parts.iter().try_for_each(|part| line(canvas, part, false, pen))
+            }
+            None => Ok(()),
+        },
         Mark::Text { at, text, height, anchor, pen } => {
             let Some(pen) = pens.get(*pen) else { return Ok(()) };
             let strokes = text_strokes(*at, text, *height, *anchor);
@@ -84,9 +95,13 @@ fn line(canvas: &mut Canvas, points: &[DVec2], closed: bool, pen: &Pen) -> Resul
         true => Path::polygon(points.iter().copied()),
         false => Path::polyline(points.iter().copied()),
     };
+    draw(canvas, &path, pen)
+}
+
+fn draw(canvas: &mut Canvas, path: &Path, pen: &Pen) -> Result<()> {
     let style =
         Stroke { width: pen.width, cap: Cap::Round, join: Join::Round, ..Stroke::default() };
-    canvas.stroke(&path, &style, &Paint::Color(pen.color), 1.0)
+    canvas.stroke(path, &style, &Paint::Color(pen.color), 1.0)
 }
 
 #[cfg(test)]

@@ -149,8 +149,8 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
 }
 
 fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
-    let hidden_line::Options { tolerance, pen_order, weld, .. } = options.lines;
-    let how = wireframe::Options { tolerance, pen_order, weld };
+    let hidden_line::Options { tolerance, weld, .. } = options.lines;
+    let how = wireframe::Options { tolerance, weld };
     wireframe::draw(scene, view, &how, &mut NoTrace)
 }
 

@@ -1,7 +1,9 @@
 //! Where pictures and drawings go.
 
+mod curve;
 pub mod drawing;
 mod framebuffer;
 pub mod sheet;
 
+pub use curve::{Arc, Curve, Piece};
 pub use framebuffer::{Framebuffer, NO_ITEM, Origin, Pixels};

@@ -1,6 +1,7 @@
 //! A drawing on paper: pens, fills and text in millimetres, in named layers. What the writers of SVG,
 //! PDF, DXF and HPGL take, and what is painted into pixels.
 
+use super::Curve;
 use super::drawing::Anchor;
 use crate::math::DVec2;
 
@@ -26,6 +27,13 @@ pub enum Mark {
         points: Vec<DVec2>,
         /// Whether the last point is joined to the first.
         closed: bool,
+        /// Index into [`Sheet::pens`].
+        pen: usize,
+    },
+    /// A chain of lines and curves, with round caps and joins.
+    Curve {
+        /// At least one piece.
+        curve: Curve,
         /// Index into [`Sheet::pens`].
         pen: usize,
     },

@@ -3,8 +3,8 @@
 use super::chain::chains;
 use super::overlap::{Near, Piece, drawn_once};
 use super::page::{GridPoint, Page};
+use super::simplify::simplify;
 use super::stubs::without_stubs;
-use super::{pen_order, simplify::simplify};
 use crate::target::drawing::{Line, LineClass};
 use crate::{Error, Result};
 
@@ -25,7 +25,6 @@ pub(super) struct How {
     pub stubs: f64,
     /// How far beside a visible line a hidden one is under it.
     pub beneath: f64,
-    pub pen_order: bool,
 }
 
 impl How {
@@ -85,12 +84,8 @@ pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
         chain.closed &= chain.points.len() > 2;
     }
     chains.retain(|c| c.points.len() > 1 && c.length() >= steps);
-    if how.pen_order {
-        chains = pen_order::order(chains);
-    } else {
-        // Hidden lines first: what is visible is drawn over them.
-        chains.sort_by_key(|c| std::cmp::Reverse((c.invisibility, c.class)));
-    }
+    // Hidden lines first: what is visible is drawn over them.
+    chains.sort_by_key(|c| std::cmp::Reverse((c.invisibility, c.class)));
     let line = |c: super::chain::Chain| Line {
         class: c.class,
         invisibility: c.invisibility,

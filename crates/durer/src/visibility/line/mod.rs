@@ -12,7 +12,6 @@ mod marks;
 mod method;
 mod overlap;
 mod page;
-mod pen_order;
 mod simplify;
 mod smooth_silhouette;
 mod stubs;

@@ -37,8 +37,6 @@ pub const INFO: Info = Info {
 pub struct Options {
     /// As in [`super::hidden_line::Options::tolerance`].
     pub tolerance: f64,
-    /// As in [`super::hidden_line::Options::pen_order`].
-    pub pen_order: bool,
     /// Which vertices are one.
     pub weld: Weld,
 }
@@ -46,14 +44,13 @@ pub struct Options {
 impl Default for Options {
     /// 0.05 pixels in a picture of 1000.
     fn default() -> Self {
-        Self { tolerance: 5e-5, pen_order: false, weld: Weld::Auto }
+        Self { tolerance: 5e-5, weld: Weld::Auto }
     }
 }
 
 impl Options {
     fn how(&self) -> How {
-        let Self { tolerance, pen_order, .. } = *self;
-        How { tolerance, stubs: 0.0, beneath: 0.0, pen_order }
+        How { tolerance: self.tolerance, stubs: 0.0, beneath: 0.0 }
     }
 }
 

@@ -35,6 +35,9 @@ pub enum Merge {
     /// Those that show one material in one colour (8-bit sRGB).
     #[default]
     Shade,
+    /// Those that show one material in like shades, of 16 between black and white, in the colour of most of the area
+    /// that the material has in that shade: round faces become bands.
+    Band,
     /// Those of one material, in the colour of most of their area.
     Material,
     /// Those of one instance of a mesh, likewise.

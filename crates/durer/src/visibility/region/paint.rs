@@ -23,7 +23,7 @@ type Shown = (u32, u64);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     kind: RegionKind,
-    /// Item, material or instance.
+    /// Item, material, material and band, or instance.
     of: u64,
     color: [u8; 4],
 }
@@ -68,7 +68,7 @@ impl Paint {
             .zip(&colors)
             .map(|(shown, color)| key(*shown, *color, options, world))
             .collect();
-        if matches!(options.merge, Merge::Material | Merge::Part) {
+        if matches!(options.merge, Merge::Band | Merge::Material | Merge::Part) {
             share_colors(map, &shown, &distinct, &mut keys);
         }
         if options.merge == Merge::Shade {
@@ -195,9 +195,18 @@ fn key((item, mask): Shown, color: [u8; 4], options: &Options, world: &World<'_>
     let of = match options.merge {
         Merge::Face => Some(u64::from(item)),
         Merge::Part => run.map(|r| r.instance as u64),
-        Merge::Shade | Merge::Material => material.map(|m| m as u64),
+        Merge::Shade | Merge::Band | Merge::Material => material.map(|m| m as u64),
+    };
+    let of = match options.merge {
+        Merge::Band => Some((of.unwrap_or(u64::MAX) << 4) | band(color)),
+        _ => of,
     };
     Key { kind, of: of.unwrap_or(u64::MAX), color }
+}
+
+/// Which of 16 shades a colour has, by its luma (Rec. 601, of the bytes as they are).
+fn band([r, g, b, _]: [u8; 4]) -> u64 {
+    (299 * u64::from(r) + 587 * u64::from(g) + 114 * u64::from(b)) / 16_000
 }
 
 /// The flat colours of items under the lights that reach them.

@@ -97,8 +97,6 @@ pub struct Options {
     /// along are left out: their strokes would run into each other, as where a view is nearly along an axis. 0
     /// keeps all but those that lie on visible ones.
     pub beneath: f64,
-    /// Whether lines are put in an order with short ways for a pen, class by class.
-    pub pen_order: bool,
     /// Which vertices are one, so that faces find their neighbours.
     pub weld: Weld,
 }
@@ -118,7 +116,6 @@ impl Default for Options {
             tolerance: 5e-5,
             stubs: 0.0,
             beneath: 0.0,
-            pen_order: false,
             weld: Weld::Auto,
         }
     }
@@ -143,8 +140,8 @@ impl Options {
         };
         let all = edges(self.classes) == edges(ClassSet::default());
         let stubs = if all { self.stubs } else { 0.0 };
-        let Self { tolerance, beneath, pen_order, .. } = *self;
-        How { tolerance, stubs, beneath, pen_order }
+        let Self { tolerance, beneath, .. } = *self;
+        How { tolerance, stubs, beneath }
     }
 }
 

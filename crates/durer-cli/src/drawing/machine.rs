@@ -1,0 +1,90 @@
+//! What can be said of machines with pens, for all commands that write drawings.
+
+use crate::failure::Failure;
+use crate::values;
+use clap::Args;
+use durer_formats::drawing::{DrawingFormat, MachineOptions};
+
+/// The order of strokes, and how machines draw.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Machines with pens")]
+pub struct MachineArgs {
+    /// Put strokes in an order with short ways for a pen [.hpgl and .gcode always are]
+    ///
+    /// Strokes may be drawn backwards, closed ones from any of their points, and those that meet become one. Each
+    /// layer is ordered by itself; in .hpgl and .gcode each pen is.
+    #[arg(long)]
+    pub pen_order: bool,
+    /// How many pens the plotter has, for .hpgl and .gcode [default: one for each width and colour]
+    ///
+    /// With fewer pens than the drawing has, strokes go to the pen that is most alike; with 1 no pen is ever changed.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
+    pub pens: Option<u64>,
+    /// How fast the pen draws, millimetres a minute, for .gcode [default: 1500]
+    #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
+    pub feed: Option<f64>,
+    /// How fast it moves when it is up, millimetres a minute, for .gcode [default: as fast as the machine moves]
+    ///
+    /// Such moves are G1 with this speed then, for GRBL takes none for G0.
+    #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
+    pub travel: Option<f64>,
+    /// The G-code that puts the pen down; \n begins a line [default: 'M3 S1000\nG4 P0.2']
+    ///
+    /// The default is for a servo on the spindle's output of GRBL, which gets 0.2 seconds to turn. Machines that
+    /// lift the pen along Z take e.g. --pen-down 'G1 Z0 F600' --pen-up 'G0 Z5'; lasers need less power than S1000.
+    #[arg(long, value_name = "CODE", value_parser = lines)]
+    pub pen_down: Option<String>,
+    /// The G-code that lifts it [default: 'M5\nG4 P0.2']
+    #[arg(long, value_name = "CODE", value_parser = lines)]
+    pub pen_up: Option<String>,
+}
+
+fn lines(text: &str) -> Result<String, String> {
+    let lines = text.replace("\\n", "\n");
+    let machine = MachineOptions { pen_down: lines.clone(), ..MachineOptions::default() };
+    let plain = "it must be printable ASCII without ! ? ~, which stop and start machines";
+    machine.check().map(|()| lines).map_err(|_| plain.to_owned())
+}
+
+impl MachineArgs {
+    /// As writers take it.
+    pub fn options(&self) -> MachineOptions {
+        let default = MachineOptions::default();
+        MachineOptions {
+            pens: self.pens.map(|n| usize::try_from(n).unwrap_or(usize::MAX)),
+            feed: self.feed.unwrap_or(default.feed),
+            travel: self.travel,
+            pen_down: self.pen_down.clone().unwrap_or(default.pen_down),
+            pen_up: self.pen_up.clone().unwrap_or(default.pen_up),
+        }
+    }
+
+    /// Refuses what has no meaning in a format; `None` for pixels.
+    pub fn check(&self, format: Option<DrawingFormat>) -> Result<(), Failure> {
+        let wrong = |message: String| Err(Failure::Usage(message));
+        let of_gcode = [
+            ("feed", self.feed.is_some()),
+            ("travel", self.travel.is_some()),
+            ("pen-down", self.pen_down.is_some()),
+            ("pen-up", self.pen_up.is_some()),
+        ];
+        match of_gcode.iter().find(|(_, given)| *given) {
+            Some((name, _)) if format != Some(DrawingFormat::Gcode) => {
+                return wrong(format!("--{name}: it is for G-code; write a .gcode, .nc or .ngc"));
+            }
+            _ => {}
+        }
+        if self.pens.is_some() && !format.is_some_and(DrawingFormat::is_for_pens) {
+            return wrong("--pens: it is for plotters; write a .hpgl or .gcode".to_owned());
+        }
+        if self.pen_order && format == Some(DrawingFormat::GeoJson) {
+            return wrong("--pen-order: GeoJSON has no pens; leave it out".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Whether strokes are to be ordered before they are written.
+    pub fn orders(&self, format: Option<DrawingFormat>) -> bool {
+        self.pen_order && !format.is_some_and(DrawingFormat::is_for_pens)
+    }
+}

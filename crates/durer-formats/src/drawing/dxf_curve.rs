@@ -1,0 +1,155 @@
+//! Curves as entities of DXF.
+
+use super::dxf::{DxfStrokes, Tags, Target, begin};
+use durer::curve::pieces;
+use durer::math::DVec2;
+use durer::target::{Arc, Curve, Piece};
+use std::f64::consts::TAU;
+
+/// How near arcs are to ellipses and cubic curves, millimetres.
+const ARCS: f64 = 0.005;
+
+/// Digits of angles: with them a circle of a metre still meets its neighbours to the last digit of places.
+const DIGITS: usize = 10;
+
+/// Writes a curve of a sheet that is so high; the file's y axis looks up.
+pub(super) fn write(
+    tags: &mut Tags,
+    to: &Target<'_>,
+    curve: &Curve,
+    height: f64,
+    strokes: DxfStrokes,
+) {
+    let curve = &turned_up(curve, height);
+    if strokes == DxfStrokes::Pieces {
+        return pieces_of(tags, to, curve);
+    }
+    let arcs = pieces::arcs(curve, ARCS);
+    // A bulge stands with the point that its arc begins in.
+    let starts = std::iter::once(curve.start).chain(arcs.iter().map(|a| a.0));
+    let bulges = arcs.iter().map(|a| a.1).chain([0.0]);
+    let mut points: Vec<(DVec2, f64)> = starts.zip(bulges).collect();
+    if curve.closed {
+        points.pop();
+    }
+    polyline(tags, to, &points, curve.closed);
+}
+
+/// A curve seen in a mirror: y counts up from the sheet's lower side.
+fn turned_up(curve: &Curve, height: f64) -> Curve {
+    let place = |p: DVec2| DVec2::new(p.x, height - p.y);
+    let way = |v: DVec2| DVec2::new(v.x, -v.y);
+    let piece = |piece: &Piece| match *piece {
+        Piece::Line(end) => Piece::Line(place(end)),
+        Piece::Cubic(a, b, end) => Piece::Cubic(place(a), place(b), place(end)),
+        Piece::Arc(arc, end) => {
+            let (center, axis) = (place(arc.center), way(arc.axis));
+            Piece::Arc(Arc { center, axis, start: -arc.start, turn: -arc.turn, ..arc }, place(end))
+        }
+    };
+    let pieces = curve.pieces.iter().map(piece).collect();
+    Curve { start: place(curve.start), pieces, closed: curve.closed }
+}
+
+/// An entity for each arc, for lines in a row and for cubic curves in a row.
+fn pieces_of(tags: &mut Tags, to: &Target<'_>, curve: &Curve) {
+    let all: Vec<(DVec2, &Piece)> = curve.iter().collect();
+    for row in all.chunk_by(|a, b| goes_on(a.1, b.1)) {
+        match row {
+            [(start, Piece::Line(end))] => line(tags, to, *start, *end),
+            [(_, Piece::Arc(found, _))] => arc(tags, to, found),
+            [(start, Piece::Line(_)), ..] => {
+                let ends = row.iter().map(|(_, piece)| piece.end());
+                let points: Vec<(DVec2, f64)> =
+                    std::iter::once(*start).chain(ends).map(|p| (p, 0.0)).collect();
+                polyline(tags, to, &points, false);
+            }
+            _ => spline(tags, to, row),
+        }
+    }
+}
+
+/// Whether two pieces are written as one entity.
+fn goes_on(a: &Piece, b: &Piece) -> bool {
+    matches!((a, b), (Piece::Line(_), Piece::Line(_)) | (Piece::Cubic(..), Piece::Cubic(..)))
+}
+
+/// Writes a line.
+pub(super) fn line(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) {
+    begin(tags, "LINE", to.layer, to.pen);
+    tags.class("AcDbLine").point3(10, start).point3(11, end);
+}
+
+/// Writes a polyline of points, each with the bulge of the arc that it begins.
+pub(super) fn polyline(tags: &mut Tags, to: &Target<'_>, points: &[(DVec2, f64)], closed: bool) {
+    begin(tags, "LWPOLYLINE", to.layer, to.pen);
+    tags.class("AcDbPolyline").int(90, points.len() as i64);
+    // 128: the line type runs on over corners.
+    tags.int(70, if closed { 129 } else { 128 }).real(43, 0.0);
+    for (p, bulge) in points {
+        tags.point(10, *p);
+        if *bulge != 0.0 {
+            tags.precise(42, *bulge, DIGITS);
+        }
+    }
+}
+
+/// A circle, an ellipse or a part of one; parts run counter-clockwise.
+fn arc(tags: &mut Tags, to: &Target<'_>, arc: &Arc) {
+    let (start, end) = match arc.turn < 0.0 {
+        true => (arc.start + arc.turn, arc.start),
+        false => (arc.start, arc.start + arc.turn),
+    };
+    if arc.is_circular() {
+        let kind = if arc.is_whole() { "CIRCLE" } else { "ARC" };
+        begin(tags, kind, to.layer, to.pen);
+        tags.class("AcDbCircle").point3(10, arc.center).real(40, arc.axis.length());
+        if !arc.is_whole() {
+            let first = libm::atan2(arc.axis.y, arc.axis.x);
+            let degrees = |angle: f64| within_turn(first + angle).to_degrees();
+            tags.class("AcDbArc").precise(50, degrees(start), DIGITS);
+            tags.precise(51, degrees(end), DIGITS);
+        }
+        return;
+    }
+    begin(tags, "ELLIPSE", to.layer, to.pen);
+    tags.class("AcDbEllipse").point3(10, arc.center).point3(11, arc.axis);
+    tags.real(210, 0.0).real(220, 0.0).real(230, 1.0).precise(40, arc.ratio, DIGITS);
+    let (first, sweep) = match arc.is_whole() {
+        true => (0.0, TAU),
+        false => (within_turn(start), end - start),
+    };
+    tags.precise(41, first, DIGITS).precise(42, first + sweep, DIGITS);
+}
+
+/// An angle in 0 … 2π.
+fn within_turn(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).floor()
+}
+
+/// Cubic Bézier curves in a row, as one spline with knots three times each where they meet.
+fn spline(tags: &mut Tags, to: &Target<'_>, row: &[(DVec2, &Piece)]) {
+    let Some((start, _)) = row.first() else { return };
+    let mut control = vec![*start];
+    for (_, piece) in row {
+        if let Piece::Cubic(a, b, end) = piece {
+            control.extend([*a, *b, *end]);
+        }
+    }
+    let last = row.len();
+    let knots = (0..=last).flat_map(|i| {
+        let times = if i == 0 || i == last { 4 } else { 3 };
+        std::iter::repeat_n(i as f64, times)
+    });
+    let knots: Vec<f64> = knots.collect();
+    begin(tags, "SPLINE", to.layer, to.pen);
+    // 8: it lies in a plane.
+    tags.class("AcDbSpline").real(210, 0.0).real(220, 0.0).real(230, 1.0).int(70, 8).int(71, 3);
+    tags.int(72, knots.len() as i64).int(73, control.len() as i64).int(74, 0);
+    knots.iter().for_each(|knot| {
+        tags.real(40, *knot);
+    });
+    control.iter().for_each(|p| {
+        tags.point3(10, *p);
+    });
+}

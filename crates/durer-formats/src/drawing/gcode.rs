@@ -1,0 +1,109 @@
+//! Sheets as G-code for pen plotters, engravers and cutters (RS-274: Kramer, Proctor and Messina, *The NIST
+//! RS274NGC Interpreter*, 2000; the part that GRBL, Marlin and LinuxCNC share).
+
+use super::machine::{MachineOptions, Pass, is_plain, passes};
+use super::number::short;
+use crate::Result;
+use durer::math::DVec2;
+use durer::target::sheet::Sheet;
+use std::io::Write;
+
+/// Digits after the point of a millimetre.
+const DIGITS: usize = 3;
+
+/// Writes a sheet in millimetres, absolute, from the lower left corner, y up: pens of one width and colour one
+/// after another, each taken once, layer by layer, and its strokes on a short way.
+///
+/// Between pens the machine goes to the origin and waits (`M0`). Dashes and text are strokes of their own; fills
+/// are drawn as outlines, last.
+///
+/// # Errors
+/// What [`MachineOptions::check`] finds; [`crate::Error::Io`] where writing fails.
+pub fn write(out: &mut impl Write, sheet: &Sheet, machine: &MachineOptions) -> Result<()> {
+    machine.check()?;
+    let passes = passes(sheet, machine.pens);
+    let [width, height] = [sheet.size.x, sheet.size.y].map(|v| short(v, DIGITS));
+    if !sheet.title.is_empty() {
+        writeln!(out, "; {}", comment(&sheet.title))?;
+    }
+    writeln!(out, "; sheet {width} x {height} mm, pens: {}", passes.len())?;
+    writeln!(out, "G21\nG90\n{}", machine.pen_up)?;
+    for (index, pass) in passes.into_iter().enumerate() {
+        write_pass(&mut Head { out, machine }, index, pass)?;
+    }
+    let mut head = Head { out, machine };
+    head.travel(DVec2::ZERO)?;
+    out.write_all(b"M2\n")?;
+    Ok(())
+}
+
+fn write_pass(head: &mut Head<impl Write>, index: usize, pass: Pass) -> Result<()> {
+    let [r, g, b, _] = pass.color;
+    let number = index + 1;
+    if index > 0 {
+        head.travel(DVec2::ZERO)?;
+    }
+    match pass.width {
+        Some(w) => {
+            writeln!(head.out, "; pen {number}: {} mm, #{r:02x}{g:02x}{b:02x}", short(w, 3))?
+        }
+        None => writeln!(head.out, "; pen {number}: outlines of areas")?,
+    }
+    if index > 0 {
+        head.out.write_all(b"M0\n")?;
+    }
+    let mut at = DVec2::ZERO;
+    for (name, strokes) in pass.layers {
+        writeln!(head.out, "; layer {}", comment(&name))?;
+        for chain in Pass::order(strokes, at) {
+            head.draw(&chain)?;
+            at = chain.last().copied().unwrap_or(at);
+        }
+    }
+    Ok(())
+}
+
+/// What stands at the machine's pen.
+struct Head<'a, W> {
+    out: &'a mut W,
+    machine: &'a MachineOptions,
+}
+
+impl<W: Write> Head<'_, W> {
+    /// One stroke; a single point is a dot.
+    fn draw(&mut self, chain: &[DVec2]) -> Result<()> {
+        let Some((first, rest)) = chain.split_first() else { return Ok(()) };
+        self.travel(*first)?;
+        writeln!(self.out, "{}", self.machine.pen_down)?;
+        let mut feed = format!(" F{}", short(self.machine.feed, DIGITS));
+        let mut last = place(*first);
+        for next in rest.iter().map(|p| place(*p)) {
+            if next != last {
+                // Commands of the pen may have changed the speed.
+                writeln!(self.out, "G1 {next}{feed}")?;
+                feed.clear();
+                last = next;
+            }
+        }
+        writeln!(self.out, "{}", self.machine.pen_up)?;
+        Ok(())
+    }
+
+    /// Moves the lifted pen. GRBL takes no speed for G0.
+    fn travel(&mut self, to: DVec2) -> Result<()> {
+        match self.machine.travel {
+            Some(speed) => writeln!(self.out, "G1 {} F{}", place(to), short(speed, DIGITS))?,
+            None => writeln!(self.out, "G0 {}", place(to))?,
+        }
+        Ok(())
+    }
+}
+
+fn place(p: DVec2) -> String {
+    format!("X{} Y{}", short(p.x, DIGITS), short(p.y, DIGITS))
+}
+
+/// Text that no machine obeys.
+fn comment(text: &str) -> String {
+    text.chars().map(|c| if is_plain(c) { c } else { '_' }).collect()
+}

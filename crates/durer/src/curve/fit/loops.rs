@@ -1,0 +1,34 @@
+//! Closed polylines as whole circles and ellipses.
+
+use super::bends::Bends;
+use super::measure::Run;
+use super::{EXACT, Fitted, circle, ellipse, joined};
+use crate::target::{Arc, Curve, Piece};
+use std::f64::consts::TAU;
+
+/// Fewer points make no whole circle.
+const FEWEST: usize = 8;
+
+/// Returns the circle or the ellipse that a closed polyline is: one on which its points lie exactly before one that
+/// they are near to. At most one of them is to be kept.
+pub(super) fn whole(bends: &Bends) -> Option<Fitted> {
+    let count = bends.count();
+    let turned: f64 = bends.turns[1..=count].iter().sum();
+    if bends.breaks.len() > 1 || count < FEWEST || (turned.abs() - TAU).abs() > 0.1 {
+        return None;
+    }
+    let first = bends.breaks.first().copied().or((0..count).find(|i| !bends.is_fold(*i)))?;
+    let turned_to = bends.from(first);
+    let run = Run::new(&turned_to, 0, count);
+    let around = [circle::whole(&run, turned), ellipse::whole(&run, turned)];
+    let near = |run: &Run<'_>, within: f64| {
+        let found = around.iter().flatten().find(|arc| run.is_near(arc, bends.tolerance * within));
+        found.and_then(|arc| joined(*arc, run, bends.tolerance))
+    };
+    // Folds are those of points that lie on a circle exactly.
+    let all = Run::of_all(&turned_to, 0, count);
+    let arc: Arc = near(&run, EXACT).or_else(|| near(&all, 1.0))?;
+    let start = run.first();
+    let curve = Curve { start, pieces: vec![Piece::Arc(arc, start)], closed: true };
+    Some(Fitted { curve, from: vec![first] })
+}

@@ -1,0 +1,127 @@
+//! The part of a polyline between two breaks: arcs on which points lie exactly, then the rest.
+
+use super::bends::Bends;
+use super::measure::Run;
+use super::{circle, ellipse, longest, rest};
+use crate::target::{Arc, Piece};
+use std::f64::consts::PI;
+
+/// The fewest chords of a circular arc, and of an elliptical one.
+pub(super) const LEAST_CIRCLE: usize = 4;
+const LEAST_ELLIPSE: usize = 6;
+
+/// An arc on which points lie exactly is taken where one to which they are near is no longer than so many times it:
+/// any curve is a circle for a short way.
+const FURTHER: f64 = 1.6;
+
+/// An arc that turns so far is one, however far a near one goes.
+const CERTAIN: f64 = PI / 3.0;
+
+/// An arc between two points of a polyline.
+struct Found {
+    from: usize,
+    to: usize,
+    arc: Arc,
+}
+
+/// Appends the pieces of a stretch, each with the index of the point in which it begins.
+pub(super) fn fit(bends: &Bends, from: usize, to: usize, pieces: &mut Vec<(usize, Piece)>) {
+    let mut at = from;
+    if to - from >= LEAST_CIRCLE {
+        for found in prolonged(bends, exact_arcs(bends, from, to), from, to) {
+            rest::fit(bends, at, found.from, pieces);
+            pieces.push((found.from, Piece::Arc(found.arc, bends.points[found.to])));
+            at = found.to;
+        }
+    }
+    rest::fit(bends, at, to, pieces);
+}
+
+/// Returns the arcs between two points on which points lie exactly.
+fn exact_arcs(bends: &Bends, from: usize, to: usize) -> Vec<Found> {
+    let mut arcs = Vec::new();
+    let mut at = from;
+    while at + LEAST_CIRCLE <= to {
+        match exact_arc(bends, at, to) {
+            Ok(found) => {
+                at = found.to;
+                arcs.push(found);
+            }
+            Err(reach) => at += (reach / STEPS).max(1),
+        }
+    }
+    arcs
+}
+
+/// Where an arc fits exactly but is none, the next one is sought after so many parts of it: from every point, what is all
+/// but straight would take forever.
+const STEPS: usize = 16;
+
+/// The longest exact arc from a point, where it is one rather than a short way of another curve; else over how many
+/// chords one would go.
+fn exact_arc(bends: &Bends, from: usize, to: usize) -> Result<Found, usize> {
+    if !goes_round(bends, from) {
+        return Err(0);
+    }
+    let tolerance = bends.tolerance;
+    // Folds tell nothing, so that it takes more points to be certain.
+    let more = if (from..to.min(from + LEAST_CIRCLE)).any(|i| bends.is_fold(i)) { 3 } else { 1 };
+    let circle = longest(from, LEAST_CIRCLE * more, to, |end| {
+        circle::exact(&Run::new(bends, from, end), bends.turned(from, end), tolerance)
+    });
+    if let Some((end, arc)) = circle
+        && is_certain(bends, from, to, (end, &arc))
+    {
+        return Ok(Found { from, to: end, arc });
+    }
+    let ellipse = longest(from, LEAST_ELLIPSE * more, to, |end| {
+        ellipse::exact(&Run::new(bends, from, end), bends.turned(from, end), tolerance)
+    });
+    match ellipse {
+        Some((end, arc)) if ellipse::is_certain(bends.turned(from, end)) => {
+            Ok(Found { from, to: end, arc })
+        }
+        _ => {
+            let reach = |end: Option<usize>| end.map_or(0, |end| end - from);
+            Err(reach(circle.map(|c| c.0)).max(reach(ellipse.map(|e| e.0))))
+        }
+    }
+}
+
+/// Whether a circular arc that points lie on exactly is one.
+fn is_certain(bends: &Bends, from: usize, to: usize, (end, arc): (usize, &Arc)) -> bool {
+    if end == to || arc.turn.abs() >= CERTAIN {
+        return true;
+    }
+    let near = longest(from, LEAST_CIRCLE, to, |end| {
+        circle::loose(&Run::of_all(bends, from, end), bends.turned(from, end), bends.tolerance)
+    });
+    let length = |end: usize| bends.along[end] - bends.along[from];
+    near.is_none_or(|(near, _)| length(near) <= length(end) * FURTHER)
+}
+
+/// Whether the polyline turns one way at the next points: most that are no arc are told by this.
+fn goes_round(bends: &Bends, from: usize) -> bool {
+    let turns = &bends.turns[from + 1..from + LEAST_CIRCLE];
+    turns.iter().all(|t| *t > 0.0) || turns.iter().all(|t| *t < 0.0)
+}
+
+/// Lets arcs run on to the ends of the stretch over a last chord: where something lies in front, a polyline ends
+/// between two points of the arc.
+fn prolonged(bends: &Bends, mut arcs: Vec<Found>, from: usize, to: usize) -> Vec<Found> {
+    let try_to = |found: &mut Found, start: usize, end: usize| {
+        let run = Run::new(bends, start, end);
+        if let Some(arc) = circle::prolonged(&found.arc, &run, bends.tolerance) {
+            *found = Found { from: start, to: end, arc };
+        }
+    };
+    if let Some(first) = arcs.first_mut().filter(|f| f.from == from + 1) {
+        let to = first.to;
+        try_to(first, from, to);
+    }
+    if let Some(last) = arcs.last_mut().filter(|f| f.to + 1 == to) {
+        let from = last.from;
+        try_to(last, from, to);
+    }
+    arcs
+}

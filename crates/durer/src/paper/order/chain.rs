@@ -1,0 +1,123 @@
+//! Marks that a pen draws without being lifted, straight or curved.
+
+use super::{JOIN, Stroke, turns};
+use crate::math::DVec2;
+use crate::target::sheet::Mark;
+use crate::target::{Arc, Curve, Piece};
+
+/// Places at which a whole circle or ellipse may be begun.
+const PLACES: usize = 16;
+
+/// A stroke or a curve.
+pub(super) enum Chain {
+    Straight(Stroke),
+    Curved(Curve),
+}
+
+impl Chain {
+    /// The points at which it may be begun.
+    fn places(&self) -> Stroke {
+        match self {
+            Self::Straight(stroke) => stroke.clone(),
+            Self::Curved(curve) => {
+                let points = match curve.whole() {
+                    Some(arc) => (0..PLACES).map(|i| arc.at(angle(arc, i))).collect(),
+                    None => curve.iter().map(|(start, _)| start).collect(),
+                };
+                let mut stroke = Stroke { points, closed: curve.closed };
+                if !curve.closed {
+                    stroke.points.push(curve.end());
+                }
+                stroke
+            }
+        }
+    }
+
+    /// The chain, begun at one of its places.
+    fn from_place(self, first: usize) -> Self {
+        match self {
+            Self::Straight(stroke) => Self::Straight(stroke.from_point(first)),
+            Self::Curved(curve) if first == 0 => Self::Curved(curve),
+            Self::Curved(curve) if !curve.closed => Self::Curved(curve.reversed()),
+            Self::Curved(mut curve) => {
+                if let Some(arc) = curve.whole().copied() {
+                    let arc = Arc { start: angle(&arc, first), ..arc };
+                    curve.start = arc.at(arc.start);
+                    curve.pieces = vec![Piece::Arc(arc, curve.start)];
+                } else if let Some(before) = curve.pieces.get(first - 1) {
+                    curve.start = before.end();
+                    curve.pieces.rotate_left(first);
+                }
+                Self::Curved(curve)
+            }
+        }
+    }
+
+    /// Where the pen is when it is drawn.
+    pub fn end(&self) -> DVec2 {
+        match self {
+            Self::Straight(stroke) => stroke.end().unwrap_or_default(),
+            Self::Curved(curve) => curve.end(),
+        }
+    }
+
+    /// The chain as a curve; closed ones, and those without a length, are none.
+    fn open(self) -> Result<Curve, Self> {
+        match self {
+            Self::Curved(curve) if !curve.closed => Ok(curve),
+            Self::Straight(Stroke { points, closed: false }) if points.len() > 1 => {
+                let pieces = points[1..].iter().map(|p| Piece::Line(*p)).collect();
+                Ok(Curve { start: points[0], pieces, closed: false })
+            }
+            other => Err(other),
+        }
+    }
+
+    pub fn mark(self, pen: usize) -> Mark {
+        match self {
+            Self::Straight(Stroke { points, closed }) => Mark::Stroke { points, closed, pen },
+            Self::Curved(curve) if curve.is_straight() && !curve.closed => {
+                let rest = curve.pieces.iter().map(Piece::end);
+                let points = std::iter::once(curve.start).chain(rest).collect();
+                Mark::Stroke { points, closed: false, pen }
+            }
+            Self::Curved(curve) => Mark::Curve { curve, pen },
+        }
+    }
+}
+
+/// The angle of a place of a whole ellipse.
+fn angle(arc: &Arc, place: usize) -> f64 {
+    arc.start + arc.turn * (place as f64 / PLACES as f64)
+}
+
+/// Puts chains in the order of [`turns`].
+pub(super) fn in_turn(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
+    let places: Vec<Stroke> = chains.iter().map(Chain::places).collect();
+    let mut chains: Vec<Option<Chain>> = chains.into_iter().map(Some).collect();
+    let turns = turns(&places, start).into_iter();
+    turns.filter_map(|t| Some(chains.get_mut(t.index)?.take()?.from_place(t.first))).collect()
+}
+
+/// Makes one chain of open ones that follow each other without a gap.
+pub(super) fn joined(chains: Vec<Chain>) -> Vec<Chain> {
+    let mut found: Vec<Chain> = Vec::with_capacity(chains.len());
+    let mut last: Option<Curve> = None;
+    for chain in chains {
+        match (chain.open(), &mut last) {
+            (Ok(next), Some(last)) if last.end().distance(next.start) <= JOIN => {
+                if last.end() != next.start {
+                    last.pieces.push(Piece::Line(next.start));
+                }
+                last.pieces.extend(next.pieces);
+            }
+            (Ok(next), _) => found.extend(last.replace(next).map(Chain::Curved)),
+            (Err(other), _) => {
+                found.extend(last.take().map(Chain::Curved));
+                found.push(other);
+            }
+        }
+    }
+    found.extend(last.map(Chain::Curved));
+    found
+}

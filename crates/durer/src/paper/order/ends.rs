@@ -1,0 +1,122 @@
+//! Where strokes can be entered and left.
+
+use super::greedy::other_end;
+use super::nearest::{Nearest, Tree};
+use super::{Stroke, Turn};
+use crate::math::DVec2;
+
+/// One end of a stroke: twice its place in the list, and 1 more for its end.
+pub type End = u32;
+
+/// How many ends near to each are tried.
+const NEIGHBORS: usize = 10;
+
+/// The ends of strokes; the last of them is the pen's home, from which it starts.
+pub struct Ends {
+    turns: Vec<Turn>,
+    /// By end.
+    points: Vec<DVec2>,
+    /// The nearest ends of other strokes, up to so many an end, the nearest first.
+    near: Vec<End>,
+    /// Where those of an end begin; one more than there are ends.
+    firsts: Vec<u32>,
+}
+
+impl Ends {
+    /// Those of strokes as they are drawn first.
+    pub fn new(strokes: &[Stroke], turns: &[Turn], home: DVec2) -> Self {
+        let finite = |p: DVec2| if p.is_finite() { p } else { home };
+        let both = |turn: &Turn| {
+            let stroke = &strokes[turn.index];
+            [stroke.points[turn.first], other_end(stroke, turn.first)].map(finite)
+        };
+        let home = if home.is_finite() { home } else { DVec2::ZERO };
+        let points = turns.iter().flat_map(both).chain([home; 2]).collect();
+        let (near, firsts) = (Vec::new(), Vec::new());
+        let mut ends = Self { turns: turns.to_vec(), points, near, firsts };
+        ends.find_near();
+        ends
+    }
+
+    fn find_near(&mut self) {
+        let tree = Tree::new(self.points.iter().copied());
+        let mut nearest = Nearest::new(NEIGHBORS);
+        self.near.clear();
+        self.firsts.clear();
+        for (end, point) in self.points.iter().enumerate() {
+            self.firsts.push(self.near.len() as u32);
+            tree.nearest(*point, &mut nearest, |other| other as usize / 2 != end / 2);
+            self.near.extend(nearest.list.iter().map(|n| n.1));
+        }
+        self.firsts.push(self.near.len() as u32);
+    }
+
+    /// The ends near to one, the nearest first.
+    pub fn near(&self, end: End) -> &[End] {
+        let [from, to] = [end, end + 1].map(|e| self.firsts[e as usize] as usize);
+        &self.near[from..to]
+    }
+
+    /// The way from end to end; back home it is none, for the pen may stay anywhere.
+    pub fn distance(&self, a: End, b: End) -> f64 {
+        let back = self.points.len() as End - 2;
+        if a == back || b == back {
+            return 0.0;
+        }
+        self.points[a as usize].distance(self.points[b as usize])
+    }
+
+    /// The turn that begins at an end; `None` for home.
+    pub fn turn(&self, end: End, strokes: &[Stroke]) -> Option<Turn> {
+        let turn = *self.turns.get(end as usize / 2)?;
+        let stroke = &strokes[turn.index];
+        if end % 2 == 0 || stroke.closed {
+            return Some(turn);
+        }
+        let first = if turn.first == 0 { stroke.points.len() - 1 } else { 0 };
+        Some(Turn { first, ..turn })
+    }
+
+    /// Lets closed strokes begin where the way past them is shortest, given all in a circle by the ends that
+    /// they are entered at. Whether anything got shorter.
+    pub fn turn_rings(&mut self, strokes: &[Stroke], sequence: &[End]) -> bool {
+        let (count, mut shorter) = (sequence.len(), false);
+        for (i, &end) in sequence.iter().enumerate() {
+            let Some(turn) = self.turns.get(end as usize / 2).copied() else { continue };
+            let stroke = &strokes[turn.index];
+            if !stroke.closed || stroke.points.len() < 2 {
+                continue;
+            }
+            let before = sequence[(i + count - 1) % count] ^ 1;
+            let after = sequence[(i + 1) % count];
+            if let Some(first) = self.best_first(stroke, turn.first, before, after) {
+                shorter = true;
+                self.turns[end as usize / 2].first = first;
+                self.points[end as usize] = stroke.points[first];
+                self.points[end as usize ^ 1] = stroke.points[first];
+            }
+        }
+        if shorter {
+            self.find_near();
+        }
+        shorter
+    }
+
+    /// The point of a closed stroke with the shortest way from end to end, where that is shorter than by `now`.
+    fn best_first(&self, stroke: &Stroke, now: usize, before: End, after: End) -> Option<usize> {
+        let back = self.points.len() as End - 2;
+        let way = |p: DVec2| {
+            let to =
+                |end: End| if end == back { 0.0 } else { p.distance(self.points[end as usize]) };
+            to(before) + to(after)
+        };
+        let mut best = (way(stroke.points[now]) * (1.0 - 1e-9), None);
+        for (i, p) in stroke.points.iter().enumerate().filter(|(_, p)| p.is_finite()) {
+            let length = way(*p);
+            if length < best.0 {
+                best = (length, Some(i));
+            }
+        }
+        best.1
+    }
+}

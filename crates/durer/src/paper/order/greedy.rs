@@ -1,0 +1,56 @@
+//! From each end to the nearest stroke not yet drawn.
+//!
+//! Nearest neighbour (Rosenkrantz, Stearns and Lewis, *An analysis of several heuristics for the traveling
+//! salesman problem*, 1977). O(n log n) as a rule.
+
+use super::nearest::{Nearest, Tree};
+use super::{Stroke, Turn};
+use crate::math::DVec2;
+
+/// The strokes that have points, from the one nearest to `start`. Of equally near ones that of the lower
+/// index, forwards.
+pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
+    let starts: Vec<Turn> = strokes.iter().enumerate().flat_map(starts_of).collect();
+    let place = |turn: &Turn| strokes[turn.index].points[turn.first];
+    let finite = |p: DVec2| if p.is_finite() { p } else { start };
+    let mut tree = Tree::new(starts.iter().map(|turn| finite(place(turn))));
+    let firsts: Vec<usize> = first_of_each(&starts, strokes.len());
+    let (mut found, mut pen, mut nearest) = (Vec::new(), finite(start), Nearest::new(1));
+    loop {
+        tree.nearest(pen, &mut nearest, |_| true);
+        let Some(&(_, number)) = nearest.list.first() else { return found };
+        let turn = starts[number as usize];
+        for other in firsts[turn.index]..firsts[turn.index + 1] {
+            tree.remove(other as u32);
+        }
+        pen = finite(other_end(&strokes[turn.index], turn.first));
+        found.push(turn);
+    }
+}
+
+/// All ways to draw a stroke.
+fn starts_of((index, stroke): (usize, &Stroke)) -> impl Iterator<Item = Turn> {
+    let count = stroke.points.len();
+    let step = if stroke.closed || count < 2 { 1 } else { count - 1 };
+    (0..count).step_by(step).map(move |first| Turn { index, first })
+}
+
+/// Where each stroke's starts begin in their list, and the list's end.
+fn first_of_each(starts: &[Turn], strokes: usize) -> Vec<usize> {
+    let mut firsts = vec![0; strokes + 1];
+    starts.iter().for_each(|turn| firsts[turn.index + 1] += 1);
+    for i in 0..strokes {
+        firsts[i + 1] += firsts[i];
+    }
+    firsts
+}
+
+/// Where the pen is after a stroke that is begun at a point.
+pub fn other_end(stroke: &Stroke, first: usize) -> DVec2 {
+    let end = match (stroke.closed, first) {
+        (true, first) => first,
+        (false, 0) => stroke.points.len() - 1,
+        (false, _) => 0,
+    };
+    stroke.points[end]
+}

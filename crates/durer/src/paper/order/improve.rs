@@ -1,0 +1,216 @@
+//! Exchanges and moves that make a way through strokes shorter.
+//!
+//! 2-opt (Croes, *A method for solving traveling-salesman problems*, 1958) and Or-opt (Or, 1976), tried only
+//! between ends that lie near to each other and only where something changed since they were last tried
+//! (Bentley, *Fast algorithms for geometric traveling salesman problems*, 1992). The way is an array in a
+//! circle; of a part to be reversed, the shorter side is.
+
+use super::ends::{End, Ends};
+
+/// The longest row of strokes that is moved as one.
+const LONGEST_ROW: usize = 3;
+
+/// How many strokes are reversed or passed at most by one change: of larger ways the rare changes that need more
+/// save next to nothing.
+const LONGEST_PART: usize = 25_000;
+
+/// How many places in the array may change in all, a stroke: what bounds the time.
+const CHANGES: usize = 2000;
+
+/// A change must save this part of the ways that it replaces, so that rounding never makes a circle of changes.
+const WORTH: f64 = 1e-9;
+
+/// A way through all strokes and back home.
+pub struct Way {
+    /// The end that each stroke is entered at.
+    sequence: Vec<End>,
+    /// The place of each stroke.
+    place: Vec<u32>,
+    left: usize,
+}
+
+impl Way {
+    /// All of `count` strokes as they come, and the pen's home.
+    pub fn new(count: usize) -> Self {
+        let sequence = (0..=count as u32).map(|i| i * 2).collect();
+        Self { sequence, place: (0..=count as u32).collect(), left: (count + 1) * CHANGES }
+    }
+
+    /// The ends that strokes are entered at, in a circle.
+    pub fn sequence(&self) -> &[End] {
+        &self.sequence
+    }
+
+    /// The same from home on.
+    pub fn from_home(mut self) -> Vec<End> {
+        let count = self.sequence.len();
+        let home = count - 1;
+        let at = self.place[home] as usize;
+        self.sequence.rotate_left(at);
+        let backwards = self.sequence[0] % 2 == 1;
+        let mut rest = self.sequence.split_off(1);
+        if backwards {
+            rest.reverse();
+            rest.iter_mut().for_each(|end| *end ^= 1);
+        }
+        rest
+    }
+
+    /// Changes the way as long as that makes it shorter.
+    pub fn improve(&mut self, ends: &Ends) {
+        if self.sequence.len() < 3 {
+            return;
+        }
+        let mut waiting: std::collections::VecDeque<u32> = (0..self.place.len() as u32).collect();
+        let mut waits = vec![true; self.place.len()];
+        while let Some(stroke) = waiting.pop_front() {
+            waits[stroke as usize] = false;
+            while self.left > 0
+                && let Some(touched) = self.change(ends, stroke)
+            {
+                for end in touched {
+                    if !std::mem::replace(&mut waits[end as usize / 2], true) {
+                        waiting.push_back(end / 2);
+                    }
+                }
+            }
+            if self.left == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Makes one change at a stroke that saves something: the ends at which the way changed.
+    fn change(&mut self, ends: &Ends, stroke: u32) -> Option<[End; 6]> {
+        [stroke * 2, stroke * 2 + 1].into_iter().find_map(|a| {
+            let b = self.mate(a);
+            let now = ends.distance(a, b);
+            let near = ends.near(a).iter().map(|&c| (c, ends.distance(a, c)));
+            near.take_while(|(_, to)| *to < now).find_map(|(c, to)| {
+                let saved = now - to;
+                self.exchange(ends, [a, b, c], saved)
+                    .or_else(|| self.move_row(ends, [a, b, c], saved))
+            })
+        })
+    }
+
+    fn is_entry(&self, end: End) -> bool {
+        self.sequence[self.place[end as usize / 2] as usize] == end
+    }
+
+    fn at(&self, place: usize) -> End {
+        self.sequence[place % self.sequence.len()]
+    }
+
+    /// The end that the way through the air connects with an end.
+    fn mate(&self, end: End) -> End {
+        let (place, count) = (self.place[end as usize / 2] as usize, self.sequence.len());
+        if self.is_entry(end) { self.at(place + count - 1) ^ 1 } else { self.at(place + 1) }
+    }
+
+    /// 2-opt: instead of a–b and c–d the pen goes a–c and b–d.
+    fn exchange(&mut self, ends: &Ends, [a, b, c]: [End; 3], saved: f64) -> Option<[End; 6]> {
+        if self.is_entry(a) != self.is_entry(c) {
+            return None;
+        }
+        let d = self.mate(c);
+        let old = ends.distance(c, d);
+        let shorter = saved + old - ends.distance(b, d) > WORTH * (old + saved);
+        if !shorter {
+            return None;
+        }
+        // The part from the entry after the one way to the exit before the other.
+        let (from, to) = if self.is_entry(a) { (a, d) } else { (b, c) };
+        let [from, to] = [from, to].map(|end| self.place[end as usize / 2] as usize);
+        self.reverse(from, to).then_some([a, b, c, d, a, b])
+    }
+
+    /// Or-opt: a row of strokes that begins at `a` goes between c and its mate d, turned so that a is at c.
+    fn move_row(&mut self, ends: &Ends, [a, b, c]: [End; 3], saved: f64) -> Option<[End; 6]> {
+        let count = self.sequence.len();
+        let d = self.mate(c);
+        let gap = ends.distance(c, d);
+        let [at, target] = [a, c].map(|end| self.place[end as usize / 2] as usize);
+        let forwards = self.is_entry(a);
+        for length in 1..=LONGEST_ROW.min(count.saturating_sub(2)) {
+            let first = if forwards { at } else { (at + count + 1 - length) % count };
+            // Neither of the two ends of the gap is in the row.
+            let inside = |place: usize| (place + count - first) % count < length;
+            let other = self.place[d as usize / 2] as usize;
+            if inside(target) || inside(other) {
+                return None;
+            }
+            let z = if forwards { self.at(first + length - 1) ^ 1 } else { self.at(first) };
+            let y = self.mate(z);
+            let old = ends.distance(z, y) + gap;
+            let new = ends.distance(z, d) + ends.distance(b, y);
+            if saved + old - new > WORTH * (saved + old) {
+                // The gap lies after the stroke whose exit it begins with.
+                let c_leaves = !self.is_entry(c);
+                let gap_after = if c_leaves { target } else { other };
+                let moved = self.shift(first, length, gap_after, forwards != c_leaves);
+                return moved.then_some([a, b, c, d, y, z]);
+            }
+        }
+        None
+    }
+
+    fn put(&mut self, place: usize, end: End) {
+        let place = place % self.sequence.len();
+        self.sequence[place] = end;
+        self.place[end as usize / 2] = place as u32;
+        self.left = self.left.saturating_sub(1);
+    }
+
+    /// Reverses the part from place to place, or, which is the same way, all else; `false` where that is too much.
+    fn reverse(&mut self, from: usize, to: usize) -> bool {
+        let count = self.sequence.len();
+        let mut length = (to + count - from) % count + 1;
+        let (mut low, mut high) = (from, to);
+        if length * 2 > count {
+            (low, high, length) = (to + 1, from + count - 1, count - length);
+        }
+        if length > LONGEST_PART {
+            return false;
+        }
+        for _ in 0..length.div_ceil(2) {
+            let (a, b) = (self.at(low), self.at(high));
+            self.put(low, b ^ 1);
+            self.put(high, a ^ 1);
+            (low, high) = (low + 1, (high + count - 1) % count);
+        }
+        true
+    }
+
+    /// Moves the row of so many strokes at `first` behind the stroke at the place `after`, reversed if told;
+    /// `false` where that is too far.
+    fn shift(&mut self, first: usize, length: usize, after: usize, reversed: bool) -> bool {
+        let count = self.sequence.len();
+        let mut row: Vec<End> = (0..length).map(|i| self.at(first + i)).collect();
+        if reversed {
+            row.reverse();
+            row.iter_mut().for_each(|end| *end ^= 1);
+        }
+        // What lies between: behind the row, or before it.
+        let behind = (after + count - (first + length - 1) % count) % count;
+        let before = count - length - behind;
+        if behind.min(before) > LONGEST_PART {
+            return false;
+        }
+        let start = if behind <= before {
+            for i in 0..behind {
+                self.put(first + i, self.at(first + length + i));
+            }
+            first + behind
+        } else {
+            for i in 0..before {
+                self.put(first + count + length - 1 - i, self.at(first + count - 1 - i));
+            }
+            first + count - before
+        };
+        for (i, end) in row.into_iter().enumerate() {
+            self.put(start + i, end);
+        }
+        true
+    }
+}

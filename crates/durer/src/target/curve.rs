@@ -1,0 +1,138 @@
+//! Chains of lines, arcs and cubic curves: what strokes of a sheet are made of where they are not polylines.
+
+use crate::math::DVec2;
+use std::f64::consts::TAU;
+
+/// An arc of an ellipse or a circle, or a whole one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// The middle of the ellipse.
+    pub center: DVec2,
+    /// From the centre to the end of the longer axis; of a circle, a radius in any direction.
+    pub axis: DVec2,
+    /// The shorter axis over the longer one, in (0, 1]; 1 for circles.
+    pub ratio: f64,
+    /// Where it begins, in radians: an angle on the circle that the ellipse is when it is stretched along its shorter
+    /// axis, from `axis` towards `axis.perp()`.
+    pub start: f64,
+    /// How far it goes from there, in radians: from −2π to 2π, ±2π for a whole ellipse.
+    pub turn: f64,
+}
+
+impl Arc {
+    /// Returns the point at an angle, counted as `start` is.
+    pub fn at(&self, angle: f64) -> DVec2 {
+        let (sin, cos) = libm::sincos(angle);
+        self.center + self.axis * cos + self.axis.perp() * (self.ratio * sin)
+    }
+
+    /// Returns the way at an angle, in the direction of the arc; as long as the axes say.
+    pub fn way(&self, angle: f64) -> DVec2 {
+        let (sin, cos) = libm::sincos(angle);
+        let way = self.axis.perp() * (self.ratio * cos) - self.axis * sin;
+        if self.turn < 0.0 { -way } else { way }
+    }
+
+    /// Returns half the longer and half the shorter axis.
+    pub fn radii(&self) -> DVec2 {
+        let longer = self.axis.length();
+        DVec2::new(longer, longer * self.ratio)
+    }
+
+    /// Returns whether it is a part of a circle.
+    pub fn is_circular(&self) -> bool {
+        self.ratio == 1.0
+    }
+
+    /// Returns whether it comes back to where it began.
+    pub fn is_whole(&self) -> bool {
+        self.turn.abs() >= TAU
+    }
+}
+
+/// A piece of a [`Curve`], from where the one before it ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Piece {
+    /// A straight line to a point.
+    Line(DVec2),
+    /// An arc and the point that it ends in. That point, and the one in which it begins, are those of the curve; they
+    /// lie on the arc but for rounding.
+    Arc(Arc, DVec2),
+    /// A cubic Bézier curve: two control points and its end.
+    Cubic(DVec2, DVec2, DVec2),
+}
+
+impl Piece {
+    /// Returns the point that it ends in.
+    pub fn end(&self) -> DVec2 {
+        match *self {
+            Self::Line(end) | Self::Arc(_, end) | Self::Cubic(_, _, end) => end,
+        }
+    }
+
+    /// Returns in which ways it leaves `start` and comes to its end; of any length, 0 where it has no extent.
+    pub fn ways(&self, start: DVec2) -> [DVec2; 2] {
+        match *self {
+            Self::Line(end) => [end - start; 2],
+            Self::Arc(arc, _) => [arc.way(arc.start), arc.way(arc.start + arc.turn)],
+            Self::Cubic(a, b, end) => {
+                let first = |ways: [DVec2; 3]| {
+                    ways.into_iter().find(|w| *w != DVec2::ZERO).unwrap_or(DVec2::ZERO)
+                };
+                [first([a - start, b - start, end - start]), first([end - b, end - a, end - start])]
+            }
+        }
+    }
+}
+
+/// A chain of pieces, each beginning where the one before it ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Where the first piece begins.
+    pub start: DVec2,
+    /// The pieces in order.
+    pub pieces: Vec<Piece>,
+    /// Whether its end, which then is its start to the bit, is joined to its start.
+    pub closed: bool,
+}
+
+impl Curve {
+    /// Returns each piece with the point that it begins in.
+    pub fn iter(&self) -> impl Iterator<Item = (DVec2, &Piece)> {
+        let ends = self.pieces.iter().map(Piece::end);
+        std::iter::once(self.start).chain(ends).zip(&self.pieces)
+    }
+
+    /// Returns the curve, run through from its end to its start.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let back = |(start, piece): (DVec2, &Piece)| match *piece {
+            Piece::Line(_) => Piece::Line(start),
+            Piece::Arc(arc, _) => {
+                Piece::Arc(Arc { start: arc.start + arc.turn, turn: -arc.turn, ..arc }, start)
+            }
+            Piece::Cubic(a, b, _) => Piece::Cubic(b, a, start),
+        };
+        let mut pieces: Vec<Piece> = self.iter().map(back).collect();
+        pieces.reverse();
+        Self { start: self.end(), pieces, closed: self.closed }
+    }
+
+    /// Returns the point that it ends in.
+    pub fn end(&self) -> DVec2 {
+        self.pieces.last().map_or(self.start, Piece::end)
+    }
+
+    /// Returns whether all of it is straight.
+    pub fn is_straight(&self) -> bool {
+        self.pieces.iter().all(|p| matches!(p, Piece::Line(_)))
+    }
+
+    /// Returns the arc where nothing but a whole circle or ellipse is there.
+    pub fn whole(&self) -> Option<&Arc> {
+        match &self.pieces[..] {
+            [Piece::Arc(arc, _)] if self.closed && arc.is_whole() => Some(arc),
+            _ => None,
+        }
+    }
+}
