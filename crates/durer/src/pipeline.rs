@@ -1,10 +1,15 @@
 //! The order of the stages; nothing else knows it.
 
+mod contour;
+mod depth_cue;
 mod draw;
 mod edges;
 mod floor;
+mod runs;
 mod status;
 
+pub use contour::contoured;
+pub use depth_cue::depth_cued;
 pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes};
 pub use edges::{EdgeStyle, draw_edges};
 pub use floor::{add_axes, add_grid, add_ground};

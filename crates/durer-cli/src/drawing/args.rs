@@ -51,9 +51,19 @@ pub struct DrawingArgs {
     /// Widths of strokes in millimetres: WIDTH[,CLASS=WIDTH…]
     ///
     /// E.g. `0.35,silhouette=0.7,hidden=0.18`; the first is for all that are not named. Classes are those
-    /// of --lines, and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines 0.25 wide.
+    /// of --lines, `contour` and `hidden`. By default outlines are 0.5, edges 0.35, hidden lines 0.25 wide.
     #[arg(long, value_name = "WIDTHS", value_parser = parsed::<Pens>)]
     pub pen: Option<Pens>,
+    /// Draw near lines wider and darker than far ones, in four steps with layers of their own
+    ///
+    /// From 1.4 times the width of the class's pen to half of it; for parallel views and perspective.
+    #[arg(long)]
+    pub depth_cue: bool,
+    /// Draw outlines that have nothing behind them as a class of their own: `contour`, 0.7 mm wide unless --pen says
+    ///
+    /// Silhouettes and borders before other parts of the model stay what they are.
+    #[arg(long)]
+    pub contour: bool,
     /// Whether areas are hatched instead of filled [default: shade for .hpgl and .gcode, else none]
     ///
     /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. The caps
@@ -132,6 +142,8 @@ pub const NAMES: &[&str] = &[
     "stubs",
     "beneath",
     "pen",
+    "depth_cue",
+    "contour",
     "hatch",
     "merge",
     "fill",

@@ -141,6 +141,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
         let message = "--dxf-polylines: it is for .dxf files; leave it out";
         return Err(Failure::Usage(message.to_owned()));
     }
+    check_weights(args, kind)?;
     if args.drawing.sheet.is_none() {
         return Ok(());
     }
@@ -166,6 +167,38 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
         ))),
         None => Ok(()),
     }
+}
+
+/// Refuses what tells visible lines apart where there are none.
+fn check_weights(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
+    let given = [("depth-cue", args.drawing.depth_cue), ("contour", args.drawing.contour)];
+    let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    let message = match args.drawing.style {
+        Some(DrawStyle::Wireframe) => "a wireframe shows all lines alike; use --style hidden-line",
+        Some(DrawStyle::Regions) => "areas have no lines; use --style regions+lines",
+        _ if name == "depth-cue" && kind == Kind::Drawing(DrawingFormat::GeoJson) => {
+            "GeoJSON has no pens; leave it out"
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::Usage(format!("--{name}: {message}")))
+}
+
+/// Tells contours from other outlines, and near lines from far ones, where that is asked for.
+fn weighted(
+    args: &RenderArgs,
+    scene: &Scene,
+    drawing: Drawing,
+    camera: &Camera,
+) -> durer::Result<Drawing> {
+    let mut drawing = drawing;
+    if args.drawing.contour {
+        drawing = pipeline::contoured(drawing, scene, camera)?;
+    }
+    if args.drawing.depth_cue {
+        drawing = pipeline::depth_cued(drawing, scene, camera)?;
+    }
+    Ok(drawing)
 }
 
 /// What the paper is filled with. Vector files stay blank unless a colour is asked for.
@@ -216,7 +249,7 @@ pub fn render(
     let (mut drawings, mut statuses) = (Vec::new(), Vec::new());
     let seen_from = cameras.iter().map(CameraReport::from).collect();
     let mut report = PictureReport { cameras: seen_from, ..PictureReport::default() };
-    for camera in cameras {
+    for &camera in &cameras {
         let cap_material = subject.cap_material;
         let shown = with_tones(style, args.drawing.hatch);
         let mut options = DrawOptions { cap_material, ..draw_options(args, kind, shown, camera) };
@@ -239,6 +272,12 @@ pub fn render(
         // The paper's scale says how far apart lines are in the model.
         let spacing = HATCH_SPACING / (laid.scale * unit(args, subject).millimetres());
         drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
+        laid = lay_out(args, kind, subject, frame, &drawings)?;
+    }
+    if args.drawing.depth_cue || args.drawing.contour {
+        let all = drawings.into_iter().zip(&cameras);
+        let all = all.map(|(drawing, camera)| weighted(args, subject.scene, drawing, camera));
+        drawings = all.collect::<durer::Result<_>>().map_err(|e| Failure::Usage(e.to_string()))?;
         laid = lay_out(args, kind, subject, frame, &drawings)?;
     }
     if args.drawing.machine.orders(kind.drawing()) {

@@ -234,6 +234,43 @@ fn ends(line: &str) -> Option<[f64; 4]> {
 }
 
 #[test]
+fn near_lines_have_wider_pens_where_that_is_asked_for() {
+    let folder = folder();
+    let layers = |options: &str| -> Vec<(String, f64)> {
+        folder.must(&format!("render bracket.stl -o a.svg {options}"));
+        let text = String::from_utf8(folder.read("a.svg")).unwrap();
+        let of = |line: &str, name: &str| {
+            let value = line.split_once(&format!("{name}=\""))?.1;
+            Some(value.split_once('"')?.0.to_owned())
+        };
+        let layer = |l: &str| Some((of(l, " id")?, of(l, "stroke-width")?.parse().unwrap()));
+        text.lines().filter(|l| l.starts_with("<g")).filter_map(layer).collect()
+    };
+    let plain: Vec<String> = layers("").into_iter().map(|l| l.0).collect();
+    assert_eq!(plain, ["visible-crease", "visible-silhouette"]);
+    let cued = layers("--depth-cue");
+    let [.., far, _, _, near] = &cued[..] else { panic!("{cued:?}") };
+    assert_eq!(far, &("visible-silhouette-near-4".to_owned(), 0.25));
+    assert_eq!(near, &("visible-silhouette-near-1".to_owned(), 0.7));
+    // The nearest outline stands before the part itself.
+    let contoured: Vec<String> = layers("--contour").into_iter().map(|l| l.0).collect();
+    assert_eq!(contoured, ["visible-crease", "visible-silhouette", "visible-contour"]);
+    let both = layers("--contour --depth-cue --pen contour=1");
+    let of_contour: Vec<(&str, f64)> = both
+        .iter()
+        .filter_map(|(name, width)| Some((name.strip_prefix("visible-contour-near-")?, *width)))
+        .collect();
+    assert_eq!(of_contour, [("4", 0.5), ("3", 0.7), ("2", 1.0)]);
+    for (options, part) in [
+        ("-o a.svg --style wireframe", "shows all lines alike"),
+        ("-o a.svg --style regions", "areas have no lines"),
+        ("-o a.geojson", "GeoJSON has no pens"),
+    ] {
+        folder.run(&format!("render bracket.stl {options} --depth-cue")).fails(2, part);
+    }
+}
+
+#[test]
 fn reports_of_drawings_tell_the_cameras() {
     let folder = Folder::with_models();
     let picture = |options: &str| {

@@ -499,9 +499,10 @@ fn spaced_words_and_spans_keep_their_gaps() {
 #[test]
 fn pictures_are_no_paint() {
     // Browsers paint nothing, or what stands in their place.
-    assert_eq!(extent(&painted("<rect width='9' height='9' fill='url(a.png)'/>")), None);
-    let other = painted("<rect width='9' height='9' fill='url(a.svg#b) red'/>");
-    assert_eq!(extent(&other), Some([0, 0, 9, 9]));
+    let (picture, _) = draw("<rect width='9' height='9' fill='url(a.png)'/>");
+    assert_eq!(extent(&picture), None);
+    let (picture, _) = draw("<rect width='9' height='9' fill='url(a.svg#b) red'/>");
+    assert_eq!(extent(&picture), Some([0, 0, 9, 9]));
     // Plain lines under words are nothing to be told.
     let (_, told) = draw("<g text-decoration='underline' vector-effect='none'/>");
     assert!(told.is_empty(), "{told:?}");

@@ -20,7 +20,7 @@ pub use title_block::TitleBlock;
 
 use crate::curve::{pieces, stroke_font};
 use crate::math::{DVec2, Rect};
-use crate::target::drawing::{Anchor, Drawing, Line, LineClass};
+use crate::target::drawing::{Anchor, Drawing, Line, LineClass, NEARNESS_STEPS};
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::target::{Curve, Piece};
 use crate::{Error, Result};
@@ -219,7 +219,9 @@ pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<Laid
     options.check()?;
     let frame = frame_of(drawing, options.frame);
     // Half of the widest pen reaches beyond the points.
-    let pen = LineClass::ALL.iter().map(|c| options.pens.width(*c)).fold(0.0, f64::max);
+    let contours = drawing.lines.iter().any(|l| l.class == LineClass::Contour);
+    let wider = if drawing.nearness.is_empty() { 1.0 } else { pens::NEARNESS[0].0 };
+    let pen = options.pens.widest(contours) * wider;
     let taken = DVec2::splat(2.0 * options.margin + pen);
     let (size, scale) = options.page_and_scale(frame.size(), taken)?;
     let factor = scale * options.unit;
@@ -250,6 +252,15 @@ struct Placed<'a> {
     origin: DVec2,
 }
 
+impl<'a> Placed<'a> {
+    /// The lines, and how near they are.
+    fn lines(&self) -> impl Iterator<Item = (Option<u8>, &'a Line)> + use<'a> {
+        let drawing = self.drawing;
+        let near = |i: usize| drawing.nearness.get(i).copied().flatten();
+        drawing.lines.iter().enumerate().map(move |(i, line)| (near(i), line))
+    }
+}
+
 /// Puts drawings onto a sheet at one scale: `factor` is millimetres per plane unit.
 fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
     put_regions(sheet, views, factor);
@@ -262,13 +273,17 @@ fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
     let all: Vec<Strokes> =
         views.iter().map(|v| Strokes::new(v, factor, options.fit, is_drawn)).collect();
     for depth in (0..=deepest).rev() {
-        for &class in LineClass::ALL.iter().rev() {
-            let (name, pen) = layer_and_pen(class, depth, options);
-            let here = |l: &Line| l.class == class && l.invisibility.min(deepest) == depth;
+        let steps = steps(views, depth);
+        let classes = LineClass::ALL.iter().rev();
+        for (&class, &step) in classes.flat_map(|class| steps.iter().map(move |s| (class, s))) {
+            let (name, pen) = layer_and_pen(class, depth, step, options);
+            let here = |(near, l): &(Option<u8>, &Line)| {
+                l.class == class && *near == step && l.invisibility.min(deepest) == depth
+            };
             let mut marks = Vec::new();
             let pen_index = sheet.pens.iter().position(|p| *p == pen).unwrap_or(sheet.pens.len());
             for strokes in &all {
-                for i in (0..strokes.lines.len()).filter(|i| here(strokes.lines[*i])) {
+                for i in (0..strokes.lines.len()).filter(|i| here(&strokes.lines[*i])) {
                     strokes.put(&mut marks, i, pen_index, !pen.dashes.is_empty());
                 }
             }
@@ -283,9 +298,24 @@ fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
     put_labels(sheet, views, factor, options);
 }
 
-fn layer_and_pen(class: LineClass, depth: u32, options: &Options) -> (String, Pen) {
+/// The steps of nearness that lines behind so many surfaces have, the farthest first.
+fn steps(views: &[Placed], depth: u32) -> Vec<Option<u8>> {
+    let told = depth == 0 && views.iter().any(|v| !v.drawing.nearness.is_empty());
+    let near = if told { NEARNESS_STEPS } else { 0 };
+    [None].into_iter().chain((0..near).rev().map(Some)).collect()
+}
+
+fn layer_and_pen(
+    class: LineClass,
+    depth: u32,
+    step: Option<u8>,
+    options: &Options,
+) -> (String, Pen) {
     match (depth, options.hidden) {
-        (0, _) => (format!("visible-{class}"), options.pens.visible(class)),
+        (0, _) => {
+            let suffix = step.map(|s| format!("-near-{}", s + 1)).unwrap_or_default();
+            (format!("visible-{class}{suffix}"), options.pens.at_nearness(class, step))
+        }
         (_, Hidden::Layer) => {
             (format!("hidden-{depth}-{class}"), options.pens.hidden(class, false))
         }
@@ -300,7 +330,8 @@ fn onto_paper(p: DVec2, origin: DVec2, factor: f64) -> DVec2 {
 
 /// The lines of a view that are drawn.
 struct Strokes<'a> {
-    lines: Vec<&'a Line>,
+    /// With how near they are.
+    lines: Vec<(Option<u8>, &'a Line)>,
     /// For each line its curve on paper, where it is not drawn as a polyline; none at all without fitting.
     curves: Vec<Option<Curve>>,
     /// As for [`onto_paper`].
@@ -315,10 +346,13 @@ impl<'a> Strokes<'a> {
         tolerance: f64,
         is_drawn: impl Fn(&&Line) -> bool,
     ) -> Self {
-        let lines: Vec<&Line> = view.drawing.lines.iter().filter(is_drawn).collect();
+        let lines: Vec<_> = view.lines().filter(|(_, line)| is_drawn(line)).collect();
         let origin = view.origin;
         let curves = match tolerance > 0.0 {
-            true => fitted::curves(&lines, origin, factor, tolerance),
+            true => {
+                let alone: Vec<&Line> = lines.iter().map(|(_, line)| *line).collect();
+                fitted::curves(&alone, origin, factor, tolerance)
+            }
             false => Vec::new(),
         };
         Self { lines, curves, origin, factor }
@@ -335,7 +369,7 @@ impl<'a> Strokes<'a> {
             marks.extend(parts.into_iter().map(|curve| Mark::Curve { curve, pen }));
             return;
         }
-        let line = self.lines[i];
+        let (_, line) = self.lines[i];
         let place = |p: &DVec2| onto_paper(*p, self.origin, self.factor);
         let points: Vec<DVec2> = match curve {
             Some(curve) => corners(curve),

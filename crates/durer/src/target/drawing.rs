@@ -6,6 +6,8 @@ use crate::math::{DVec2, Rect};
 /// What a line of a drawing shows; layers, pens and line types follow it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LineClass {
+    /// A silhouette or border with nothing behind it, where these are told apart.
+    Contour,
     /// Where a face that looks to the eye meets one that looks away.
     Silhouette,
     /// Where two faces meet at an angle above the crease angle.
@@ -37,6 +39,7 @@ pub enum LineClass {
 impl LineClass {
     /// Every class, in the order in which they are listed and, where two lie on each other, preferred.
     pub const ALL: &'static [Self] = &[
+        Self::Contour,
         Self::Silhouette,
         Self::Crease,
         Self::Border,
@@ -55,6 +58,7 @@ impl LineClass {
     /// The name used on the command line, for layers and in GeoJSON.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Contour => "contour",
             Self::Silhouette => "silhouette",
             Self::Crease => "crease",
             Self::Border => "border",
@@ -190,6 +194,9 @@ pub struct Label {
     pub anchor: Anchor,
 }
 
+/// How many steps of [`Drawing::nearness`] there are.
+pub const NEARNESS_STEPS: u8 = 4;
+
 /// What a view shows, as geometry in the plane of the picture.
 ///
 /// **Plane units**: model units on the plane through the camera's target, at right angles to the line
@@ -209,6 +216,9 @@ pub struct Drawing {
     pub labels: Vec<Label>,
     /// How the faces meet whose lines these are.
     pub edges: EdgeCount,
+    /// For each line how near it is, in steps from 0, the nearest, below [`NEARNESS_STEPS`]; `None` for lines of
+    /// which that is not told. Empty where it is told of none.
+    pub nearness: Vec<Option<u8>>,
 }
 
 /// How the faces of a model meet.

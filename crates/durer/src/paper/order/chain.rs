@@ -36,7 +36,7 @@ impl Chain {
     /// The chain, begun at one of its places.
     fn from_place(self, first: usize) -> Self {
         match self {
-            Self::Straight(stroke) => Self::Straight(stroke.from_point(first)),
+            Self::Straight(stroke) => Self::Straight(stroke.begun_at(first)),
             Self::Curved(curve) if first == 0 => Self::Curved(curve),
             Self::Curved(curve) if !curve.closed => Self::Curved(curve.reversed()),
             Self::Curved(mut curve) => {

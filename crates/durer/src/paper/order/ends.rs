@@ -70,7 +70,7 @@ impl Ends {
     pub fn turn(&self, end: End, strokes: &[Stroke]) -> Option<Turn> {
         let turn = *self.turns.get(end as usize / 2)?;
         let stroke = &strokes[turn.index];
-        if end % 2 == 0 || stroke.closed {
+        if end.is_multiple_of(2) || stroke.closed {
             return Some(turn);
         }
         let first = if turn.first == 0 { stroke.points.len() - 1 } else { 0 };

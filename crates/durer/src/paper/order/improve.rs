@@ -41,8 +41,8 @@ impl Way {
         &self.sequence
     }
 
-    /// The same from home on.
-    pub fn from_home(mut self) -> Vec<End> {
+    /// The same as a row from home on.
+    pub fn unrolled(mut self) -> Vec<End> {
         let count = self.sequence.len();
         let home = count - 1;
         let at = self.place[home] as usize;
@@ -212,5 +212,33 @@ impl Way {
             self.put(start + i, end);
         }
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::greedy;
+    use super::super::tests::scattered;
+    use super::*;
+    use crate::math::DVec2;
+
+    #[test]
+    fn each_change_makes_the_way_shorter() {
+        let strokes = scattered(300);
+        let turns = greedy::turns(&strokes, DVec2::ZERO);
+        let ends = Ends::new(&strokes, &turns, DVec2::ZERO);
+        let mut way = Way::new(turns.len());
+        let length = |way: &Way| -> f64 {
+            way.sequence.iter().map(|end| ends.distance(way.mate(*end), *end)).sum()
+        };
+        let (mut now, mut changes) = (length(&way), 0);
+        for stroke in (0..301).cycle().take(3000) {
+            if way.change(&ends, stroke).is_some() {
+                let shorter = length(&way);
+                assert!(shorter < now, "{changes}: {shorter} {now}");
+                (now, changes) = (shorter, changes + 1);
+            }
+        }
+        assert!(changes > 50, "{changes}");
     }
 }

@@ -1,17 +1,17 @@
 //! In which order a pen draws, and from which end.
 //!
-//! Each stroke is first followed by the one that begins or ends nearest ([`greedy`]); then exchanges and moves
-//! of strokes shorten the way ([`improve`]), while closed strokes begin where they are passed. Ways are some
+//! Each stroke is first followed by the one that begins or ends nearest (`greedy`); then exchanges and moves
+//! of strokes shorten the way (`improve`), while closed strokes begin where they are passed. Ways are some
 //! fifth shorter than those of the greedy search alone.
 //!
-//! Class: heuristic for the travelling salesman problem, here with an end left open. Cost: O(n log n) for
-//! strokes spread over the paper, with a bound on the work: a second or so for 100 000 strokes.
+//! This is the travelling salesman's problem, here with an end left open, and no optimum is promised. O(n log n) for
+//! strokes spread over the paper, with a bound on the work: about a second for 100 000 strokes.
 
 mod chain;
 mod ends;
 mod greedy;
 mod improve;
-mod nearest;
+pub(crate) mod nearest;
 
 use crate::math::DVec2;
 use crate::target::sheet::{Mark, Sheet};
@@ -45,7 +45,7 @@ pub struct Turn {
 
 impl Stroke {
     /// The stroke, begun at one of its points.
-    fn from_point(mut self, first: usize) -> Self {
+    fn begun_at(mut self, first: usize) -> Self {
         if self.closed {
             let first = first.min(self.points.len());
             self.points.rotate_left(first);
@@ -82,13 +82,13 @@ pub fn turns(strokes: &[Stroke], start: DVec2) -> Vec<Turn> {
             break;
         }
     }
-    way.from_home().into_iter().filter_map(|end| ends.turn(end, strokes)).collect()
+    way.unrolled().into_iter().filter_map(|end| ends.turn(end, strokes)).collect()
 }
 
 /// The strokes themselves in the order of [`turns`], joined where one begins at the end of another.
 pub fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
     let turns = turns(&strokes, start);
-    let mut take = |t: Turn| Some(std::mem::take(strokes.get_mut(t.index)?).from_point(t.first));
+    let mut take = |t: Turn| Some(std::mem::take(strokes.get_mut(t.index)?).begun_at(t.first));
     joined(turns.into_iter().filter_map(&mut take).collect())
 }
 

@@ -25,7 +25,7 @@ fn random() -> impl FnMut() -> f64 {
 }
 
 /// Short strokes, every fifth a square, all over a sheet of 100 × 100.
-fn scattered(count: usize) -> Vec<Stroke> {
+pub fn scattered(count: usize) -> Vec<Stroke> {
     let mut random = random();
     let mut stroke = |i: usize| {
         let at = DVec2::new(random(), random()) * 100.0;
@@ -43,7 +43,7 @@ fn scattered(count: usize) -> Vec<Stroke> {
 fn way(strokes: &[Stroke], turns: &[Turn], start: DVec2) -> f64 {
     let mut at = start;
     let mut step = |turn: &Turn| {
-        let stroke = strokes[turn.index].clone().from_point(turn.first);
+        let stroke = strokes[turn.index].clone().begun_at(turn.first);
         let length = at.distance(stroke.points[0]);
         at = stroke.end().expect("points");
         length
