@@ -93,3 +93,138 @@ fn outlines_of_balls_are_one_line_whatever_the_mesh() {
     // Near a pole one edge of a facet may stick out.
     assert!(pieces < drawings + 3, "{pieces} in {drawings} drawings");
 }
+
+/// The lengths of outlines, visible and hidden.
+fn lengths(triangles: &[Triangle], view: &View) -> [f64; 2] {
+    let options = Options { smooth: true, tolerance: 1e-6, ..Options::default() };
+    let drawing = draw(&soup(triangles), view, &options, &mut NoTrace).expect("drawing");
+    assert_eq!(drawing.length(|l| l.class != LineClass::Silhouette), 0.0);
+    [true, false].map(|visible| drawing.length(|l| l.is_visible() == visible))
+}
+
+#[test]
+fn outlines_of_a_torus_are_as_long_as_they_are_exactly() {
+    // By Open CASCADE 7.8, HLRBRep_Algo, of the surface itself; on the inner one are cusps.
+    let (elevation_sin, elevation_cos) = 12.0_f64.to_radians().sin_cos();
+    let cases = [
+        (DVec3::new(1.0, -1.0, 1.0), [20.2383, 0.2499]),
+        (DVec3::new(0.0, -elevation_cos, elevation_sin), [16.4693, 5.6239]),
+    ];
+    for (to_eye, exact) in cases {
+        let v = view(DVec3::ZERO, to_eye, 12.0, false);
+        for (around, across) in [(40, 20), (60, 32), (130, 64)] {
+            let found = lengths(&torus(around, across), &v);
+            for (found, exact) in found.into_iter().zip(exact) {
+                let off = (found - exact).abs() / 20.0;
+                assert!(off < 0.01, "{to_eye}, {around} by {across}: {found}, not {exact}");
+            }
+        }
+    }
+}
+
+/// A ball with slivers: over some edges stand triangles on a third point of the sphere.
+fn ball_with_slivers(n: usize) -> Vec<Triangle> {
+    let halves = |(i, [a, b, c]): (usize, Triangle)| {
+        let over = ((a + b) / 2.0).normalize();
+        // At the poles triangles have no area.
+        if i % 7 == 3 && c.z.abs() < 0.9 {
+            vec![[a, over, c], [over, b, c], [a, b, over]]
+        } else {
+            vec![[a, b, c]]
+        }
+    };
+    ball(n).into_iter().enumerate().flat_map(halves).collect()
+}
+
+#[test]
+fn slivers_of_a_ball_make_no_lines() {
+    for (x, y, z) in [(1.0, -1.7, 0.9), (0.3, -2.0, 0.2), (-2.0, 0.7, -1.1)] {
+        let v = view(DVec3::ZERO, DVec3::new(x, y, z), 4.0, false);
+        let [visible, hidden] = lengths(&ball_with_slivers(12), &v);
+        // Where slivers bend it the outline goes a little to and fro.
+        let exact = std::f64::consts::TAU;
+        assert!((visible / exact - 1.0).abs() < 0.04 && hidden < 0.01, "{visible}, {hidden}");
+        let drawing = smooth(&ball_with_slivers(12), &v);
+        let radii = drawing.lines.iter().flat_map(|l| &l.points).map(|p| p.length());
+        assert!(radii.into_iter().all(|r| (0.98..1.01).contains(&r)));
+        assert_eq!(drawing.lines.len(), 1, "{x} {y} {z}");
+    }
+}
+
+/// A bar along y with these corners in x and z, counter-clockwise seen from −y.
+fn bar(corners: &[[f64; 2]]) -> Vec<Triangle> {
+    let at = |i: usize, y: f64| {
+        let [x, z] = corners[i % corners.len()];
+        DVec3::new(x, y, z)
+    };
+    let sides = (0..corners.len()).flat_map(|i| {
+        let [a, b, c, d] = [at(i, -3.0), at(i, 3.0), at(i + 1, 3.0), at(i + 1, -3.0)];
+        [[a, b, c], [a, c, d]]
+    });
+    let ends = (1..corners.len() - 1).flat_map(|i| {
+        [[at(0, -3.0), at(i, -3.0), at(i + 1, -3.0)], [at(0, 3.0), at(i + 1, 3.0), at(i, 3.0)]]
+    });
+    sides.map(|[a, b, c]| [a, c, b]).chain(ends).collect()
+}
+
+#[test]
+fn outlines_of_flat_faces_run_along_their_bends() {
+    // A roof of 2 · 15°: no crease, but nothing round either.
+    let rise = 2.0 * 15.0_f64.to_radians().tan();
+    let roof = bar(&[[-2.0, -1.0], [2.0, -1.0], [2.0, 0.0], [0.0, rise], [-2.0, 0.0]]);
+    for (x, z) in [(1.0, 0.05), (1.0, 0.2), (-1.0, 0.1)] {
+        let v = view(DVec3::ZERO, DVec3::new(x, -0.4, z), 9.0, false);
+        let plain = Options { tolerance: 1e-6, hidden: false, ..Options::default() };
+        let plain = draw(&soup(&roof), &v, &plain, &mut NoTrace).expect("drawing");
+        assert_eq!(smooth(&roof, &v).lines, plain.lines, "{x} {z}");
+    }
+}
+
+#[test]
+fn outlines_of_cylinders_and_cones_are_straight() {
+    for n in [12, 24, 60] {
+        for top in [1.0, 0.0] {
+            let at = |k: usize, r: f64, z: f64| {
+                let (s, c) = (k as f64 / n as f64 * std::f64::consts::TAU).sin_cos();
+                DVec3::new(r * c, r * s, z)
+            };
+            let (bottom, tip) = (DVec3::ZERO, DVec3::new(0.0, 0.0, 3.0));
+            let mut triangles = Vec::new();
+            for k in 0..n {
+                let [a, b] = [at(k, 1.0, 0.0), at(k + 1, 1.0, 0.0)];
+                let [c, d] = [at(k + 1, top, 3.0), at(k, top, 3.0)];
+                triangles.extend([[bottom, b, a], [a, b, c]]);
+                if top > 0.0 {
+                    triangles.extend([[a, c, d], [tip, d, c]]);
+                }
+            }
+            let v = view(DVec3::ZERO, DVec3::new(0.2, -1.0, 0.3), 8.0, false);
+            let options = Options { smooth: true, stubs: 0.01, ..Options::default() };
+            let drawing = draw(&soup(&triangles), &v, &options, &mut NoTrace).expect("drawing");
+            // The rim at the bottom is half an outline and half hidden; seen from above.
+            let ellipse = {
+                let sin = v.camera().eye.normalize().z;
+                let part = |i: usize| {
+                    let (s, c) = (i as f64 / 1e4 * std::f64::consts::TAU).sin_cos();
+                    (s * s + c * c * sin * sin).sqrt() * std::f64::consts::TAU / 1e4
+                };
+                (0..10_000).map(part).sum::<f64>()
+            };
+            let cos = (1.0 - v.camera().eye.normalize().z.powi(2)).sqrt();
+            let sides = 2.0 * if top > 0.0 { 3.0 * cos } else { cone_side(cos) };
+            let rims = if top > 0.0 { 2.0 * ellipse } else { ellipse };
+            let found = drawing.length(|_| true);
+            let off = found / (sides + rims) - 1.0;
+            assert!(off.abs() < 0.02, "{n}, {top}: {found}, not {}", sides + rims);
+        }
+    }
+}
+
+/// The length of an outline of a cone of radius 1 and height 3 in a picture in which its height is 3 `cos`: that of the
+/// tangent from the tip to the ellipse of the rim.
+fn cone_side(cos: f64) -> f64 {
+    let (height, sin2) = (3.0 * cos, 1.0 - cos * cos);
+    let y = sin2 / height;
+    let x2 = 1.0 - y * y / sin2;
+    (x2 + (height - y).powi(2)).sqrt()
+}

@@ -103,6 +103,7 @@ fn straightest(around: &[End], i: usize) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::edge_lines::Outside;
     use super::*;
     use Sharpness::{Blunt, Sharp, Weak};
 
@@ -113,7 +114,14 @@ mod tests {
     }
 
     fn line(ends: [u32; 2], sharpness: Sharpness) -> EdgeLine {
-        EdgeLine { ends, class: LineClass::Crease, items: [0, 1], smooth: false, sharpness }
+        EdgeLine {
+            ends,
+            class: LineClass::Crease,
+            items: [0, 1],
+            smooth: false,
+            sharpness,
+            outside: Outside::Both,
+        }
     }
 
     fn kept(lines: &[EdgeLine]) -> Vec<[u32; 2]> {

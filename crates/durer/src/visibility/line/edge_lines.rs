@@ -72,6 +72,18 @@ pub(super) struct EdgeLine {
     /// Whether the surface is not sharp there.
     pub smooth: bool,
     pub sharpness: Sharpness,
+    pub outside: Outside,
+}
+
+/// From where a surface can be seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outside {
+    /// It bounds a volume, and has the fronts of its triangles outside.
+    Front,
+    /// The same with their backs.
+    Back,
+    /// It bounds none.
+    Both,
 }
 
 /// How much the faces at an edge are turned against each other.
@@ -127,10 +139,20 @@ impl Rules<'_> {
                 let item = |i: usize| sides.get(i).map_or(NO_ITEM, |s: &Side| s.item());
                 let items = [item(0), item(1)];
                 let smooth = class == LineClass::Silhouette && sharpness != Sharpness::Sharp;
-                lines.push(EdgeLine { ends, class, items, smooth, sharpness });
+                let outside = if smooth { self.outside(items[0]) } else { Outside::Both };
+                lines.push(EdgeLine { ends, class, items, smooth, sharpness, outside });
             }
         }
         lines
+    }
+
+    fn outside(&self, item: u32) -> Outside {
+        let body = self.bodies.of(item).and_then(|b| self.bodies.all().get(b as usize));
+        match body {
+            Some(body) if body.closed && self.bodies.turned(item) => Outside::Back,
+            Some(body) if body.closed => Outside::Front,
+            _ => Outside::Both,
+        }
     }
 
     fn wanted(&self, class: LineClass) -> Option<LineClass> {
@@ -159,7 +181,7 @@ impl Rules<'_> {
                 let pair = Pair { ends, items: [a.item(), b.item()], against };
                 if self.faces.same_polygon(a.item(), b.item()) {
                     // A polygon that is not flat has its outline between its triangles.
-                    let outline = self.facing.differ(&self.stand_ins(pair));
+                    let outline = self.differ(pair);
                     let silhouette = outline.then_some(LineClass::Silhouette);
                     return blunt(silhouette.and_then(|c| self.wanted(c)));
                 }
@@ -199,9 +221,10 @@ impl Rules<'_> {
 
     /// Whether two triangles show different sides, and how sharp the edge is.
     fn turn(&self, pair: Pair) -> (bool, Sharpness) {
+        let differ = self.differ(pair);
         let pair = self.stand_ins(pair);
         if pair.items[0] == pair.items[1] {
-            return (false, Sharpness::Blunt);
+            return (differ, Sharpness::Blunt);
         }
         let cosine = self.facing.angle_cosine(&pair);
         let sharpness = if cosine < self.crease {
@@ -211,7 +234,17 @@ impl Rules<'_> {
         } else {
             Sharpness::Blunt
         };
-        (self.facing.differ(&pair), sharpness)
+        (differ, sharpness)
+    }
+
+    /// Whether two triangles show different sides. Of a smooth surface that is known even where a triangle is too
+    /// thin to tell.
+    fn differ(&self, pair: Pair) -> bool {
+        if pair.items.iter().all(|item| self.facing.is_smooth(*item)) {
+            return self.facing.differ(&pair);
+        }
+        let pair = self.stand_ins(pair);
+        pair.items[0] != pair.items[1] && self.facing.differ(&pair)
     }
 
     fn stand_ins(&self, pair: Pair) -> Pair {

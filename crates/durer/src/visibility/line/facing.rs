@@ -10,6 +10,9 @@ use std::cmp::Ordering;
 pub(super) struct Facing {
     /// 1 where the front is seen, −1 the back, 0 edge-on; after turning.
     turn: Vec<i8>,
+    /// The same of the smooth surfaces that triangles stand for, 0 where one stands for itself; empty where
+    /// all do.
+    surface: Vec<i8>,
     /// Unit normals after turning; zero where a triangle is too thin to have one.
     normals: Vec<[f32; 3]>,
 }
@@ -51,19 +54,27 @@ impl Facing {
         whole: Whole<'_>,
         thin: f64,
     ) -> Self {
-        let mut found = Self { turn: vec![0; faces.len()], normals: vec![[0.0; 3]; faces.len()] };
+        let mut found = Self {
+            turn: vec![0; faces.len()],
+            surface: whole.turns().to_vec(),
+            normals: vec![[0.0; 3]; faces.len()],
+        };
         for (item, t) in faces.triangles() {
             let points = t.map(|v| faces.points()[v as usize]);
             let sign = if bodies.turned(item) { -1.0 } else { 1.0 };
             let i = item as usize;
             let of_whole = whole.corners(faces, item);
-            if let Some(normal) = of_whole.and_then(|w| normal(w, thin)) {
+            let of_surface = whole.normal_at_sliver(item);
+            if let Some(normal) = of_surface.or_else(|| of_whole.and_then(|w| normal(w, thin))) {
                 found.normals[i] = (normal * sign).as_vec3().to_array();
             }
             found.turn[i] = match projected.corners(t) {
                 Some(c) => turned_on_grid(c.map(|c| c.at)),
                 None => turned_in_space(faces, item, points, projected),
             } * sign as i8;
+            if let Some(surface) = found.surface.get_mut(i) {
+                *surface *= sign as i8;
+            }
         }
         found
     }
@@ -79,28 +90,50 @@ impl Facing {
         };
         let mut ends = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
         ends.sort_by(|a, b| length(b).total_cmp(&length(a)));
-        let across = |ends: [u32; 2]| match edges.at([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
-            [a, b] if a.forward() != b.forward() => {
-                Some(if a.item() == item { b.item() } else { a.item() })
-            }
-            _ => None,
-        };
+        let across = |ends| edges.across(ends, item);
         let (Some(a), Some(b)) = (across(ends[0]), across(ends[1])) else { return false };
         let cosine =
             |a, b| self.angle_cosine(&Pair { ends: ends[0], items: [a, b], against: false });
         !is_low(a) && !is_low(b) && cosine(a, b) > ONE_SURFACE && cosine(a, item) < ONE_SURFACE
     }
 
-    /// Whether the front is seen.
+    /// Whether the front is seen; of the smooth surface, where a triangle stands for one.
     #[inline]
     pub fn front(&self, item: u32) -> bool {
-        self.turn[item as usize] > 0
+        self.side(item) > 0
+    }
+
+    /// Which side is seen: 1 the front, −1 the back, 0 none.
+    #[inline]
+    fn side(&self, item: u32) -> i8 {
+        match self.surface.get(item as usize) {
+            Some(&side) if side != 0 => side,
+            _ => self.turn[item as usize],
+        }
+    }
+
+    /// Whether triangles stand for a smooth surface at all.
+    pub fn any_smooth(&self) -> bool {
+        !self.surface.is_empty()
+    }
+
+    /// Whether it is known from a smooth surface which side is seen.
+    pub fn is_smooth(&self, item: u32) -> bool {
+        self.surface.get(item as usize).is_some_and(|side| *side != 0)
+    }
+
+    /// Whether a triangle shows another side than the smooth surface that it stands for: it lies folded over an
+    /// outline.
+    #[inline]
+    pub fn folded(&self, item: u32) -> bool {
+        let of_surface = self.surface.get(item as usize).copied().unwrap_or(0);
+        of_surface * self.turn[item as usize] < 0
     }
 
     /// Whether one triangle of a pair shows another side than the other; what is seen edge-on shows none. Which
     /// side of an open body is its front is arbitrary, so fronts and backs count alike.
     pub fn differ(&self, pair: &Pair) -> bool {
-        let [a, b] = pair.items.map(|item| self.turn[item as usize]);
+        let [a, b] = pair.items.map(|item| self.side(item));
         a != if pair.against { -b } else { b }
     }
 

@@ -14,8 +14,10 @@ mod overlap;
 mod page;
 mod simplify;
 mod smooth_silhouette;
+mod smooth_surface;
 mod stubs;
 mod table;
+mod vertex_normals;
 pub mod wireframe;
 
 pub use edge_lines::{ClassSet, Intersections};

@@ -8,12 +8,19 @@
 //! Kass, *Computing smooth surface contours with accurate topology*, ACM Transactions on Graphics, 2014:
 //! triangles are divided along it, and the new vertices lie on the smooth surface, over the edges
 //! of the mesh as in Alex Vlachos, Jörg Peters, Chas Boyd and Jason Mitchell, *Curved PN triangles*,
-//! I3D 2001. Outline and hidden lines are then those of one and the same mesh. Where its facing differs from
-//! that of the normals, the outline is the mesh's: 2014's search for consistent positions is left
-//! out. O(n).
+//! I3D 2001. Outline and hidden lines are then those of one and the same mesh, but which side of it is seen the
+//! normals say: facets beside an outline may be turned otherwise, and slivers any way. A facet that shows
+//! the other side lies folded over the outline, and what lies behind it is counted once less: so the number of surfaces
+//! in front changes at the outline, to the bit, and 2014's search for consistent positions is not needed.
+//!
+//! A surface hides its own outline where it bends towards the eye, behind a cusp: there the slope grows against the
+//! sight. Like the radial curvature of Doug DeCarlo, Adam Finkelstein, Szymon Rusinkiewicz and Anthony Santella,
+//! *Suggestive contours for conveying shape*, SIGGRAPH 2003, that is averaged over the faces around each
+//! vertex and linear along edges. O(n log n).
 
-use crate::math::{DMat3, DVec3};
-use crate::scene::{Mesh, Scene};
+use super::smooth_surface::SmoothSurface;
+use crate::math::DVec3;
+use crate::scene::Scene;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::{Edges, Faces};
 
@@ -31,6 +38,20 @@ pub(super) struct Divided {
     pub whole: Faces,
     /// Of each triangle the one in `whole` that it is a part of.
     pub origins: Vec<u32>,
+    /// Of each triangle 1 where the surface shows its front, −1 where its back, 0 where it does not tell.
+    turns: Vec<i8>,
+    /// Of each vertex how the surface bends there, if it is at an outline.
+    bends: Vec<Bend>,
+    surface: SmoothSurface,
+}
+
+/// How a surface bends at an outline.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Bend {
+    /// The curvature along the sight, in 1 / world units: below 0 where the surface hides the outline itself.
+    pub radial: f32,
+    /// How far in front of the outline a facet of the same surface may lie that does not hide it, world units.
+    pub reach: f32,
 }
 
 /// What faces were before they were divided, if they were.
@@ -43,9 +64,29 @@ impl Whole<'_> {
         self.0.map_or_else(|| faces.corners(item), |d| d.whole.corners(self.item(item)))
     }
 
+    /// The normal of the smooth surface that a sliver lies in, if it is turned against that.
+    pub fn normal_at_sliver(self, item: u32) -> Option<DVec3> {
+        self.0.and_then(|d| d.surface.normal_at_sliver(self.item(item)))
+    }
+
+    /// Whether it is known from a smooth surface how a triangle is turned.
+    pub fn is_smooth(self, item: u32) -> bool {
+        self.turns().get(item as usize).is_some_and(|turn| *turn != 0)
+    }
+
+    /// How the surfaces are turned that triangles stand for, by item; see [`Divided`].
+    pub fn turns(&self) -> &[i8] {
+        self.0.map_or(&[], |d| &d.turns)
+    }
+
+    /// How the surface bends at a vertex of an outline; see [`Divided`].
+    pub fn bend(self, vertex: u32) -> Bend {
+        self.0.and_then(|d| d.bends.get(vertex as usize)).copied().unwrap_or_default()
+    }
+
     /// The item of the scene.
     pub fn item(self, item: u32) -> u32 {
-        self.0.map_or(item, |d| d.origins[item as usize])
+        self.0.map_or(item, |d| d.origins.get(item as usize).copied().unwrap_or(item))
     }
 }
 
@@ -56,8 +97,8 @@ struct Crossing {
     edge: [u32; 2],
     /// 0 … 1 from the first vertex.
     at: f64,
-    /// Unit normals at both vertices.
-    normals: [DVec3; 2],
+    /// The surface's corners at both vertices.
+    corners: [u32; 2],
     item: u32,
 }
 
@@ -70,47 +111,85 @@ struct Part {
 /// A corner of a part of a triangle: its vertex, and where it lies on the flat triangle.
 type Corner = (u32, DVec3);
 
-/// Divides the faces. Normals are those of the file; meshes without any get them as
-/// [`Mesh::with_smooth_normals`] does.
-pub(super) fn divided(scene: &Scene, whole: Faces, plane: &PicturePlane) -> Divided {
-    let mut crossings = crossings(scene, &whole, plane);
+/// Divides the faces.
+pub(super) fn divided(
+    scene: &Scene,
+    whole: Faces,
+    edges: &Edges,
+    plane: &PicturePlane,
+    crease: f64,
+) -> Divided {
+    let surface = SmoothSurface::new(scene, (&whole, edges), plane, crease);
+    let mut crossings = crossings(&whole, &surface);
     crossings.sort_unstable_by(|a, b| {
         a.edge.cmp(&b.edge).then(a.at.total_cmp(&b.at)).then(a.item.cmp(&b.item))
     });
-    let found = Vertices::new(&whole, &crossings);
+    let bends = bends(&whole, &surface, &crossings, plane);
+    let found = Vertices::new(&whole, &surface, edges, &crossings, &bends);
     let mut parts = Vec::new();
+    let mut crossed = vec![false; whole.points().len()];
+    crossings.iter().flat_map(|c| c.edge).for_each(|v| crossed[v as usize] = true);
     for (item, triangle) in whole.triangles() {
-        found.divide(item, triangle, &mut parts);
+        if triangle.iter().filter(|v| crossed[**v as usize]).count() > 1 {
+            found.divide(item, triangle, &mut parts);
+        }
     }
-    let points = found.points;
+    let Vertices { points, bends, .. } = found;
     let (faces, origins) = whole.refined(points, parts.iter().map(|p| (p.item, p.vertices)));
-    Divided { faces, whole, origins }
+    let turn = |(item, origin): (u32, &u32)| {
+        let (Some(part), Some(all)) = (faces.triangle(item), whole.triangle(*origin)) else {
+            return 0;
+        };
+        surface.side(*origin, |k| part.contains(&all[k]))
+    };
+    let turns = (0..).zip(&origins).map(turn).collect();
+    Divided { faces, whole, origins, turns, bends, surface }
 }
 
 /// Where the normals of all triangles turn away from the eye, two on each that has any.
-fn crossings(scene: &Scene, faces: &Faces, plane: &PicturePlane) -> Vec<Crossing> {
-    let mut with_normals: Vec<Option<Mesh>> = scene.meshes.iter().map(|_| None).collect();
+fn crossings(faces: &Faces, surface: &SmoothSurface) -> Vec<Crossing> {
     let mut found = Vec::new();
-    for run in faces.runs() {
-        let mesh = with_normals[run.mesh]
-            .get_or_insert_with(|| scene.meshes[run.mesh].with_smooth_normals());
-        let linear = DMat3::from_mat4(scene.instances[run.instance].world_from_mesh);
-        let normal_matrix = linear.inverse().transpose();
-        for item in run.items.clone() {
-            let (Some(vertices), Some(corners)) = (faces.triangle(item), faces.corners(item))
-            else {
-                continue;
-            };
-            let of_mesh = mesh.triangle((run.first + item - run.items.start) as usize);
-            let normals = of_mesh
-                .map(|v| (normal_matrix * mesh.normals[v as usize].as_dvec3()).normalize_or_zero());
-            let slopes = [0, 1, 2].map(|k| normals[k].dot(plane.sight_at(corners[k])));
-            if slopes.iter().all(|s| s.is_finite()) {
-                found.extend(zeros(item, vertices, slopes, normals));
-            }
+    for (item, vertices) in faces.triangles() {
+        let Some(corners) = surface.corners(item) else { continue };
+        let slopes = corners.map(|c| surface.slopes[c as usize]);
+        if slopes.iter().any(|s| (*s >= 0.0) != (slopes[0] >= 0.0)) {
+            found.extend(zeros(item, vertices, slopes, corners));
         }
     }
     found
+}
+
+/// The curvature along the sight at each corner of the surface that is beside an outline: an average over
+/// its triangles, by area.
+fn bends(
+    faces: &Faces,
+    surface: &SmoothSurface,
+    crossings: &[Crossing],
+    plane: &PicturePlane,
+) -> Vec<f64> {
+    let mut beside = vec![false; surface.slopes.len()];
+    crossings.iter().flat_map(|c| c.corners).for_each(|c| beside[c as usize] = true);
+    let mut sums = vec![[0.0; 2]; surface.slopes.len()];
+    for (item, _) in faces.triangles() {
+        let Some(corners) = surface.corners(item) else { continue };
+        if corners.iter().all(|c| !beside[*c as usize]) {
+            continue;
+        }
+        let Some([a, b, c]) = faces.corners(item) else { continue };
+        let slopes = corners.map(|c| surface.slopes[c as usize]);
+        let (u, v) = (b - a, c - a);
+        let sight = plane.sight_at((a + b + c) / 3.0).normalize_or_zero();
+        // The gradient of what is linear in a plane, times twice its area.
+        let across = u.cross(v);
+        let gradient = (v * (slopes[1] - slopes[0]) - u * (slopes[2] - slopes[0])).cross(across);
+        let growth = gradient.dot(sight) / across.length();
+        if growth.is_finite() {
+            for sum in corners.map(|c| c as usize) {
+                sums[sum] = [sums[sum][0] + growth, sums[sum][1] + across.length()];
+            }
+        }
+    }
+    sums.into_iter().map(|[growth, area]| if area > 0.0 { growth / area } else { 0.0 }).collect()
 }
 
 /// Where a function that is linear along the edges of a triangle changes its sign. Neighbours with
@@ -119,7 +198,7 @@ fn zeros(
     item: u32,
     vertices: [u32; 3],
     values: [f64; 3],
-    normals: [DVec3; 3],
+    corners: [u32; 3],
 ) -> impl Iterator<Item = Crossing> {
     (0..3).filter_map(move |i| {
         let k = (i + 1) % 3;
@@ -127,7 +206,7 @@ fn zeros(
         ((values[a] >= 0.0) != (values[b] >= 0.0)).then(|| Crossing {
             edge: [vertices[a], vertices[b]],
             at: values[a] / (values[a] - values[b]),
-            normals: [normals[a], normals[b]],
+            corners: [corners[a], corners[b]],
             item,
         })
     })
@@ -136,26 +215,42 @@ fn zeros(
 /// The vertices that the silhouette gives to the edges.
 struct Vertices<'a> {
     faces: &'a Faces,
+    surface: &'a SmoothSurface,
     crossings: &'a [Crossing],
     /// Of each crossing its vertex, new or old.
     vertices: Vec<u32>,
     /// The points of the faces, and the new ones.
     points: Vec<DVec3>,
+    /// See [`Divided`].
+    bends: Vec<Bend>,
 }
 
 impl<'a> Vertices<'a> {
     /// `crossings` are sorted by edge, then place.
-    fn new(faces: &'a Faces, crossings: &'a [Crossing]) -> Self {
-        let mut found =
-            Self { faces, crossings, vertices: Vec::new(), points: faces.points().to_vec() };
-        let edges = Edges::new(faces, |_| true);
+    fn new(
+        faces: &'a Faces,
+        surface: &'a SmoothSurface,
+        edges: &Edges,
+        crossings: &'a [Crossing],
+        bends: &[f64],
+    ) -> Self {
+        let mut found = Self {
+            faces,
+            surface,
+            crossings,
+            vertices: Vec::new(),
+            points: faces.points().to_vec(),
+            bends: vec![Bend::default(); faces.points().len()],
+        };
         for on_edge in crossings.chunk_by(|a, b| a.edge == b.edge) {
             let sides = edges.at(on_edge[0].edge).len();
             for same in on_edge.chunk_by(|a, b| a.at == b.at) {
                 let all_alike = sides > 1
                     && same.len() == sides
-                    && same.iter().all(|c| c.normals == same[0].normals);
+                    && same.iter().all(|c| c.corners == same[0].corners);
                 let vertex = found.vertex(&same[0], all_alike);
+                let bend = found.bend(same, bends);
+                found.bends[vertex as usize] = bend;
                 found.vertices.extend(same.iter().map(|_| vertex));
             }
         }
@@ -164,16 +259,46 @@ impl<'a> Vertices<'a> {
 
     /// The vertex of a crossing; on the curve over the edge if the surface is `round` there.
     fn vertex(&mut self, crossing: &Crossing, round: bool) -> u32 {
-        let Crossing { edge, at, normals, .. } = *crossing;
+        let Crossing { edge, at, corners, .. } = *crossing;
         let ends = edge.map(|v| self.points[v as usize]);
         if at < AT_VERTEX {
             return edge[0];
         } else if at > 1.0 - AT_VERTEX {
             return edge[1];
         }
+        let normals = corners.map(|c| self.surface.normals[c as usize]);
         let round = round && normals[0].dot(normals[1]) > ROUND;
         self.points.push(if round { curve_over(ends, normals, at) } else { flat(ends, at) });
+        self.bends.push(Bend::default());
         self.points.len() as u32 - 1
+    }
+
+    /// How the surface bends at a crossing, which all these are.
+    ///
+    /// A facet stays within the surface by the chord's sagitta s or reaches over it, and the outline is made of chords
+    /// as well. On a surface of curvature k along the sight, what reaches over an outline by 2s has come forward by
+    /// √(2 · 2s / k); but no facet reaches further than it is long.
+    fn bend(&self, same: &[Crossing], bends: &[f64]) -> Bend {
+        let [a, b] = same[0].corners.map(|c| bends[c as usize]);
+        let radial = a + (b - a) * same[0].at;
+        let reach = |c: &Crossing| {
+            let (sagitta, length) = self.sagitta(c.item).unwrap_or_default();
+            length.min(2.0 * (sagitta / radial.max(0.0)).sqrt())
+        };
+        let reach = same.iter().map(reach).fold(0.0, f64::max);
+        Bend { radial: radial as f32, reach: reach as f32 }
+    }
+
+    /// How far the sides of a triangle lie from the surface at most, and the length of its longest.
+    fn sagitta(&self, item: u32) -> Option<(f64, f64)> {
+        let (places, corners) = (self.faces.corners(item)?, self.surface.corners(item)?);
+        let normals = corners.map(|c| self.surface.normals[c as usize]);
+        let sides = [0, 1, 2].map(|k| {
+            let (along, turn) =
+                (places[(k + 1) % 3] - places[k], normals[(k + 1) % 3] - normals[k]);
+            (along.dot(turn).abs() / 8.0, along.length())
+        });
+        sides.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))
     }
 
     /// Pushes the parts of a triangle, if it has more than one.
@@ -244,16 +369,32 @@ fn curve_over([p, q]: [DVec3; 2], [n, m]: [DVec3; 2], t: f64) -> DVec3 {
     p * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + q * (t * t * t)
 }
 
-/// Cuts the ears off a convex ring, the best first.
+/// Cuts the ears off a convex ring, of which more than two may lie on a line: the best first, if that leaves a ring and
+/// not a line.
 fn triangulate(mut ring: Vec<Corner>, mut push: impl FnMut([u32; 3])) {
     while ring.len() > 2 {
         let count = ring.len();
         let ear = |i: usize| [ring[(i + count - 1) % count], ring[i], ring[(i + 1) % count]];
-        let best = (0..count).map(|i| (height(ear(i)), i)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let quality = |i: usize| height(ear(i)).min(width_without(&ring, i));
+        let best = (0..count).map(|i| (quality(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, best)) = best else { return };
         push(ear(best).map(|c| c.0));
         ring.remove(best);
     }
+}
+
+/// How wide a ring is without one of its corners, as a part of its length; 1 where nothing is left of it.
+fn width_without(ring: &[Corner], gone: usize) -> f64 {
+    let left = (1..ring.len()).map(|k| ring[(gone + k) % ring.len()].1);
+    let mut rest = left.clone().skip(1);
+    let (Some(first), Some(mut last)) = (left.clone().next(), rest.next()) else { return 1.0 };
+    let (mut area, mut longest, mut any) = (DVec3::ZERO, first.distance_squared(last), false);
+    for p in rest {
+        area += (last - first).cross(p - first);
+        longest = longest.max(first.distance_squared(p)).max(last.distance_squared(p));
+        (last, any) = (p, true);
+    }
+    if any { area.length() / longest } else { 1.0 }
 }
 
 /// The height of a triangle as a part of its longest side.

@@ -124,6 +124,16 @@ impl Edges {
         self.from_vertices(0..self.starts.len().saturating_sub(1) as u32)
     }
 
+    /// The triangle at the other side of an edge of two that run alike.
+    pub(in crate::visibility) fn across(&self, ends: [u32; 2], item: u32) -> Option<u32> {
+        match self.at([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
+            [a, b] if a.forward() != b.forward() => {
+                Some(if a.item() == item { b.item() } else { a.item() })
+            }
+            _ => None,
+        }
+    }
+
     /// The triangles at the edge between two vertices, the smaller first; none where there is no such
     /// edge.
     pub fn at(&self, [a, b]: [u32; 2]) -> &[Side] {

@@ -21,6 +21,9 @@ pub struct Cover {
     pub left: bool,
     /// Whether its right side is.
     pub right: bool,
+    /// How many surfaces it counts for: 1, or −1 for a face that lies folded over an outline, where another of the
+    /// same surface counts once too often.
+    pub weight: i8,
 }
 
 /// What of the line p → q lies behind the face; depths closer than `touching` are one.
@@ -70,7 +73,8 @@ pub(super) fn cover([p, q]: &[Vertex; 2], face: &Occluder, touching: f64) -> Opt
     } else if z1 < -tolerance {
         to = from + (to - from) * (z0 / (z0 - z1));
     }
-    (from < to).then_some(Cover { item: face.item, from, to, left, right })
+    let Occluder { item, weight, .. } = *face;
+    (from < to).then_some(Cover { item, from, to, left, right, weight })
 }
 
 /// Depth per step on the face: how far snapping may have moved its plane.
@@ -97,20 +101,32 @@ pub(super) struct Span {
 
 /// Cuts a line where the number of faces in front changes; if not `counted`, where it becomes 0 or
 /// ceases to be. Parts shorter than `sliver` (as a part of
-/// the line) go to the longer of their neighbours.
-pub(super) fn spans(covers: &[Cover], sliver: f64, counted: bool, found: &mut Vec<Span>) {
+/// the line) go to the longer of their neighbours. From one end to the other of `fold` it is hidden at least once.
+pub(super) fn spans(
+    covers: &[Cover],
+    fold: [f64; 2],
+    sliver: f64,
+    counted: bool,
+    found: &mut Vec<Span>,
+) {
     found.clear();
     let mut events: Vec<(f64, i32, i32)> = Vec::with_capacity(covers.len() * 2);
     for c in covers {
-        let (l, r) = (i32::from(c.left), i32::from(c.right));
+        let [l, r] = [c.left, c.right].map(|side| i32::from(side) * i32::from(c.weight));
         events.extend([(c.from, l, r), (c.to, -l, -r)]);
+    }
+    // Where nothing at all is in front, the curvature is that of a coarse mesh, and wrong.
+    let [folds, unfolds] = if covers.is_empty() { [0.0; 2] } else { fold };
+    if folds < unfolds {
+        events.extend(fold.map(|t| (t, 0, 0)));
     }
     events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((b.1, b.2).cmp(&(a.1, a.2))));
     let most = if counted { i32::MAX } else { 1 };
     let (mut at, mut left, mut right) = (0.0, 0, 0);
     for (t, l, r) in events.into_iter().chain([(1.0, 0, 0)]) {
         if t > at {
-            let invisibility = left.min(right).clamp(0, most) as u32;
+            let least = i32::from(folds <= at && at < unfolds);
+            let invisibility = left.min(right).clamp(least, most) as u32;
             match found.last_mut() {
                 Some(last) if last.invisibility == invisibility => last.to = t,
                 _ => found.push(Span { from: at, to: t, invisibility }),
@@ -160,6 +176,7 @@ mod tests {
         let face = |corners: [(i32, i32); 3]| Occluder {
             item: 0,
             corners: corners.map(|(x, y)| vertex(x, y, 1.0)),
+            weight: 1,
         };
         let above = cover(&line, &face([(0, 0), (1000, 0), (0, 1000)]), 0.0).expect("a cover");
         let below = cover(&line, &face([(0, 0), (0, -1000), (1000, 0)]), 0.0).expect("a cover");
@@ -169,20 +186,36 @@ mod tests {
         assert_eq!((back.left, back.right), (false, true));
         let mut found = Vec::new();
         for (covers, hidden) in [(vec![above], 0), (vec![below], 0), (vec![above, below], 1)] {
-            spans(&covers, 0.0, true, &mut found);
+            spans(&covers, [0.0; 2], 0.0, true, &mut found);
             assert_eq!(found, [Span { from: 0.0, to: 1.0, invisibility: hidden }]);
         }
     }
 
     #[test]
     fn slivers_go_to_the_longer_neighbour() {
-        let part = |from, to| Cover { item: 0, from, to, left: true, right: true };
+        let part = |from, to| Cover { item: 0, from, to, left: true, right: true, weight: 1 };
         let mut found = Vec::new();
         let covers = [part(0.3, 0.3001), part(0.7, 1.0)];
-        spans(&covers, 1e-3, true, &mut found);
+        spans(&covers, [0.0; 2], 1e-3, true, &mut found);
         let ends: Vec<_> = found.iter().map(|s| (s.from, s.to, s.invisibility)).collect();
         assert_eq!(ends, [(0.0, 0.7, 0), (0.7, 1.0, 1)]);
-        spans(&covers, 1e-5, true, &mut found);
+        spans(&covers, [0.0; 2], 1e-5, true, &mut found);
         assert_eq!(found.len(), 4);
+    }
+
+    #[test]
+    fn folded_faces_count_once_less_and_folds_hide_once() {
+        let part = |from, to, weight| Cover { item: 0, from, to, left: true, right: true, weight };
+        let counts = |covers: &[Cover], fold| {
+            let mut found = Vec::new();
+            spans(covers, fold, 0.0, true, &mut found);
+            found.iter().map(|s| (s.from, s.to, s.invisibility)).collect::<Vec<_>>()
+        };
+        let folded = [part(0.0, 1.0, 1), part(0.25, 0.5, -1)];
+        assert_eq!(counts(&folded, [0.0; 2]), [(0.0, 0.25, 1), (0.25, 0.5, 0), (0.5, 1.0, 1)]);
+        // What is in front of the fold counts once, and nothing is hidden where nothing is in front.
+        let hidden = [part(0.5, 0.75, 1)];
+        assert_eq!(counts(&hidden, [0.25, 1.0]), [(0.0, 0.25, 0), (0.25, 1.0, 1)]);
+        assert_eq!(counts(&[], [0.25, 1.0]), [(0.0, 1.0, 0)]);
     }
 }

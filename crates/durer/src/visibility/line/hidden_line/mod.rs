@@ -26,7 +26,7 @@ use self::occluders::Occluders;
 use super::arrange::{How, Pieces, SLIVER, arrange, corners};
 use super::crease_chain::connected;
 use super::edge_lines::{
-    ClassSet, EdgeLine, Intersections, NO_ITEM, Rules, material_number, materials,
+    ClassSet, EdgeLine, Intersections, NO_ITEM, Outside, Rules, material_number, materials,
 };
 use super::facing::Facing;
 use super::intersection::intersections;
@@ -160,6 +160,8 @@ pub enum Step {
         ends: [DVec2; 2],
         /// What hides it, by item.
         covers: Vec<Cover>,
+        /// From where to where along it the surface hides its own outline, 0 … 1; nowhere if the same.
+        fold: [f64; 2],
     },
 }
 
@@ -168,9 +170,10 @@ pub fn replay(steps: &[Step], options: &Options) -> Vec<Line> {
     let Some(Step::Page(page)) = steps.first() else { return Vec::new() };
     let (mut all, mut spans, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for step in steps {
-        if let Step::Line { class, smooth, ends, covers } = step {
+        if let Step::Line { class, smooth, ends, covers, fold } = step {
             let ends = ends.map(|p| page.grid_from_plane(p));
-            cut(*class, *smooth, ends, covers, options.hidden, &mut spans, &mut all);
+            let like = Piece { ends, class: *class, invisibility: 0, smooth: *smooth };
+            cut(like, covers, *fold, options.hidden, &mut spans, &mut all);
             lines.push((*class, *smooth, ends));
         }
     }
@@ -221,7 +224,7 @@ pub fn draw(
     let mut edges = faces.take_edges();
     let count = edges.count();
     let found = if options.smooth {
-        let mut divided = divided(scene, faces, &plane);
+        let mut divided = divided(scene, faces, &edges, &plane, options.crease);
         edges = divided.faces.take_edges();
         let whole = Whole(Some(&divided));
         on_page(&divided.faces, plane, |p| pieces(&divided.faces, edges, whole, p, options, t))
@@ -244,7 +247,7 @@ fn pieces(
     t.step(|| Step::Page(projected.page));
     let (bodies, edges) = Bodies::of_edges(faces, edges);
     let facing = Facing::new(faces, &bodies, &edges, projected, whole, options.tolerance);
-    let lines = Lines::new(faces, &bodies, edges, &facing, options, projected);
+    let lines = Lines::new(faces, &bodies, edges, &facing, options, (projected, whole));
     let all = lines.some(0..lines.len()).map(|l| l.ends);
     let occluders = Occluders::new(faces, &bodies, &facing, projected, all);
     drop((bodies, facing));
@@ -257,6 +260,7 @@ fn pieces(
 /// [`FeatureLine`], and there may be more of them than faces.
 struct Lines<'a> {
     faces: &'a Faces,
+    whole: Whole<'a>,
     projected: &'a Projected,
     edges: Vec<EdgeLine>,
     /// Where faces penetrate each other, and the lines and points of the model.
@@ -270,7 +274,7 @@ impl<'a> Lines<'a> {
         edges: Edges,
         facing: &Facing,
         options: &Options,
-        projected: &'a Projected,
+        (projected, whole): (&'a Projected, Whole<'a>),
     ) -> Self {
         let rules = Rules {
             faces,
@@ -295,12 +299,36 @@ impl<'a> Lines<'a> {
             let line = |ends| FeatureLine::new(ends, LineClass::Mark, [NO_ITEM; 2]);
             loose.extend(marks(faces, projected).filter_map(line));
         }
-        Self { faces, projected, edges: of_edges, loose }
+        // The eye may be inside of what is cut.
+        let whole = if projected.any_cut() { Whole(None) } else { whole };
+        Self { faces, whole, projected, edges: of_edges, loose }
     }
 
     /// How many there are, with those that are points in the picture.
     fn len(&self) -> usize {
         self.edges.len() + self.loose.len()
+    }
+
+    /// A smooth outline: where along it the surface hides it, and what does not. Which side of an open surface is
+    /// its front is arbitrary, so there nothing is known where it bends the other way.
+    fn smooth(&self, of: &EdgeLine, line: FeatureLine, turned: bool) -> FeatureLine {
+        let mut ends = of.ends;
+        if turned {
+            ends.reverse();
+        }
+        let bends = ends.map(|v| self.whole.bend(v));
+        let sign = if of.outside == Outside::Back { -1.0 } else { 1.0 };
+        let [a, b] = bends.map(|bend| f64::from(bend.radial) * sign);
+        let fold = match (a < 0.0, b < 0.0) {
+            _ if of.outside == Outside::Both => [0.0; 2],
+            (true, true) => [0.0, 1.0],
+            (true, false) => [0.0, a / (a - b)],
+            (false, true) => [a / (a - b), 1.0],
+            (false, false) => [0.0; 2],
+        };
+        let reach = if a + b < 0.0 { 0.0 } else { bends[0].reach.max(bends[1].reach) };
+        let reach = f64::from(reach) / self.projected.page.step;
+        FeatureLine { smooth: true, fold, reach, ..line }
     }
 
     /// Those of a range that have an extent in the picture.
@@ -310,7 +338,15 @@ impl<'a> Lines<'a> {
         let loose = &self.loose[range.start.max(split) - split..range.end.max(split) - split];
         let line = |l: &EdgeLine| {
             let ends = self.projected.edge(self.faces, l.ends)?;
-            Some(FeatureLine { smooth: l.smooth, ..FeatureLine::new(ends, l.class, l.items)? })
+            let line = FeatureLine::new(ends, l.class, l.items)?;
+            if !l.smooth {
+                let is_smooth = |item: &u32| self.whole.is_smooth(*item);
+                let outline = l.class == LineClass::Silhouette && l.items.iter().any(is_smooth);
+                let vertices = if outline { l.ends } else { line.vertices };
+                return Some(FeatureLine { vertices, ..line });
+            }
+            let turned = line.ends[0].at != ends[0].at;
+            Some(self.smooth(l, line, turned))
         };
         edges.iter().filter_map(line).chain(loose.iter().copied())
     }
@@ -334,8 +370,7 @@ fn hide(
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
         for line in lines.some(range) {
             covers_of(&line, &mut covers);
-            let ends = line.ends.map(|v| v.at);
-            cut(line.class, line.smooth, ends, &covers, options.hidden, &mut spans, &mut pieces);
+            cut(line.piece(), &covers, line.fold, options.hidden, &mut spans, &mut pieces);
         }
         pieces
     };
@@ -346,7 +381,8 @@ fn hide(
             covers_of(&line, &mut covers);
             covers.iter_mut().for_each(|c| c.item = whole.item(c.item));
             let ends = line.ends.map(|v| page.plane_from_grid(v.at));
-            Step::Line { class: line.class, smooth: line.smooth, ends, covers }
+            let FeatureLine { class, smooth, fold, .. } = line;
+            Step::Line { class, smooth, ends, covers, fold }
         });
     }
     pieces
@@ -371,6 +407,13 @@ struct FeatureLine {
     items: [u32; 2],
     /// See [`Step::Line`].
     smooth: bool,
+    /// See [`Step::Line`].
+    fold: [f64; 2],
+    /// How far in front of it a face of its own body may lie that does not hide it, in steps.
+    reach: f64,
+    /// Its vertices, where it is a sharp outline of smooth faces: those around these lie folded over each other, and
+    /// none hides it.
+    vertices: [u32; 2],
 }
 
 impl FeatureLine {
@@ -378,8 +421,21 @@ impl FeatureLine {
     fn new(mut ends: [Vertex; 2], class: LineClass, items: [u32; 2]) -> Option<Self> {
         // One way round whatever the faces' order, so that cuts are rounded alike.
         ends.sort_unstable_by_key(|v| v.at);
-        let line = Self { ends, class, items, smooth: false };
+        let line = Self {
+            ends,
+            class,
+            items,
+            smooth: false,
+            fold: [0.0; 2],
+            reach: 0.0,
+            vertices: [NO_ITEM; 2],
+        };
         (ends[0].at != ends[1].at).then_some(line)
+    }
+
+    fn piece(&self) -> Piece {
+        let Self { ends, class, smooth, .. } = *self;
+        Piece { ends: ends.map(|v| v.at), class, invisibility: 0, smooth }
     }
 }
 
@@ -420,9 +476,14 @@ fn covers_of(
         if line.items.contains(&face.item) {
             return true;
         }
+        if line.vertices[0] != NO_ITEM && occluders.is_beside(face.item, line.vertices) {
+            return true;
+        }
+        let own = line.reach > touching && occluders.same_body(line.items[0], face.item);
+        let touching = if own { line.reach } else { touching };
         let Some(cover) = cover::cover(&line.ends, &face, touching) else { return true };
         found.push((id, cover));
-        !(enough && cover.from <= 0.0 && cover.to >= 1.0 && cover.left && cover.right)
+        !(enough && occluders.hides_for_certain(&cover))
     });
     // A face in several cells was met several times.
     found.sort_unstable_by_key(|(id, _)| *id);
@@ -433,16 +494,15 @@ fn covers_of(
 
 /// Cuts one line into pieces.
 fn cut(
-    class: LineClass,
-    smooth: bool,
-    ends: [GridPoint; 2],
+    line: Piece,
     covers: &[Cover],
+    fold: [f64; 2],
     hidden: bool,
     spans: &mut Vec<cover::Span>,
     pieces: &mut Vec<Piece>,
 ) {
-    let [p, q] = ends;
-    cover::spans(covers, SLIVER / p.distance(q), hidden, spans);
+    let [p, q] = line.ends;
+    cover::spans(covers, fold, SLIVER / p.distance(q), hidden, spans);
     let [dx, dy] = q.minus(p).map(|d| d as f64);
     let at = |t: f64| match t {
         0.0 => p,
@@ -450,7 +510,6 @@ fn cut(
         _ => GridPoint { x: p.x + (t * dx).round() as i32, y: p.y + (t * dy).round() as i32 },
     };
     for s in spans.iter().filter(|s| hidden || s.invisibility == 0) {
-        let ends = [at(s.from), at(s.to)];
-        pieces.push(Piece { ends, class, invisibility: s.invisibility, smooth });
+        pieces.push(Piece { ends: [at(s.from), at(s.to)], invisibility: s.invisibility, ..line });
     }
 }

@@ -6,6 +6,7 @@
 
 use super::super::facing::{Facing, turned_on_grid};
 use super::super::page::{GridPoint, Page, Projected, Vertex};
+use super::Cover;
 use crate::visibility::object::{Bodies, Faces};
 
 /// A face in a cell's list.
@@ -23,6 +24,8 @@ pub(super) struct Occluder {
     pub item: u32,
     /// Counter-clockwise on the page.
     pub corners: [Vertex; 3],
+    /// See [`Cover::weight`](super::Cover::weight).
+    pub weight: i8,
 }
 
 /// The cells of the page.
@@ -111,6 +114,12 @@ pub(super) struct Occluders<'a> {
     entries: Vec<Entry>,
     /// Ids from here on are cut faces.
     cut_base: u32,
+    /// The body of each item, where that is asked for.
+    bodies: Vec<u32>,
+    /// Of each item whether it stands for a smooth surface; empty where none does.
+    smooth: Vec<bool>,
+    /// Of each item whether it lies folded over an outline; empty where none does.
+    folded: Vec<bool>,
 }
 
 impl<'a> Occluders<'a> {
@@ -133,6 +142,7 @@ impl<'a> Occluders<'a> {
             });
         }
         let cut_base = faces.len() as u32;
+        let smooth = if facing.any_smooth() { cut_base } else { 0 };
         let mut found = Self {
             faces,
             projected,
@@ -140,6 +150,9 @@ impl<'a> Occluders<'a> {
             starts: vec![0; cells.count() + 1],
             entries: Vec::new(),
             cut_base,
+            bodies: (0..smooth).map(|item| bodies.of(item).unwrap_or(u32::MAX)).collect(),
+            smooth: where_any(smooth, |item| facing.is_smooth(item)),
+            folded: where_any(smooth, |item| facing.folded(item)),
         };
         let ids = || {
             let whole = (0..cut_base).filter(|&item| hides[item as usize]);
@@ -204,7 +217,27 @@ impl<'a> Occluders<'a> {
         } else {
             [a, b, c]
         };
-        Some(Occluder { item, corners })
+        let weight = if self.folded.get(item as usize) == Some(&true) { -1 } else { 1 };
+        Some(Occluder { item, corners, weight })
+    }
+
+    /// Whether two faces are of one body; of none where that was not asked for.
+    pub fn same_body(&self, a: u32, b: u32) -> bool {
+        let of = |item: u32| self.bodies.get(item as usize).filter(|b| **b != u32::MAX);
+        of(a).is_some() && of(a) == of(b)
+    }
+
+    /// Whether a face stands for a smooth surface and has one of two vertices.
+    pub fn is_beside(&self, item: u32, vertices: [u32; 2]) -> bool {
+        let touches = |t: [u32; 3]| t.iter().any(|v| vertices.contains(v));
+        self.smooth.get(item as usize) == Some(&true)
+            && self.faces.triangle(item).is_some_and(touches)
+    }
+
+    /// Whether what lies behind a face is hidden whatever else lies there.
+    pub fn hides_for_certain(&self, cover: &Cover) -> bool {
+        let whole = cover.from <= 0.0 && cover.to >= 1.0 && cover.left && cover.right;
+        whole && self.folded.is_empty()
     }
 
     /// The grid.
@@ -235,6 +268,11 @@ impl<'a> Occluders<'a> {
             }
         });
     }
+}
+
+/// Of each of so many items what `is` says, if that is true of any.
+fn where_any(count: u32, is: impl Fn(u32) -> bool) -> Vec<bool> {
+    if (0..count).any(&is) { (0..count).map(is).collect() } else { Vec::new() }
 }
 
 /// Which faces hide what is behind them. Of a closed body seen from outside those that show their

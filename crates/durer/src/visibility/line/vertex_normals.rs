@@ -1,0 +1,288 @@
+//! Normals of the smooth surface at the vertices of a mesh that has none.
+//!
+//! Henri Gouraud, *Continuous shading of curved surfaces*, IEEE Transactions on Computers, 1971: averages over the faces
+//! around a vertex. Weights are area times angle: it does not matter how a quadrilateral is divided, as in Grit
+//! Thürmer and Charles Wüthrich, *Computing vertex normals from polygonal facets*, Journal of Graphics Tools, 1998,
+//! and large flat faces keep their own direction beside narrow roundings.
+//!
+//! What is beyond a sharp edge does not count: beyond a crease, and beyond a bend between two flat faces that are
+//! no facets of anything round. O(n) for vertices of bounded degree.
+
+use crate::math::DVec3;
+use crate::visibility::object::{Edges, Faces};
+
+/// Triangles lower than this part of their longest side L are slivers. A surface that turns by less than the crease
+/// angle θ along that side is up to θL/8 away from it: lower triangles may be turned against it by more than θ.
+const SLIVER: f64 = 0.125;
+
+/// How many slivers may lie beside each other; more are a strip of a round part, and turned as that is.
+const SLIVERS: usize = 4;
+
+/// The cosine within which faces are one flat face: 0.1°. Less may be rounding of the file's coordinates.
+const FLAT: f64 = 1.0 - 1.5e-6;
+
+/// How many times as sharp a round part may bend at one side of a facet as at another. Triangulations are irregular, and
+/// springs bend that much more around their wire than along it.
+const UNEVEN: f64 = 8.0;
+
+/// How many triangles a facet of a round part has at most: two, where it is a quadrilateral, and as many beside.
+const FACET: usize = 4;
+
+/// Vertices of more triangles are hubs, and not round: all pairs of them are too many to look at.
+const HUB: usize = 256;
+
+/// Twice the area of a triangle along its normal, and whether it is a sliver.
+pub(super) fn direction([a, b, c]: [DVec3; 3]) -> (DVec3, bool) {
+    let across = (b - a).cross(c - a);
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    (across, across.length() < longest * SLIVER)
+}
+
+/// The directions of faces, slivers as the surface goes.
+pub(super) struct Directions<'a> {
+    faces: &'a Faces,
+    edges: &'a Edges,
+    /// The cosine of the crease angle, and of a quarter of it.
+    crease: f64,
+    quarter: f64,
+    /// The slivers that are turned against the surface that they lie in, with its normal, in item order.
+    pub turned: Vec<(u32, DVec3)>,
+}
+
+impl<'a> Directions<'a> {
+    /// `crease` is the crease angle in radians; `items` are the triangles to look for slivers among, in order.
+    pub fn new(faces: &'a Faces, edges: &'a Edges, crease: f64, items: &[u32]) -> Self {
+        let mut around = vec![DVec3::ZERO; faces.points().len()];
+        let mut slivers = Vec::new();
+        for &item in items {
+            let (Some(t), Some(corners)) = (faces.triangle(item), faces.corners(item)) else {
+                continue;
+            };
+            match direction(corners) {
+                (_, true) => slivers.push(item),
+                (across, _) => t.iter().for_each(|v| around[*v as usize] += across),
+            }
+        }
+        let (crease, quarter) = (libm::cos(crease), libm::cos(crease / 4.0));
+        let mut found = Self { faces, edges, crease, quarter, turned: Vec::new() };
+        let of_surface = |item| Some((item, found.of_surface(item, &around)?));
+        found.turned = slivers.into_iter().filter_map(of_surface).collect();
+        found
+    }
+
+    /// The unit normal of a triangle, or of the surface that it lies in; zero where there is none.
+    pub fn of(&self, item: u32) -> DVec3 {
+        if let Ok(i) = self.turned.binary_search_by_key(&item, |t| t.0) {
+            return self.turned[i].1;
+        }
+        self.faces.corners(item).map_or(DVec3::ZERO, |c| direction(c).0.normalize_or_zero())
+    }
+
+    fn goes_on(&self, a: DVec3, b: DVec3) -> bool {
+        a.normalize_or_zero().dot(b.normalize_or_zero()) >= self.crease
+    }
+
+    /// The direction of the surface at a sliver that lies in it but is turned against the faces beside it. `around`
+    /// has the sum of the faces around each vertex that are no slivers.
+    fn of_surface(&self, item: u32, around: &[DVec3]) -> Option<DVec3> {
+        let [_, second, first] = self.sides_by_length(item)?;
+        let beside =
+            |ends| Some(direction(self.faces.corners(self.beyond_slivers(item, ends)?)?).0);
+        let (a, b) = (beside(first)?, beside(second)?);
+        let across = direction(self.faces.corners(item)?).0;
+        if !self.goes_on(a, b) || self.goes_on(a, across) && self.goes_on(b, across) {
+            return None;
+        }
+        let ends = first.map(|v| around[v as usize].normalize_or_zero());
+        let surface = (ends[0] + ends[1]).try_normalize()?;
+        let beside = self.goes_on(a, surface) && self.goes_on(b, surface);
+        // A riser between two treads is no part of them: these do not bend.
+        let [p, q] = first.map(|v| self.faces.points()[v as usize]);
+        let sagitta = (q - p).dot(ends[1] - ends[0]).abs() / 8.0;
+        let aside = across.cross(surface).length() / p.distance(q);
+        (beside && aside <= 2.0 * sagitta).then_some(surface)
+    }
+
+    /// The sides of a triangle, the shortest first.
+    fn sides_by_length(&self, item: u32) -> Option<[[u32; 2]; 3]> {
+        let mut sides = sides(self.faces.triangle(item)?);
+        let points = self.faces.points();
+        let length = |[a, b]: &[u32; 2]| points[*a as usize].distance_squared(points[*b as usize]);
+        sides.sort_by(|a, b| length(a).total_cmp(&length(b)));
+        Some(sides)
+    }
+
+    /// The triangle at the other side of an edge, or where that is a sliver too, the one beyond it, and so on.
+    fn beyond_slivers(&self, mut item: u32, mut ends: [u32; 2]) -> Option<u32> {
+        for _ in 0..SLIVERS {
+            item = self.edges.across(ends, item)?;
+            if !direction(self.faces.corners(item)?).1 {
+                return Some(item);
+            }
+            let [_, second, first] = self.sides_by_length(item)?;
+            ends = if same_edge(first, ends) { second } else { first };
+        }
+        None
+    }
+
+    /// Whether the surface is not round at an edge between two triangles.
+    fn is_sharp(&self, ends: [u32; 2], a: u32, b: u32) -> bool {
+        let cosine = self.of(a).dot(self.of(b));
+        // A bend of less than half the crease angle moves an outline by little.
+        if 2.0 * cosine * cosine - 1.0 >= self.crease || cosine < self.crease {
+            return cosine < self.crease;
+        }
+        let least = self.bend(ends, [a, b]) / (UNEVEN * UNEVEN);
+        !(self.is_facet(ends, a, least) || self.is_facet(ends, b, least))
+    }
+
+    /// Half the square of the curvature at an edge between two triangles: of the angle over their mean height.
+    fn bend(&self, ends: [u32; 2], items: [u32; 2]) -> f64 {
+        let [p, q] = ends.map(|v| self.faces.points()[v as usize]);
+        let twice_area =
+            |item: u32| self.faces.corners(item).map_or(0.0, |c| direction(c).0.length());
+        let height = (twice_area(items[0]) + twice_area(items[1])) / (2.0 * p.distance(q));
+        (1.0 - self.of(items[0]).dot(self.of(items[1]))) / (height * height)
+    }
+
+    /// Whether the flat face that a triangle is a part of bends at another edge than `ends` too, as facets of round
+    /// parts do, by at least `least`.
+    fn is_facet(&self, ends: [u32; 2], item: u32, least: f64) -> bool {
+        let own = self.of(item);
+        let mut parts = vec![item];
+        let mut next = 0;
+        while let Some(&part) = parts.get(next) {
+            next += 1;
+            let Some(t) = self.faces.triangle(part) else { continue };
+            for side in sides(t).into_iter().filter(|s| !same_edge(*s, ends)) {
+                let Some(beside) = self.edges.across(side, part) else { continue };
+                let cosine = own.dot(self.of(beside));
+                if cosine >= FLAT {
+                    if parts.len() < FACET && !parts.contains(&beside) {
+                        parts.push(beside);
+                    }
+                } else if cosine >= self.crease && self.bend(side, [part, beside]) >= least {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
+
+fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+fn same_edge(a: [u32; 2], b: [u32; 2]) -> bool {
+    a == b || a == [b[1], b[0]]
+}
+
+/// A triangle as it lies around one of its vertices.
+#[derive(Clone, Copy)]
+pub(super) struct Around {
+    pub item: u32,
+    /// Which of its corners that is.
+    pub corner: u8,
+    vertex: u32,
+    /// The other two vertices.
+    others: [u32; 2],
+    /// Its unit normal; zero where it has none.
+    direction: DVec3,
+    weight: f64,
+}
+
+impl Around {
+    /// A triangle around one of its corners.
+    fn of(faces: &Faces, directions: &Directions<'_>, item: u32, k: usize) -> Option<Self> {
+        let (t, places) = (faces.triangle(item)?, faces.corners(item)?);
+        let [p, q, r] = [0, 1, 2].map(|i| places[(k + i) % 3]);
+        let area = direction(places).0.length();
+        let weight = area * libm::atan2(area, (q - p).dot(r - p));
+        let others = [t[(k + 1) % 3], t[(k + 2) % 3]];
+        let direction = directions.of(item);
+        Some(Self { item, corner: k as u8, vertex: t[k], others, direction, weight })
+    }
+}
+
+/// Calls `f` with the normals of those corners of triangles whose vertices are asked for. `items` are in order.
+pub(super) fn each_normal(
+    directions: &Directions<'_>,
+    items: &[u32],
+    asked: &[bool],
+    mut f: impl FnMut(&Around, DVec3),
+) {
+    let corners = || {
+        let triangles =
+            items.iter().filter_map(|item| Some((*item, directions.faces.triangle(*item)?)));
+        let all = triangles.flat_map(|(item, t)| (0..3).map(move |k| (item, k, t[k])));
+        all.filter(|(_, _, v)| asked[*v as usize])
+    };
+    // By vertex, at each in item order.
+    let mut ends = vec![0_u32; asked.len()];
+    corners().for_each(|(_, _, v)| ends[v as usize] += 1);
+    let mut sum = 0;
+    for end in &mut ends {
+        (*end, sum) = (sum, sum + *end);
+    }
+    let mut sorted = vec![(0, 0); sum as usize];
+    for (item, k, v) in corners() {
+        sorted[ends[v as usize] as usize] = (item, k);
+        ends[v as usize] += 1;
+    }
+    let (mut start, mut group) = (0, Vec::new());
+    for end in ends {
+        let around = |c: &(u32, usize)| Around::of(directions.faces, directions, c.0, c.1);
+        group.clear();
+        group.extend(sorted[start..end as usize].iter().filter_map(around));
+        start = end as usize;
+        if !group.is_empty() {
+            averages(&group, directions, &mut f);
+        }
+    }
+}
+
+/// Calls `f` with the normal of each triangle around a vertex, which are in item order: one for all where it is round,
+/// and each side's at an edge. At the tip of a cone only those count that are near.
+fn averages(group: &[Around], directions: &Directions<'_>, f: &mut impl FnMut(&Around, DVec3)) {
+    let sum = |alike: &dyn Fn(usize) -> bool| {
+        let alike = group.iter().enumerate().filter(|(i, _)| alike(*i));
+        alike.fold(DVec3::ZERO, |sum, (_, a)| sum + a.direction * a.weight)
+    };
+    let all = sum(&|_| true).normalize_or_zero();
+    let least = group.iter().map(|a| a.direction.dot(all)).fold(1.0, f64::min);
+    // Within a quarter of the crease angle of one direction no two meet at a sharp edge.
+    if least >= directions.quarter {
+        return group.iter().for_each(|a| f(a, all));
+    }
+    if group.len() > HUB {
+        return group.iter().for_each(|a| f(a, a.direction));
+    }
+    let parts = parts(group, directions);
+    if least >= directions.crease && parts.iter().all(|p| *p == parts[0]) {
+        return group.iter().for_each(|a| f(a, all));
+    }
+    for (a, part) in group.iter().zip(&parts) {
+        let near = |b: &Around| b.direction.dot(a.direction) >= directions.crease;
+        let own = sum(&|i| parts[i] == *part && near(&group[i]));
+        f(a, own.normalize_or(a.direction));
+    }
+}
+
+/// Of each triangle around a vertex the first that no sharp edge divides it from.
+fn parts(group: &[Around], directions: &Directions<'_>) -> Vec<usize> {
+    let mut parts: Vec<usize> = (0..group.len()).collect();
+    for (i, a) in group.iter().enumerate() {
+        for ends in a.others.map(|other| [a.vertex, other]) {
+            let beside = directions.edges.across(ends, a.item);
+            let beside = beside.and_then(|b| group.binary_search_by_key(&b, |a| a.item).ok());
+            // Each edge once.
+            let Some(k) = beside.filter(|k| *k > i && parts[*k] != parts[i]) else { continue };
+            if !directions.is_sharp(ends, a.item, group[k].item) {
+                let (first, last) = (parts[i].min(parts[k]), parts[i].max(parts[k]));
+                parts.iter_mut().filter(|p| **p == last).for_each(|p| *p = first);
+            }
+        }
+    }
+    parts
+}
