@@ -321,6 +321,7 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         model.warn(durer_formats::Place::Whole, why);
     }
     tell_loose_faces(&name, &mut model, &pictures, messages);
+    tell_notes(&name, &mut model, &pictures, messages);
     tell_scale(&name, &mut model, &pictures, messages);
     tell_flattened(&name, &mut model, &pictures, messages);
     Ok(ModelReport {
@@ -371,6 +372,17 @@ fn tell_loose_faces(
         model.warn(durer_formats::Place::Whole, message);
         messages.warnings(name, &model.warnings[known..]);
     }
+}
+
+/// What has no place on the paper.
+fn tell_notes(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
+    let known = model.warnings.len();
+    let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
+    let mut told: Vec<&String> = drawings.flat_map(|d| &d.notes).collect();
+    // Frames of a film have the same.
+    told.dedup();
+    told.into_iter().for_each(|note| model.warn(durer_formats::Place::Whole, note.clone()));
+    messages.warnings(name, &model.warnings[known..]);
 }
 
 /// The scale is known when the drawing has been laid onto its paper.

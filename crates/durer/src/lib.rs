@@ -204,6 +204,8 @@ pub mod commands;
 
 pub mod visibility;
 
+pub mod annotate;
+
 pub mod plot;
 
 pub mod explain;

@@ -1,5 +1,6 @@
 //! What can be said of drawings.
 
+use super::annotations::args::AnnotationArgs;
 use super::machine::MachineArgs;
 use crate::values;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -132,6 +133,9 @@ pub struct DrawingArgs {
     /// Pens and what moves them.
     #[command(flatten)]
     pub machine: MachineArgs,
+    /// Centre lines, dimensions, threads.
+    #[command(flatten)]
+    pub annotations: AnnotationArgs,
 }
 
 /// The options above by name, for those that mean nothing without a drawing.
@@ -163,7 +167,14 @@ pub const NAMES: &[&str] = &[
     "scale",
     "unit",
     "title",
+    "center_lines",
+    "dimension",
+    "annotations",
+    "thread",
 ];
+
+/// Those among them that are about what is written beside a view.
+pub const OF_ANNOTATIONS: &[&str] = &["center_lines", "dimension", "annotations", "thread"];
 
 fn style() -> impl TypedValueParser<Value = DrawStyle> {
     let help = |style: DrawStyle| match style {

@@ -1,5 +1,6 @@
 //! `durer render` to drawings: vector files, and pictures painted from drawings.
 
+pub mod annotations;
 pub mod args;
 pub mod machine;
 pub mod report;
@@ -14,7 +15,8 @@ use crate::output;
 use crate::report::{CameraReport, PictureReport};
 use crate::shape;
 use crate::values::Size;
-use args::{Fill, Hatch, Hidden, Merge, NAMES, Unit};
+use annotations::{FeatureReport, Look, Wanted};
+use args::{Fill, Hatch, Hidden, Merge, NAMES, OF_ANNOTATIONS, Unit};
 use durer::math::{DVec2, DVec3, Vec4};
 use durer::paper::{self, Frame, LaidOut, Page, Scale, TitleBlock, Views};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
@@ -118,6 +120,11 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
             let what = if vector { "a vector drawing" } else { "a drawing" };
             return Err(Failure::Usage(format!("--{} is not for {what}: {instead}", option(id))));
         }
+    }
+    let noted = OF_ANNOTATIONS.iter().find(|id| given(id));
+    if let (Some(id), true) = (noted, kind == Kind::Drawing(DrawingFormat::GeoJson)) {
+        let message = "GeoJSON has no paper to write on; write a .svg, .pdf or .dxf";
+        return Err(Failure::Usage(format!("--{}: {message}", option(id))));
     }
     background(args, kind)?;
     args.drawing.machine.check(kind.drawing())?;
@@ -246,6 +253,7 @@ pub fn render(
         Some(_) => sheet_cameras(subject.scene).to_vec(),
         None => vec![single_camera(args, subject.scene, frame)?],
     };
+    let wanted = Wanted::new(&args.drawing.annotations, subject, args.drawing.weld)?;
     let (mut drawings, mut statuses) = (Vec::new(), Vec::new());
     let seen_from = cameras.iter().map(CameraReport::from).collect();
     let mut report = PictureReport { cameras: seen_from, ..PictureReport::default() };
@@ -264,7 +272,8 @@ pub fn render(
     let unseen = report.set_status(&statuses);
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mut laid = lay_out(args, kind, subject, frame, &drawings)?;
+    let room = wanted.as_ref().map_or(0.0, Wanted::room);
+    let mut laid = lay_out(args, kind, subject, (frame, room), &drawings)?;
     // In a line drawing the faces of a section are hatched, unless they are to be filled.
     let on_paper = kind != Kind::Drawing(DrawingFormat::GeoJson);
     let lines_only = on_paper && !style.has_regions() && args.drawing.hatch.is_none();
@@ -272,13 +281,16 @@ pub fn render(
         // The paper's scale says how far apart lines are in the model.
         let spacing = HATCH_SPACING / (laid.scale * unit(args, subject).millimetres());
         drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
-        laid = lay_out(args, kind, subject, frame, &drawings)?;
+        laid = lay_out(args, kind, subject, (frame, room), &drawings)?;
     }
     if args.drawing.depth_cue || args.drawing.contour {
         let all = drawings.into_iter().zip(&cameras);
         let all = all.map(|(drawing, camera)| weighted(args, subject.scene, drawing, camera));
         drawings = all.collect::<durer::Result<_>>().map_err(|e| Failure::Usage(e.to_string()))?;
-        laid = lay_out(args, kind, subject, frame, &drawings)?;
+        laid = lay_out(args, kind, subject, (frame, room), &drawings)?;
+    }
+    if let Some(wanted) = &wanted {
+        wanted.put(&mut laid, &cameras, &drawings, &look(args, subject))?;
     }
     if args.drawing.machine.orders(kind.drawing()) {
         paper::order::sheet(&mut laid.sheet);
@@ -286,12 +298,21 @@ pub fn render(
     report.geometry_seconds = geometry_seconds;
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = drawings.iter().collect();
+    let features = wanted.iter().flat_map(|w| &w.features).map(FeatureReport::from).collect();
     let told_scale = told_scale(args, kind, subject, &laid);
-    report.drawing =
-        Some(DrawingReport { told_scale, ..DrawingReport::new(style.name(), &all, &laid) });
+    let drawing = DrawingReport::new(style.name(), &all, &laid, features);
+    report.drawing = Some(DrawingReport { told_scale, ..drawing });
     write(args, kind, sink, laid.sheet, &drawings, &mut report, start)?;
     report.files = vec![sink.name()];
     Ok((report, unseen))
+}
+
+fn look(args: &RenderArgs, subject: &Subject) -> Look {
+    Look {
+        unit: unit(args, subject).millimetres(),
+        hidden: args.drawing.hidden != Hidden::Drop,
+        color: args.drawing.pen.unwrap_or_default().color,
+    }
 }
 
 /// Whoever wants lines hatched by shade needs to know the areas between them.
@@ -510,10 +531,11 @@ fn lay_out(
     args: &RenderArgs,
     kind: Kind,
     subject: &Subject,
-    frame: Option<u32>,
+    (frame, room): (Option<u32>, f64),
     drawings: &[Drawing],
 ) -> Result<LaidOut, Failure> {
-    let options = paper_options(args, kind, subject, frame, drawings)?;
+    let paper = paper_options(args, kind, subject, frame, drawings)?;
+    let options = paper::Options { around: room, ..paper };
     let name = args.drawing.title.clone().unwrap_or_else(|| subject.name.to_owned());
     let laid = match drawings {
         [front, top, right, iso] => {
@@ -607,5 +629,6 @@ fn paper_options(
         pens: drawing.pen.unwrap_or_default(),
         fit: curve_fit(args, kind),
         background: background(args, kind)?,
+        around: 0.0,
     })
 }

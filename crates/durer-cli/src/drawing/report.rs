@@ -1,5 +1,6 @@
 //! What `--json` says of a drawing.
 
+use super::annotations::FeatureReport;
 use durer::paper::{LaidOut, scale_text};
 use durer::target::drawing::{Drawing, Line, LineClass};
 use serde::Serialize;
@@ -28,6 +29,12 @@ pub struct DrawingReport {
     pub border_edges: u64,
     /// Lines by class, those that have some.
     pub lines: Vec<ClassReport>,
+    /// Round parts, where they are asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub features: Vec<FeatureReport>,
+    /// What the paper should show but does not.
+    #[serde(skip)]
+    pub notes: Vec<String>,
     /// What is to be told of the scale.
     #[serde(skip)]
     pub told_scale: Option<String>,
@@ -57,7 +64,12 @@ pub struct LineReport {
 
 impl DrawingReport {
     /// The report on what was drawn, over all views.
-    pub fn new(style: &'static str, drawings: &[&Drawing], laid: &LaidOut) -> Self {
+    pub fn new(
+        style: &'static str,
+        drawings: &[&Drawing],
+        laid: &LaidOut,
+        features: Vec<FeatureReport>,
+    ) -> Self {
         let regions = || drawings.iter().flat_map(|d| &d.regions);
         let lines = |class: LineClass, visible: bool| {
             let all = drawings.iter().flat_map(|d| &d.lines);
@@ -79,6 +91,8 @@ impl DrawingReport {
             edges: drawings.iter().map(|d| d.edges.edges).sum(),
             border_edges: drawings.iter().map(|d| d.edges.borders).sum(),
             lines: LineClass::ALL.iter().filter_map(class).collect(),
+            features,
+            notes: laid.notes.clone(),
             told_scale: None,
         }
     }

@@ -14,6 +14,11 @@ const GOLDEN: &[(&str, &str, &str)] = &[
     ("cube_wireframe", "cube.obj", "--style wireframe --view front --page A6"),
     ("bracket", "bracket.stl", "--hidden dashed --page A4"),
     ("bracket_sheet", "bracket.stl", "--sheet third-angle --hidden dashed --page A4"),
+    (
+        "bracket_dimensions",
+        "bracket.stl",
+        "--sheet third-angle --hidden dashed --page A3 --center-lines --dimension size,holes",
+    ),
     ("teapot", "teapot.obj", "--azimuth 25 --elevation 22"),
     ("crate", "crate.glb", "--style regions+lines --merge material --azimuth -25 --elevation 20"),
 ];

@@ -1,6 +1,7 @@
 //! The command as its users see it: the built binary, run on small models.
 
 mod algorithms;
+mod annotations;
 mod clip;
 mod clip_cells;
 mod clip_formats;

@@ -8,11 +8,12 @@
 //! Written from Autodesk's *DXF Reference* (2004).
 
 use super::dxf_curve;
+use super::dxf_dimension::Dimensions;
 use super::number::push;
 use crate::Result;
 use durer::math::DVec2;
 use durer::target::drawing::Anchor;
-use durer::target::sheet::{Mark, Pen, Sheet};
+use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use std::io::Write;
 
 /// The line weights that the format has, in hundredths of a millimetre.
@@ -20,6 +21,9 @@ const WEIGHTS: &[i64] = &[
     0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200,
     211,
 ];
+
+/// The line type of solid lines.
+const SOLID: &str = "CONTINUOUS";
 
 /// Handles of objects that others refer to.
 const BLOCK_RECORDS: u32 = 0x1;
@@ -30,7 +34,7 @@ const VIEWS: u32 = 0x6;
 const UCSS: u32 = 0x7;
 const VPORTS: u32 = 0x8;
 const APPIDS: u32 = 0x9;
-const DIMSTYLES: u32 = 0xa;
+pub(super) const DIMSTYLES: u32 = 0xa;
 const ROOT: u32 = 0xc;
 const GROUPS: u32 = 0xd;
 const MODEL: u32 = 0x1f;
@@ -53,20 +57,29 @@ pub enum DxfStrokes {
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result<()> {
-    let mut body = Tags { text: String::new(), next: FIRST };
-    tables(&mut body, sheet);
-    blocks(&mut body);
+    let mut body = Tags { text: String::new(), next: FIRST, owner: MODEL, line_type: SOLID };
+    let dimensions = Dimensions::of(&mut body, sheet, strokes);
+    tables(&mut body, sheet, &dimensions);
+    blocks(&mut body, sheet, &dimensions);
+    let mut numbers = 0..;
     body.section("ENTITIES");
     for layer in &sheet.layers {
         let name = symbol(&layer.name);
+        body.line_type = line_type(layer_pen(sheet, layer));
         for mark in &layer.marks {
-            entity(&mut body, sheet, &name, mark, strokes);
+            match mark {
+                Mark::Dimension(dimension) => {
+                    let number = numbers.next().unwrap_or_default();
+                    dimensions.write(&mut body, sheet, &name, dimension, number);
+                }
+                _ => entity(&mut body, sheet, &name, mark, strokes),
+            }
         }
     }
     body.tag(0, "ENDSEC");
     objects(&mut body);
     body.tag(0, "EOF");
-    let mut head = Tags { text: String::new(), next: 0 };
+    let mut head = Tags { text: String::new(), next: 0, owner: MODEL, line_type: SOLID };
     header(&mut head, sheet, body.next);
     out.write_all(head.text.as_bytes())?;
     out.write_all(body.text.as_bytes())?;
@@ -78,6 +91,10 @@ pub(super) struct Tags {
     text: String,
     /// The next free handle.
     next: u32,
+    /// The block record that entities belong to.
+    owner: u32,
+    /// The line type of the layer.
+    line_type: &'static str,
 }
 
 impl Tags {
@@ -129,18 +146,18 @@ impl Tags {
         self.tag(0, "SECTION").tag(2, name)
     }
 
-    fn fresh(&mut self) -> u32 {
+    pub fn fresh(&mut self) -> u32 {
         self.next += 1;
         self.next - 1
     }
 
-    fn table(&mut self, name: &str, handle: u32, count: usize) -> &mut Self {
+    pub fn table(&mut self, name: &str, handle: u32, count: usize) -> &mut Self {
         self.tag(0, "TABLE").tag(2, name).handle(5, handle).handle(330, 0);
         self.class("AcDbSymbolTable").int(70, count as i64)
     }
 
     /// The common start of a table's entry.
-    fn record(&mut self, kind: &str, table: u32, class: &str) -> &mut Self {
+    pub fn record(&mut self, kind: &str, table: u32, class: &str) -> &mut Self {
         let handle = self.fresh();
         self.tag(0, kind).handle(5, handle).handle(330, table);
         self.class("AcDbSymbolTableRecord").class(class)
@@ -166,7 +183,7 @@ fn header(tags: &mut Tags, sheet: &Sheet, seed: u32) {
     tags.section("CLASSES").tag(0, "ENDSEC");
 }
 
-fn tables(tags: &mut Tags, sheet: &Sheet) {
+fn tables(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions) {
     tags.section("TABLES");
     viewport(tags, sheet);
     line_types(tags, sheet);
@@ -186,16 +203,14 @@ fn tables(tags: &mut Tags, sheet: &Sheet) {
     tags.table("APPID", APPIDS, 1);
     tags.record("APPID", APPIDS, "AcDbRegAppTableRecord").tag(2, "ACAD").int(70, 0);
     tags.tag(0, "ENDTAB");
-    tags.table("DIMSTYLE", DIMSTYLES, 1).class("AcDbDimStyleTable");
-    let handle = tags.fresh();
-    tags.tag(0, "DIMSTYLE").handle(105, handle).handle(330, DIMSTYLES);
-    tags.class("AcDbSymbolTableRecord").class("AcDbDimStyleTableRecord");
-    tags.tag(2, "Standard").int(70, 0).tag(0, "ENDTAB");
-    tags.table("BLOCK_RECORD", BLOCK_RECORDS, 2);
-    for (name, handle) in [("*Model_Space", MODEL), ("*Paper_Space", PAPER)] {
+    dimensions.styles(tags);
+    let spaces = [("*Model_Space".to_owned(), MODEL), ("*Paper_Space".to_owned(), PAPER)];
+    let records: Vec<(String, u32)> = spaces.into_iter().chain(dimensions.records()).collect();
+    tags.table("BLOCK_RECORD", BLOCK_RECORDS, records.len());
+    for (name, handle) in records {
         tags.tag(0, "BLOCK_RECORD").handle(5, handle).handle(330, BLOCK_RECORDS);
         tags.class("AcDbSymbolTableRecord").class("AcDbBlockTableRecord");
-        tags.tag(2, name).handle(340, 0);
+        tags.tag(2, &name).handle(340, 0);
     }
     tags.tag(0, "ENDTAB").tag(0, "ENDSEC");
 }
@@ -217,16 +232,21 @@ fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// The dashes of HIDDEN are those of the sheet's first dashed pen.
+/// The dashes of HIDDEN are those of the sheet's first dashed pen, those of CENTER of the first with dashes and dots.
 fn line_types(tags: &mut Tags, sheet: &Sheet) {
-    let dashes = sheet.pens.iter().map(|p| &p.dashes).find(|d| !d.is_empty());
-    let hidden: &[f64] = dashes.map_or(&[3.0, 1.5], |d| d.as_slice());
-    let types: [(&str, &str, &[f64]); 4] = [
+    let first = |dotted: bool| {
+        sheet.pens.iter().map(|p| &p.dashes).find(|d| !d.is_empty() && (d.len() > 2) == dotted)
+    };
+    let hidden: &[f64] = first(false).map_or(&[3.0, 1.5], |d| d.as_slice());
+    let mut types: Vec<(&str, &str, &[f64])> = vec![
         ("ByBlock", "", &[]),
         ("ByLayer", "", &[]),
-        ("CONTINUOUS", "Solid line", &[]),
+        (SOLID, "Solid line", &[]),
         ("HIDDEN", "Hidden __ __ __ __ __ __ __ __ __ __", hidden),
     ];
+    if let Some(center) = first(true) {
+        types.push(("CENTER", "Center ____ _ ____ _ ____ _ ____", center));
+    }
     tags.table("LTYPE", LTYPES, types.len());
     for (name, description, dashes) in types {
         tags.record("LTYPE", LTYPES, "AcDbLinetypeTableRecord").tag(2, name).int(70, 0);
@@ -243,15 +263,20 @@ fn layers(tags: &mut Tags, sheet: &Sheet) {
     tags.table("LAYER", LAYERS, sheet.layers.len() + 1);
     layer(tags, "0", None);
     for l in &sheet.layers {
-        let pen = l.marks.iter().find_map(|m| match m {
-            Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
-                sheet.pens.get(*pen)
-            }
-            Mark::Fill { .. } => None,
-        });
-        layer(tags, &symbol(&l.name), pen);
+        layer(tags, &symbol(&l.name), layer_pen(sheet, l));
     }
     tags.tag(0, "ENDTAB");
+}
+
+/// The pen of a layer: that of its first line.
+fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
+    l.marks.iter().find_map(|m| match m {
+        Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
+            sheet.pens.get(*pen)
+        }
+        Mark::Dimension(dimension) => sheet.pens.get(dimension.text.pen),
+        Mark::Fill { .. } => None,
+    })
 }
 
 fn layer(tags: &mut Tags, name: &str, pen: Option<&Pen>) {
@@ -265,7 +290,11 @@ fn layer(tags: &mut Tags, name: &str, pen: Option<&Pen>) {
 }
 
 fn line_type(pen: Option<&Pen>) -> &'static str {
-    if pen.is_some_and(|p| !p.dashes.is_empty()) { "HIDDEN" } else { "CONTINUOUS" }
+    match pen.map_or(0, |p| p.dashes.len()) {
+        0 => SOLID,
+        1 | 2 => "HIDDEN",
+        _ => "CENTER",
+    }
 }
 
 /// The nearest line weight of the format.
@@ -303,24 +332,34 @@ fn true_color(tags: &mut Tags, [r, g, b, _]: [u8; 4]) {
     }
 }
 
-fn blocks(tags: &mut Tags) {
+fn blocks(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions) {
     tags.section("BLOCKS");
     for (name, record) in [("*Model_Space", MODEL), ("*Paper_Space", PAPER)] {
-        let (start, end) = (tags.fresh(), tags.fresh());
-        let begin = |tags: &mut Tags, kind: &str, handle: u32| {
-            tags.tag(0, kind).handle(5, handle).handle(330, record).class("AcDbEntity");
-            if record == PAPER {
-                tags.int(67, 1);
-            }
-            tags.tag(8, "0");
-        };
-        begin(tags, "BLOCK", start);
-        tags.class("AcDbBlockBegin").tag(2, name).int(70, 0).point3(10, DVec2::ZERO);
-        tags.tag(3, name).tag(1, "");
-        begin(tags, "ENDBLK", end);
-        tags.class("AcDbBlockEnd");
+        block(tags, name, record, |_| {});
     }
+    dimensions.blocks(tags, sheet);
     tags.tag(0, "ENDSEC");
+}
+
+/// A block with its entities; names with a star, but for those of the two spaces, are anonymous.
+pub(super) fn block(tags: &mut Tags, name: &str, record: u32, entities: impl FnOnce(&mut Tags)) {
+    let (start, end) = (tags.fresh(), tags.fresh());
+    let begin = |tags: &mut Tags, kind: &str, handle: u32| {
+        tags.tag(0, kind).handle(5, handle).handle(330, record).class("AcDbEntity");
+        if record == PAPER {
+            tags.int(67, 1);
+        }
+        tags.tag(8, "0");
+    };
+    begin(tags, "BLOCK", start);
+    let anonymous = i64::from(!matches!(record, MODEL | PAPER));
+    tags.class("AcDbBlockBegin").tag(2, name).int(70, anonymous).point3(10, DVec2::ZERO);
+    tags.tag(3, name).tag(1, "");
+    tags.owner = record;
+    entities(tags);
+    tags.owner = MODEL;
+    begin(tags, "ENDBLK", end);
+    tags.class("AcDbBlockEnd");
 }
 
 fn objects(tags: &mut Tags) {
@@ -331,7 +370,13 @@ fn objects(tags: &mut Tags) {
     tags.class("AcDbDictionary").int(281, 1).tag(0, "ENDSEC");
 }
 
-fn entity(tags: &mut Tags, sheet: &Sheet, layer: &str, mark: &Mark, strokes: DxfStrokes) {
+pub(super) fn entity(
+    tags: &mut Tags,
+    sheet: &Sheet,
+    layer: &str,
+    mark: &Mark,
+    strokes: DxfStrokes,
+) {
     let place = |p: &DVec2| DVec2::new(p.x, sheet.size.y - p.y);
     match mark {
         Mark::Stroke { points, closed, pen } => {
@@ -371,6 +416,8 @@ fn entity(tags: &mut Tags, sheet: &Sheet, layer: &str, mark: &Mark, strokes: Dxf
             true_color(tags, *color);
             hatch(tags, rings, place);
         }
+        // These are entities of their own kind, with blocks.
+        Mark::Dimension(_) => {}
     }
 }
 
@@ -383,9 +430,13 @@ pub(super) struct Target<'a> {
 /// The common start of an entity. Colour and weight are the layer's; they stand here where a layer
 /// may have marks of several pens.
 pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>) {
-    let handle = tags.fresh();
-    tags.tag(0, kind).handle(5, handle).handle(330, MODEL).class("AcDbEntity").tag(8, layer);
+    let (handle, owner) = (tags.fresh(), tags.owner);
+    tags.tag(0, kind).handle(5, handle).handle(330, owner).class("AcDbEntity").tag(8, layer);
     if let Some(pen) = pen {
+        let line_type = line_type(Some(pen));
+        if line_type != tags.line_type {
+            tags.tag(6, line_type);
+        }
         tags.int(370, weight(pen));
     }
 }
@@ -406,12 +457,12 @@ fn hatch(tags: &mut Tags, rings: &[Vec<DVec2>], place: impl Fn(&DVec2) -> DVec2)
 }
 
 /// A name of a table's entry: the format forbids a few characters.
-fn symbol(name: &str) -> String {
+pub(super) fn symbol(name: &str) -> String {
     string(name).replace(['<', '>', '/', '\\', '"', ':', ';', '?', '*', '|', ',', '=', '`'], "_")
 }
 
 /// Text on one line; `^` and what is not ASCII are written as the format escapes them.
-fn string(text: &str) -> String {
+pub(super) fn string(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {

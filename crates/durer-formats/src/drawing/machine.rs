@@ -4,7 +4,7 @@ use crate::{Error, Result};
 use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::paper::order::{Stroke, ordered};
-use durer::paper::{dashes, text_strokes};
+use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::sheet::{Mark, Sheet};
 
 /// How near chords are to curves, millimetres: less than half of a step of plotters.
@@ -128,11 +128,14 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>) -> Vec<Pass> {
         pass_of.push(index);
     }
     for layer in &sheet.layers {
-        for mark in &layer.marks {
+        for mark in layer.marks.iter().flat_map(with_parts) {
             let pass = match mark {
                 Mark::Fill { .. } => Some(&mut areas),
                 Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
                     pass_of.get(*pen).and_then(|i| found.get_mut(*i))
+                }
+                Mark::Dimension(dimension) => {
+                    pass_of.get(dimension.text.pen).and_then(|i| found.get_mut(*i))
                 }
             };
             if let Some(pass) = pass {
@@ -144,6 +147,15 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>) -> Vec<Pass> {
     found.retain(|pass| !pass.layers.is_empty());
     fold(&mut found, pens.unwrap_or(usize::MAX));
     found
+}
+
+/// A mark and the marks that it is made of.
+fn with_parts(mark: &Mark) -> impl Iterator<Item = &Mark> {
+    let parts = match mark {
+        Mark::Dimension(dimension) => &dimension.marks[..],
+        _ => &[],
+    };
+    std::iter::once(mark).chain(parts)
 }
 
 /// Gives what the least used pens draw to those most like them, until so many are left.
@@ -181,5 +193,6 @@ fn strokes_of(mark: &Mark, sheet: &Sheet) -> Vec<Stroke> {
         Mark::Text { at, text, height, anchor, .. } => {
             open(text_strokes(*at, text, *height, *anchor))
         }
+        Mark::Dimension(dimension) => open(dimension_strokes(&dimension.text)),
     }
 }

@@ -4,6 +4,7 @@
 
 mod dxf;
 mod dxf_curve;
+mod dxf_dimension;
 mod gcode;
 mod geojson;
 mod hpgl;

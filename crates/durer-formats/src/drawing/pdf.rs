@@ -5,7 +5,8 @@ use super::pdf_text::{self, Words};
 use crate::Result;
 use durer::curve::{PathElement, pieces};
 use durer::math::DVec2;
-use durer::paper::{dashes, text_strokes};
+use durer::paper::{dashes, dimension_strokes, text_strokes};
+use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Pen, Sheet};
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use std::collections::BTreeSet;
@@ -181,13 +182,27 @@ fn put(
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, alphas);
             set_dashes(text, state, None);
-            found.write(text, *at, words, *height, *anchor);
-            let strokes = text_strokes(*at, words, *height, *anchor);
-            strokes.iter().for_each(|stroke| path(text, stroke, false));
-            if !strokes.is_empty() {
-                *text += "S\n";
-            }
+            found.write(text, (*at, DVec2::X), words, *height, *anchor);
+            letters(text, &text_strokes(*at, words, *height, *anchor));
         }
+        Mark::Dimension(dimension) => {
+            for mark in &dimension.marks {
+                put(text, state, sheet, mark, (&mut *alphas, &mut *found));
+            }
+            let words = &dimension.text;
+            let Some(pen) = sheet.pens.get(words.pen) else { return };
+            set_pen(text, state, pen, alphas);
+            set_dashes(text, state, None);
+            found.write(text, (words.at, words.along), &words.text, words.height, Anchor::Middle);
+            letters(text, &dimension_strokes(words));
+        }
+    }
+}
+
+fn letters(text: &mut String, strokes: &[Vec<DVec2>]) {
+    strokes.iter().for_each(|stroke| path(text, stroke, false));
+    if !strokes.is_empty() {
+        *text += "S\n";
     }
 }
 

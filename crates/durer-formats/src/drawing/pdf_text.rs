@@ -29,11 +29,12 @@ pub struct Words {
 }
 
 impl Words {
-    /// Appends the operators for words at a place, in millimetres, y down, as high and as wide as the strokes.
+    /// Appends the operators for words at a place, in millimetres, y down, as high and as wide as the strokes;
+    /// with the place comes the way that they run, of unit length.
     pub fn write(
         &mut self,
         text: &mut String,
-        at: DVec2,
+        (at, along): (DVec2, DVec2),
         words: &str,
         height: f64,
         anchor: Anchor,
@@ -50,12 +51,14 @@ impl Words {
             *text += "3 Tr\n";
             self.any = true;
         }
-        let start = at.x - advance * anchor.share();
+        let start = at - along * (advance * anchor.share());
         let [size, stretch] = [short(size, 3), short(100.0 * advance / natural, 2)];
-        *text += &format!("BT /F {size} Tf {stretch} Tz 1 0 0 -1 ");
-        push(text, start, 3);
-        text.push(' ');
-        push(text, at.y, 3);
+        *text += &format!("BT /F {size} Tf {stretch} Tz");
+        // The letters' up is a quarter before the way that they run.
+        for value in [along.x, along.y, along.y, -along.x, start.x, start.y] {
+            text.push(' ');
+            push(text, value, 3);
+        }
         *text += " Tm <";
         codes.iter().for_each(|code| *text += &format!("{code:02X}"));
         *text += "> Tj ET\n";

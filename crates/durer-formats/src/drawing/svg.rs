@@ -6,7 +6,7 @@ use super::svg_curve;
 use crate::Result;
 use durer::curve::pieces;
 use durer::math::DVec2;
-use durer::paper::{dashes, text_strokes};
+use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use std::io::Write;
 
@@ -50,10 +50,6 @@ fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Resul
         "<g id=\"{}\" inkscape:groupmode=\"layer\" inkscape:label=\"{name}\"",
         identifier(&layer.name)
     );
-    let pen_of = |m: &Mark| match m {
-        Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
-        Mark::Fill { .. } => None,
-    };
     let common = layer.marks.iter().find_map(pen_of);
     if let Some(pen) = common.and_then(|p| sheet.pens.get(p)) {
         text += " fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
@@ -68,6 +64,15 @@ fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Resul
     }
     out.write_all(b"</g>\n")?;
     Ok(())
+}
+
+/// The pen of a mark's first stroke.
+fn pen_of(mark: &Mark) -> Option<usize> {
+    match mark {
+        Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
+        Mark::Fill { .. } => None,
+        Mark::Dimension(d) => d.marks.iter().find_map(pen_of).or(Some(d.text.pen)),
+    }
 }
 
 fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usize>) {
@@ -109,14 +114,23 @@ fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usiz
             *text += "\"/>\n";
         }
         Mark::Text { at, text: words, height, anchor, pen } => {
-            let label = escaped(words);
-            *text += &format!("<path aria-label=\"{label}\"{} d=\"", own_pen(*pen));
-            for stroke in text_strokes(*at, words, *height, *anchor) {
-                path(text, &stroke, false);
-            }
-            *text += "\"/>\n";
+            letters(text, words, &own_pen(*pen), &text_strokes(*at, words, *height, *anchor));
+        }
+        Mark::Dimension(dimension) => {
+            *text += "<g>\n";
+            dimension.marks.iter().for_each(|mark| write_mark(text, sheet, mark, common));
+            let words = &dimension.text;
+            letters(text, &words.text, &own_pen(words.pen), &dimension_strokes(words));
+            *text += "</g>\n";
         }
     }
+}
+
+/// A line of text as strokes.
+fn letters(text: &mut String, words: &str, style: &str, strokes: &[Vec<DVec2>]) {
+    *text += &format!("<path aria-label=\"{}\"{style} d=\"", escaped(words));
+    strokes.iter().for_each(|stroke| path(text, stroke, false));
+    *text += "\"/>\n";
 }
 
 fn stroke_style(pen: &Pen) -> String {

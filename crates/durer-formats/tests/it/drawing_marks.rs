@@ -1,6 +1,7 @@
 //! Every kind of mark in every writer: what stands in the file for each, to the byte where it is short.
 
 use durer::math::DVec2;
+use durer::target::dimension::{Dimension, DimensionText, Measure};
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use durer::target::{Arc, Curve, Piece};
@@ -282,4 +283,61 @@ fn hpgl_draws_curves_as_chords() {
         let radius = (DVec2::new(p[0], p[1]) / 40.0).distance(DVec2::new(20.0, 30.0));
         assert!((radius - 8.0).abs() < 0.02, "{radius}");
     }
+}
+
+/// A dimension of 30 mm, upright, with an arrow.
+fn dimension() -> Mark {
+    let (a, b) = (DVec2::new(20.0, 60.0), DVec2::new(20.0, 30.0));
+    let along = DVec2::new(0.0, -1.0);
+    let arrow = points(&[(10.0, 60.0), (9.5, 57.0), (10.5, 57.0)]);
+    let marks = vec![
+        stroke(&[(10.0, 60.0), (10.0, 30.0)], false, 0),
+        Mark::Fill { rings: vec![arrow], color: [0, 0, 0, 255] },
+    ];
+    let at = DVec2::new(9.0, 45.0);
+    let words = DimensionText { at, along, text: "2× 15".to_owned(), height: 3.5, pen: 0 };
+    Mark::Dimension(Box::new(Dimension {
+        measure: Measure::Linear { ends: [a, b], line: DVec2::new(10.0, 60.0), along },
+        value: 15.0,
+        units_per_millimetre: 0.5,
+        is_plain: false,
+        marks,
+        text: words,
+    }))
+}
+
+#[test]
+fn dimensions_are_entities_with_blocks() {
+    let dxf = utf8(written(|out| write_dxf(out, &sheet(vec![dimension()]), DxfStrokes::Pieces)));
+    let block = dxf.find("BLOCK\n  5\n").expect("blocks");
+    for part in [
+        "  2\n*D1\n 70\n1\n",
+        "  0\nSOLID\n",
+        " 50\n90.0\n 72\n1\n",
+        "DIMENSION\n",
+        "  2\n*D1\n 10\n10.0\n 20\n20.0\n",
+        " 70\n160\n",
+        "  1\n2x 15\n 42\n15.0\n  3\nISO-129-1\n",
+        " 13\n20.0\n 23\n20.0\n 33\n0.0\n 14\n20.0\n 24\n50.0\n",
+        " 50\n90.0\n100\nAcDbRotatedDimension\n",
+        "144\n0.5\n",
+    ] {
+        assert!(dxf.contains(part), "{part:?} is not in\n{}", &dxf[block..]);
+    }
+}
+
+#[test]
+fn dimensions_are_drawn_where_nothing_knows_them() {
+    let sheet = sheet(vec![dimension()]);
+    let svg = utf8(written(|out| write_svg(out, &sheet)));
+    assert!(svg.contains("aria-label=\"2× 15\"") && svg.contains("d=\"M10 60v-30\""), "{svg}");
+    let hpgl = utf8(written(|out| write_hpgl(out, &sheet)));
+    // Letters run upwards, left of x = 9 mm.
+    assert!(
+        hpgl.contains("PU400,800;PD400,2000") || hpgl.contains("PU400,2000;PD400,800"),
+        "{hpgl}"
+    );
+    let letters = hpgl.split("PU").skip(1).filter_map(|t| t.split(',').next()?.parse::<i64>().ok());
+    assert!(letters.filter(|x| (200..=360).contains(x)).count() >= 4, "{hpgl}");
+    assert!(!written(|out| write_pdf(out, &sheet)).is_empty());
 }

@@ -9,17 +9,20 @@ pub mod order;
 mod page;
 mod paint;
 mod pens;
+mod placed_view;
 mod third_angle;
 mod title_block;
 
 pub use page::{Page, Scale, scale_text, standard_scale};
 pub use paint::paint;
 pub use pens::Pens;
+pub use placed_view::PlacedView;
 pub use third_angle::{Views, third_angle};
 pub use title_block::TitleBlock;
 
 use crate::curve::{pieces, stroke_font};
 use crate::math::{DVec2, Rect};
+use crate::target::dimension::DimensionText;
 use crate::target::drawing::{Anchor, Drawing, Line, LineClass, NEARNESS_STEPS};
 use crate::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use crate::target::{Curve, Piece};
@@ -73,6 +76,8 @@ pub struct Options {
     pub fit: f64,
     /// What the paper is filled with.
     pub background: Option<[u8; 4]>,
+    /// Room around each view for what is written beside it, millimetres, on top of the margin.
+    pub around: f64,
 }
 
 impl Default for Options {
@@ -87,6 +92,7 @@ impl Default for Options {
             pens: Pens::default(),
             fit: 0.0,
             background: None,
+            around: 0.0,
         }
     }
 }
@@ -192,6 +198,10 @@ pub struct LaidOut {
     pub sheet: Sheet,
     /// Length on paper over true length.
     pub scale: f64,
+    /// What is where on the paper, in the order of the views that were given.
+    pub views: Vec<PlacedView>,
+    /// What the paper should show but does not, in words.
+    pub notes: Vec<String>,
 }
 
 /// Lays a drawing onto a sheet, in its middle.
@@ -222,7 +232,7 @@ pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<Laid
     let contours = drawing.lines.iter().any(|l| l.class == LineClass::Contour);
     let wider = if drawing.nearness.is_empty() { 1.0 } else { pens::NEARNESS[0].0 };
     let pen = options.pens.widest(contours) * wider;
-    let taken = DVec2::splat(2.0 * options.margin + pen);
+    let taken = DVec2::splat(2.0 * (options.margin + options.around) + pen);
     let (size, scale) = options.page_and_scale(frame.size(), taken)?;
     let factor = scale * options.unit;
     let middle = (frame.min() + frame.max()) * 0.5;
@@ -230,7 +240,8 @@ pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<Laid
     let mut sheet =
         Sheet { title: title.to_owned(), size, background: options.background, ..Sheet::default() };
     put(&mut sheet, &[Placed { drawing, origin }], factor, options);
-    Ok(LaidOut { sheet, scale })
+    let view = PlacedView::new("", None, frame, origin, factor);
+    Ok(LaidOut { sheet, scale, views: vec![view], notes: Vec::new() })
 }
 
 /// What is to be seen of a drawing; never without a place.
@@ -432,7 +443,7 @@ fn text_pen(sheet: &mut Sheet, height: f64, options: &Options) -> usize {
 }
 
 /// The index of a pen, which the sheet gets where it does not have it.
-fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
+pub(crate) fn pen_index(sheet: &mut Sheet, pen: Pen) -> usize {
     match sheet.pens.iter().position(|p| *p == pen) {
         Some(index) => index,
         None => {
@@ -448,4 +459,12 @@ pub fn text_strokes(at: DVec2, text: &str, height: f64, anchor: Anchor) -> Vec<V
     let line = stroke_font::line(text, height);
     let start = at - DVec2::new(line.advance * anchor.share(), 0.0);
     line.strokes.into_iter().map(|s| s.into_iter().map(|p| p + start).collect()).collect()
+}
+
+/// The strokes of a dimension's text, in the sheet's millimetres.
+pub fn dimension_strokes(text: &DimensionText) -> Vec<Vec<DVec2>> {
+    let strokes = text_strokes(DVec2::ZERO, &text.text, text.height, Anchor::Middle);
+    // With y down as on the sheet: rotating by `along` takes x to it.
+    let turn = |p: DVec2| text.at + text.along.rotate(p);
+    strokes.into_iter().map(|s| s.into_iter().map(turn).collect()).collect()
 }

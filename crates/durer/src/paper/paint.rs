@@ -1,6 +1,6 @@
 //! A sheet as pixels.
 
-use super::{dashes, text_strokes};
+use super::{dashes, dimension_strokes, text_strokes};
 use crate::Result;
 use crate::curve::{Path, pieces};
 use crate::math::{DAffine2, DVec2};
@@ -85,6 +85,12 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
         Mark::Text { at, text, height, anchor, pen } => {
             let Some(pen) = pens.get(*pen) else { return Ok(()) };
             let strokes = text_strokes(*at, text, *height, *anchor);
+            strokes.iter().try_for_each(|stroke| line(canvas, stroke, false, pen))
+        }
+        Mark::Dimension(dimension) => {
+            dimension.marks.iter().try_for_each(|mark| put(canvas, mark, pens))?;
+            let Some(pen) = pens.get(dimension.text.pen) else { return Ok(()) };
+            let strokes = dimension_strokes(&dimension.text);
             strokes.iter().try_for_each(|stroke| line(canvas, stroke, false, pen))
         }
     }

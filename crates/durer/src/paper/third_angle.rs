@@ -56,7 +56,8 @@ pub fn third_angle(views: &Views, title: &TitleBlock, options: &Options) -> Resu
     let extent = |range: (f64, f64)| range.1 - range.0;
     let size = DVec2::new(extent(cells.left) + cells.right, extent(cells.lower) + cells.upper);
     let border = DVec2::splat(2.0 * options.margin);
-    let taken = border + DVec2::splat(3.0 * GAP) + DVec2::new(0.0, title_block::HEIGHT);
+    let taken =
+        border + DVec2::splat(3.0 * (GAP + options.around)) + DVec2::new(0.0, title_block::HEIGHT);
     let free = matches!((options.page, options.scale), (Page::Fit, Scale::Fit | Scale::Standard));
     let paged = if free { Options { page: PAGE, ..*options } } else { *options };
     let (page, scale) = paged.page_and_scale(size, taken)?;
@@ -92,5 +93,10 @@ pub fn third_angle(views: &Views, title: &TitleBlock, options: &Options) -> Resu
     };
     put(&mut sheet, &placed, factor, options);
     title_block::put(&mut sheet, title, scale, options);
-    Ok(LaidOut { sheet, scale })
+    let names = ["front", "top", "right", "iso"].into_iter().zip([front, top, right, iso]);
+    let views = names
+        .zip(&placed)
+        .map(|((name, bounds), p)| super::PlacedView::new(name, None, bounds, p.origin, factor));
+    let views = views.collect();
+    Ok(LaidOut { sheet, scale, views, notes: Vec::new() })
 }

@@ -1,6 +1,7 @@
 //! Where pictures and drawings go.
 
 mod curve;
+pub mod dimension;
 pub mod drawing;
 mod framebuffer;
 pub mod sheet;

@@ -2,6 +2,7 @@
 //! PDF, DXF and HPGL take, and what is painted into pixels.
 
 use super::Curve;
+use super::dimension::Dimension;
 use super::drawing::Anchor;
 use crate::math::DVec2;
 
@@ -57,6 +58,8 @@ pub enum Mark {
         /// Index into [`Sheet::pens`].
         pen: usize,
     },
+    /// A dimension with its lines, arrows and text.
+    Dimension(Box<Dimension>),
 }
 
 /// Marks that are shown or hidden together.

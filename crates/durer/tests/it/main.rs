@@ -1,6 +1,7 @@
 //! The one test binary of the library.
 
 mod a_buffer;
+mod annotate;
 mod back_face;
 mod blended;
 mod clip_line;
@@ -48,6 +49,7 @@ mod raster_stroke;
 mod raster_stroke_area;
 mod raster_triangle;
 mod region_details;
+mod round;
 mod scenes;
 mod section_caps;
 mod shading;

@@ -147,6 +147,7 @@ impl ByPen {
             }
             Mark::Curve { curve, pen } => self.of(pen).1.push(Chain::Curved(curve)),
             Mark::Text { pen, .. } => self.of(pen).2.push(mark),
+            Mark::Dimension(ref dimension) => self.of(dimension.text.pen).2.push(mark),
             Mark::Fill { .. } => {}
         }
     }
@@ -164,6 +165,7 @@ impl ByPen {
 fn texts_in_turn(texts: Vec<Mark>, at: &mut DVec2) -> Vec<Mark> {
     let place = |mark: &Mark| match mark {
         Mark::Text { at, .. } => Stroke { points: vec![*at], closed: true },
+        Mark::Dimension(dimension) => Stroke { points: vec![dimension.text.at], closed: true },
         _ => Stroke::default(),
     };
     let places: Vec<Stroke> = texts.iter().map(place).collect();

@@ -5,10 +5,12 @@ pub mod bodies;
 pub mod edges;
 pub mod faces;
 mod near;
+pub mod round;
 mod stitch;
 pub mod weld;
 
 pub use bodies::{Bodies, Body};
 pub use edges::{Edges, Side};
 pub use faces::{FaceRun, Faces};
+pub use round::{Cylinder, cylinders};
 pub use weld::Weld;

@@ -1,0 +1,121 @@
+//! Annotations of drawings, as the options ask for them.
+
+pub mod args;
+mod file;
+
+use super::Subject;
+use crate::failure::Failure;
+use args::{AnnotationArgs, Dimensioned};
+use durer::annotate::{self, Annotations, Feature, Shown};
+use durer::math::DVec3;
+use durer::paper::LaidOut;
+use durer::scene::Camera;
+use durer::target::drawing::Drawing;
+use durer::visibility::object::{Faces, Weld};
+use serde::Serialize;
+
+/// What is asked for, and the round parts of the model.
+pub struct Wanted {
+    annotations: Annotations,
+    pub features: Vec<Feature>,
+}
+
+/// A round part, as `--json` lists it.
+#[derive(Debug, Serialize)]
+pub struct FeatureReport {
+    /// `hole 1`, …
+    pub name: String,
+    /// The name of its object; left out where it has none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub object: String,
+    /// In units of the model.
+    pub diameter: f64,
+    /// Where its axis begins and ends.
+    pub ends: [[f64; 3]; 2],
+    /// How much of the circle there is, degrees.
+    pub angle: f64,
+}
+
+impl From<&Feature> for FeatureReport {
+    fn from(feature: &Feature) -> Self {
+        let c = &feature.cylinder;
+        Self {
+            name: feature.name.clone(),
+            object: feature.object.clone(),
+            diameter: 2.0 * c.radius,
+            ends: c.ends.map(|p: DVec3| p.to_array()),
+            angle: c.angle.to_degrees(),
+        }
+    }
+}
+
+impl Wanted {
+    /// What the options ask for; `None` where that is nothing.
+    pub fn new(
+        args: &AnnotationArgs,
+        subject: &Subject,
+        weld: Weld,
+    ) -> Result<Option<Self>, Failure> {
+        let annotations = annotations(args)?;
+        if annotations.is_empty() {
+            return Ok(None);
+        }
+        let scene = subject.scene;
+        let faces = Faces::welded(scene, weld).map_err(|e| Failure::Usage(e.to_string()))?;
+        let features = annotate::features(scene, &faces);
+        Ok(Some(Self { annotations, features }))
+    }
+
+    /// Room around views, millimetres.
+    pub fn room(&self) -> f64 {
+        annotate::room(&self.annotations)
+    }
+
+    /// Puts the annotations on a sheet; its notes tell what has no place.
+    pub fn put(
+        &self,
+        laid: &mut LaidOut,
+        cameras: &[Camera],
+        drawings: &[Drawing],
+        look: &Look,
+    ) -> Result<(), Failure> {
+        for (view, camera) in laid.views.iter_mut().zip(cameras) {
+            view.camera.get_or_insert(*camera);
+        }
+        let drawings: Vec<&Drawing> = drawings.iter().collect();
+        let shown = Shown {
+            views: &laid.views,
+            drawings: &drawings,
+            features: &self.features,
+            unit: look.unit,
+            hidden: look.hidden,
+            color: look.color,
+        };
+        let notes = annotate::annotate(&mut laid.sheet, &self.annotations, &shown);
+        laid.notes.extend(notes.map_err(|e| Failure::Usage(e.to_string()))?);
+        Ok(())
+    }
+}
+
+/// What annotations need to know of the drawing.
+pub struct Look {
+    /// Millimetres per unit of the model.
+    pub unit: f64,
+    /// Whether hidden lines are drawn.
+    pub hidden: bool,
+    /// Of pens.
+    pub color: [u8; 4],
+}
+
+fn annotations(args: &AnnotationArgs) -> Result<Annotations, Failure> {
+    let listed = args.annotations.as_deref().map(file::read).transpose()?.unwrap_or_default();
+    let has = |which| args.dimension.contains(&which);
+    Ok(Annotations {
+        center_lines: args.center_lines,
+        sizes: has(Dimensioned::Size),
+        holes: has(Dimensioned::Holes),
+        bosses: has(Dimensioned::Bosses),
+        dimensions: listed.dimensions,
+        threads: args.thread.iter().cloned().chain(listed.threads).collect(),
+    })
+}

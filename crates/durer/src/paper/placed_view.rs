@@ -1,0 +1,53 @@
+//! Where a view lies on its sheet, so that others can draw on it.
+
+use super::onto_paper;
+use crate::math::{DVec2, DVec3, Rect};
+use crate::scene::{Camera, Projection};
+use crate::view::picture_plane::PicturePlane;
+
+/// A view on a sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedView {
+    /// What it is called: `front`, `top`, `A–A`, `B`, …; empty where it is the only one.
+    pub name: String,
+    /// What sees it; `None` where whoever laid it out was not told.
+    pub camera: Option<Camera>,
+    /// Where the origin of the drawing's plane lies, millimetres from the sheet's upper left corner, y down.
+    pub origin: DVec2,
+    /// Millimetres on the sheet per unit of the model.
+    pub factor: f64,
+    /// What the drawing takes up, in the sheet's millimetres.
+    pub bounds: Rect,
+}
+
+impl PlacedView {
+    /// The place of a drawing with `bounds` in its plane.
+    pub(super) fn new(
+        name: &str,
+        camera: Option<Camera>,
+        bounds: Rect,
+        origin: DVec2,
+        factor: f64,
+    ) -> Self {
+        let corners = [bounds.min(), bounds.max()].map(|p| onto_paper(p, origin, factor));
+        let bounds = Rect::around(corners).unwrap_or(bounds);
+        Self { name: name.to_owned(), camera, origin, factor, bounds }
+    }
+
+    /// A point of the drawing's plane on the sheet, millimetres.
+    pub fn from_plane(&self, p: DVec2) -> DVec2 {
+        onto_paper(p, self.origin, self.factor)
+    }
+
+    /// A point of the model on the sheet, millimetres; `None` where it lies before the near plane of a
+    /// perspective view, or the camera is not known.
+    pub fn from_model(&self, p: DVec3) -> Option<DVec2> {
+        let camera = self.camera.as_ref()?;
+        let plane = PicturePlane::of_camera(camera, 1.0).ok()?;
+        let seen = match camera.projection {
+            Projection::Orthographic { .. } => Some(plane.plane_from_world(p).at),
+            Projection::Perspective { .. } => plane.project(p),
+        };
+        seen.map(|at| self.from_plane(at)).filter(|at| at.is_finite())
+    }
+}

@@ -1,0 +1,71 @@
+//! Dimensions on a sheet: what is measured, and how that is drawn.
+
+use super::sheet::Mark;
+use crate::math::DVec2;
+
+/// What a dimension measures; all points in the sheet's millimetres, y down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Measure {
+    /// The distance of two points along a direction.
+    Linear {
+        /// The points.
+        ends: [DVec2; 2],
+        /// A point of the dimension line.
+        line: DVec2,
+        /// The direction of the dimension line, of unit length.
+        along: DVec2,
+    },
+    /// The diameter of a circle.
+    Diameter {
+        /// The far and the near end, as seen from the text, of the diameter that the leader is in line with.
+        ends: [DVec2; 2],
+    },
+    /// The radius of an arc.
+    Radius {
+        /// The centre of the circle.
+        center: DVec2,
+        /// The point of the arc that the leader ends in.
+        at: DVec2,
+    },
+    /// The angle at a point between two others.
+    Angle {
+        /// The point.
+        vertex: DVec2,
+        /// The others, counter-clockwise as seen.
+        ends: [DVec2; 2],
+        /// A point of the arc.
+        arc: DVec2,
+    },
+}
+
+/// The text of a dimension, in its middle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DimensionText {
+    /// Where the middle of the base line is, millimetres.
+    pub at: DVec2,
+    /// The way it runs, of unit length.
+    pub along: DVec2,
+    /// What it says.
+    pub text: String,
+    /// Height of capital letters, millimetres.
+    pub height: f64,
+    /// Index into [`super::sheet::Sheet::pens`].
+    pub pen: usize,
+}
+
+/// A dimension: what it measures, for programs that measure anew, and how it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dimension {
+    /// What it measures.
+    pub measure: Measure,
+    /// What that is in truth: a length in units of the model, or an angle in radians.
+    pub value: f64,
+    /// Units of the model per millimetre of the sheet.
+    pub units_per_millimetre: f64,
+    /// Whether the text says just the value, with the usual sign before it.
+    pub is_plain: bool,
+    /// Strokes and fills: the lines, and the arrows.
+    pub marks: Vec<Mark>,
+    /// The text.
+    pub text: DimensionText,
+}
