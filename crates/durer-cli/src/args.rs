@@ -8,6 +8,7 @@ use crate::config::ConfigArgs;
 use crate::drawing::args::DrawingArgs;
 use crate::encoding::EncodingArgs;
 use crate::environment::{self, Environment};
+use crate::explode::ExplodeArgs;
 use crate::kind::Kind;
 use crate::section::SectionArgs;
 use crate::sides::{Sides, sides};
@@ -174,6 +175,9 @@ pub struct RenderArgs {
     /// Planes that cut the model.
     #[command(flatten)]
     pub section: SectionArgs,
+    /// Parts moved apart.
+    #[command(flatten)]
+    pub explode: ExplodeArgs,
     /// Exact drawings.
     #[command(flatten)]
     pub drawing: DrawingArgs,

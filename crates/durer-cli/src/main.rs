@@ -11,6 +11,7 @@ mod draw;
 mod drawing;
 mod encoding;
 mod environment;
+mod explode;
 mod failure;
 mod fill;
 mod film;

@@ -7,6 +7,7 @@ use crate::drawing::report::DrawingReport;
 use crate::drawing::{self, Subject};
 use crate::encoding;
 use crate::environment;
+use crate::explode;
 use crate::failure::Failure;
 use crate::film::{self, Film, Sink};
 use crate::input;
@@ -21,6 +22,7 @@ use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::{AlphaMode, Material, Scene};
 use durer::target::Framebuffer;
+use durer::view::components::components;
 use durer::view::layout::Layout;
 use durer_formats::{Model, png};
 use std::path::{Path, PathBuf};
@@ -69,6 +71,7 @@ fn sized(args: &RenderArgs, natural: DVec2) -> RenderArgs {
 fn check(args: &RenderArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     camera::check(&args.view)?;
+    section::check(&args.section, args.drawing.sheet.is_some())?;
     drawing::check(args, wanted(args).kind)?;
     args.picture.encoding.check(wanted(args).kind)?;
     check_size(args)?;
@@ -275,7 +278,10 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     }
     messages.warnings(&name, &model.warnings);
     staging::give_materials(&args.stage, args.look.color, &mut model.scene);
+    // What is cut has no meshes in common any more.
+    let components = if args.drawing.callouts { components(&model.scene) } else { Vec::new() };
     let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
+    explode::apply(&args.explode, &mut model.scene).map_err(|f| with_file(&name, f))?;
     messages.detail(|| {
         format!(
             "{name}: {}, {} triangles, read in {read_seconds:.3} s",
@@ -300,7 +306,8 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         let mut sink = film.as_mut().map_or(Sink::File(&picture.color), Sink::Film);
         let report = if drawing::is_wanted(args, kind) {
             let (scene, format) = (&model.scene, model.format.as_str());
-            let subject = Subject { scene, name: &job.stem, format, cap_material };
+            let components = components.clone();
+            let subject = Subject { scene, name: &job.stem, format, cap_material, components };
             drawing::render(args, &subject, picture.frame, &mut sink, kind)
         } else {
             render_picture(args, &model.scene, picture, &mut sink)
@@ -320,8 +327,8 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     if let Some(why) = unseen_of_all {
         model.warn(durer_formats::Place::Whole, why);
     }
-    tell_loose_faces(&name, &mut model, &pictures, messages);
     tell_notes(&name, &mut model, &pictures, messages);
+    tell_loose_faces(&name, &mut model, &pictures, messages);
     tell_scale(&name, &mut model, &pictures, messages);
     tell_flattened(&name, &mut model, &pictures, messages);
     Ok(ModelReport {
@@ -359,6 +366,16 @@ fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], me
     messages.warnings(name, &model.warnings[known..]);
 }
 
+/// What sheets cannot show is known when they have been laid out.
+fn tell_notes(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
+    let known = model.warnings.len();
+    let mut told: Vec<&String> = pictures.iter().flat_map(|p| &p.notes).collect();
+    // Frames of a film have the same.
+    told.dedup();
+    told.into_iter().for_each(|note| model.warn(durer_formats::Place::Whole, note.clone()));
+    messages.warnings(name, &model.warnings[known..]);
+}
+
 /// How faces meet is known when their lines have been drawn.
 fn tell_loose_faces(
     name: &str,
@@ -372,17 +389,6 @@ fn tell_loose_faces(
         model.warn(durer_formats::Place::Whole, message);
         messages.warnings(name, &model.warnings[known..]);
     }
-}
-
-/// What has no place on the paper.
-fn tell_notes(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
-    let known = model.warnings.len();
-    let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
-    let mut told: Vec<&String> = drawings.flat_map(|d| &d.notes).collect();
-    // Frames of a film have the same.
-    told.dedup();
-    told.into_iter().for_each(|note| model.warn(durer_formats::Place::Whole, note.clone()));
-    messages.warnings(name, &model.warnings[known..]);
 }
 
 /// The scale is known when the drawing has been laid onto its paper.

@@ -64,6 +64,9 @@ pub struct PictureReport {
     /// Whether it was not opaque, and had to become so.
     #[serde(skip)]
     pub flattened: bool,
+    /// What it should show but does not, in words.
+    #[serde(skip)]
+    pub notes: Vec<String>,
     /// For `all`: each algorithm beside the z-buffer.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compared: Vec<ComparedReport>,

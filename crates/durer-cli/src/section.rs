@@ -7,7 +7,7 @@ use crate::values;
 use clap::Args;
 use durer::math::{DVec3, Plane, Vec4};
 use durer::scene::Scene;
-use durer::view::section::{self, Options};
+use durer::view::section::{self, Options, Section};
 
 /// The planes that models are cut by.
 #[derive(Debug, Clone, Args)]
@@ -19,14 +19,46 @@ pub struct SectionArgs {
     /// lies on the right side of all planes stays. Bodies that were closed are closed again by a
     /// cap; of open ones the inside is seen, and a warning says so. The view is fitted to what is
     /// left. E.g. --section 0,0,1,-5 keeps what is above z = 5.
-    #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true, value_parser = plane)]
-    pub section: Vec<Plane>,
+    ///
+    /// With a letter, a --sheet gets a view of what the plane leaves, seen from the side that is cut away, and shows the
+    /// plane where another view sees it edge on. E.g. --section A:0,1,0,-5 gives the section A–A.
+    #[arg(long, value_name = "[LETTER:]NX,NY,NZ,D", allow_hyphen_values = true, value_parser = section)]
+    pub section: Vec<SectionPlane>,
     /// The colour of caps
     #[arg(long, value_name = "COLOR", default_value = "#c83c32", value_parser = color::color, requires = "section")]
     pub cap_color: Vec4,
     /// Leave cut bodies open
     #[arg(long, requires = "section")]
     pub no_caps: bool,
+}
+
+/// A plane of `--section`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectionPlane {
+    /// What its view on a sheet is called; `None` where it cuts the model itself.
+    pub letter: Option<String>,
+    /// What cuts.
+    pub plane: Plane,
+}
+
+fn section(text: &str) -> Result<SectionPlane, String> {
+    let (letter, text) = match text.split_once(':') {
+        Some((name, rest)) => (Some(letter(name)?), rest),
+        None => (None, text),
+    };
+    Ok(SectionPlane { letter, plane: plane(text)? })
+}
+
+/// The longest name of a section or a detail.
+const MOST_LETTERS: usize = 3;
+
+/// The name of a section or a detail: a letter, or a few with figures.
+pub fn letter(text: &str) -> Result<String, String> {
+    let right = text.chars().count() <= MOST_LETTERS
+        && text.starts_with(char::is_alphabetic)
+        && text.chars().all(char::is_alphanumeric);
+    let wrong = || format!("`{text}` is no letter, as in A or B1, to stand before the colon");
+    if right { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 
 fn plane(text: &str) -> Result<Plane, String> {
@@ -37,6 +69,30 @@ fn plane(text: &str) -> Result<Plane, String> {
     plane.normalized().map(|_| plane).ok_or_else(|| wrong.to_owned())
 }
 
+impl SectionArgs {
+    /// The sections that are views of a sheet, with their names.
+    pub fn views(&self) -> impl Iterator<Item = (&str, Plane)> {
+        self.section.iter().filter_map(|s| s.letter.as_deref().map(|letter| (letter, s.plane)))
+    }
+
+    /// Cuts a scene by planes.
+    pub fn cut(&self, scene: &Scene, planes: &[Plane]) -> Result<Section, Failure> {
+        let options = Options { caps: !self.no_caps, cap_color: self.cap_color.truncate() };
+        section::cut(scene, planes, &options).map_err(|e| Failure::Data(e.to_string()))
+    }
+}
+
+/// What the parser does not know to be wrong.
+pub fn check(args: &SectionArgs, sheet: bool) -> Result<(), Failure> {
+    match args.views().next() {
+        Some((letter, _)) if !sheet => Err(Failure::Usage(format!(
+            "--section {letter}: a section with a letter is a view of a --sheet; give one, or leave the \
+             letter out to cut the model itself"
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// Cuts a scene as asked for, and tells what is to be known about it; gives the material of the caps.
 pub fn apply(
     args: &SectionArgs,
@@ -44,12 +100,12 @@ pub fn apply(
     name: &str,
     messages: &Messages,
 ) -> Result<Option<usize>, Failure> {
-    if args.section.is_empty() {
+    let planes: Vec<Plane> =
+        args.section.iter().filter(|s| s.letter.is_none()).map(|s| s.plane).collect();
+    if planes.is_empty() {
         return Ok(None);
     }
-    let options = Options { caps: !args.no_caps, cap_color: args.cap_color.truncate() };
-    let cut =
-        section::cut(scene, &args.section, &options).map_err(|e| Failure::Data(e.to_string()))?;
+    let cut = args.cut(scene, &planes)?;
     if cut.scene.triangle_count() == 0 && scene.triangle_count() > 0 {
         messages.warning(name, "--section leaves nothing of the model");
     }

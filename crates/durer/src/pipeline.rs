@@ -1,5 +1,6 @@
 //! The order of the stages; nothing else knows it.
 
+mod callouts;
 mod contour;
 mod depth_cue;
 mod draw;
@@ -8,6 +9,7 @@ mod floor;
 mod runs;
 mod status;
 
+pub use callouts::seen_at;
 pub use contour::contoured;
 pub use depth_cue::depth_cued;
 pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes};

@@ -2,11 +2,14 @@
 
 use super::annotations::args::AnnotationArgs;
 use super::machine::MachineArgs;
+use crate::section::letter;
 use crate::values;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use durer::math::DVec3;
 use durer::paper::{self, Page, Pens, Scale};
 use durer::pipeline::{DrawStyle, line_classes};
+use durer::view::projection::NamedView;
 use durer::visibility::line::{ClassSet, edge_lines};
 use durer::visibility::object::Weld;
 use durer::visibility::region;
@@ -121,9 +124,26 @@ pub struct DrawingArgs {
     /// What a unit of the model is [default: m for glTF, COLLADA and FBX, else mm]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Unit>,
-    /// Four views on one page with a title block
+    /// Several views on one page with a title block: front, top, right and isometric, or those of --views
+    ///
+    /// Sections with a letter (--section A:…) and details (--detail) come beside or below them.
     #[arg(long, value_name = "KIND")]
     pub sheet: Option<SheetKind>,
+    /// The views of a sheet, joined by commas: front, top, right, left, bottom, back, iso
+    #[arg(long, value_name = "VIEWS", requires = "sheet", value_delimiter = ',', value_parser = parsed::<NamedView>)]
+    pub views: Vec<NamedView>,
+    /// Show a part of a view within a circle again, enlarged, on the sheet
+    ///
+    /// The circle's middle and its radius are in the units of the model. Without a SCALE, e.g. 5:1, it is a standard
+    /// one. The circle stands in the VIEW that shows most within it, if none is named. E.g.
+    /// --detail B:30,0,8,4 or --detail B:30,0,8,4,10:1,front. May be given several times.
+    #[arg(long, value_name = "LETTER:X,Y,Z,RADIUS[,SCALE[,VIEW]]", requires = "sheet", allow_hyphen_values = true, value_parser = detail)]
+    pub detail: Vec<DetailSpec>,
+    /// Number the parts of an assembly around the isometric view, or the only one, and list them
+    ///
+    /// Parts are the objects of the file; those of one mesh have one number and are counted.
+    #[arg(long)]
+    pub callouts: bool,
     /// What the title says [default: the model's name]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
@@ -166,6 +186,7 @@ pub const NAMES: &[&str] = &[
     "margin",
     "scale",
     "unit",
+    "callouts",
     "title",
     "center_lines",
     "dimension",
@@ -304,8 +325,56 @@ pub enum Unit {
 /// `--sheet`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum SheetKind {
-    /// Front, top, right and isometric view
+    /// The view from above stands on top of the front view, that from the right on the right
     ThirdAngle,
+    /// The view from above stands below the front view, that from the right on the left
+    FirstAngle,
+}
+
+impl From<SheetKind> for paper::Angle {
+    fn from(kind: SheetKind) -> Self {
+        match kind {
+            SheetKind::ThirdAngle => Self::Third,
+            SheetKind::FirstAngle => Self::First,
+        }
+    }
+}
+
+/// `--detail`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DetailSpec {
+    /// What it is called.
+    pub letter: String,
+    /// The middle of the circle, in the units of the model.
+    pub center: DVec3,
+    /// Its radius.
+    pub radius: f64,
+    /// Length on paper over true length.
+    pub scale: Option<f64>,
+    /// The view that it is a part of.
+    pub view: Option<NamedView>,
+}
+
+fn detail(text: &str) -> Result<DetailSpec, String> {
+    let wrong =
+        "a detail is LETTER:X,Y,Z,RADIUS[,SCALE[,VIEW]], e.g. B:30,0,8,4 or B:30,0,8,4,5:1,front";
+    let (name, rest) = text.split_once(':').ok_or(wrong)?;
+    let letter = letter(name)?;
+    let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
+    let (numbers, further) = parts.split_at_checked(4).ok_or(wrong)?;
+    let numbers: Vec<f64> = numbers.iter().map(|s| values::number(s)).collect::<Result<_, _>>()?;
+    let (&[x, y, z, radius], [] | [_] | [_, _]) = (&numbers[..], further) else {
+        return Err(wrong.to_owned());
+    };
+    if radius <= 0.0 {
+        return Err("the radius of a detail must be above 0".to_owned());
+    }
+    let scale = match further.first().map(|s| parsed::<Scale>(s)).transpose()? {
+        Some(Scale::Given(scale)) => Some(scale),
+        _ => None,
+    };
+    let view = further.get(1).map(|s| parsed::<NamedView>(s)).transpose()?;
+    Ok(DetailSpec { letter, center: DVec3::new(x, y, z), radius, scale, view })
 }
 
 impl Unit {

@@ -2,14 +2,15 @@
 
 pub mod annotations;
 pub mod args;
+mod callouts;
 pub mod machine;
 pub mod report;
+mod sheet;
 
 use crate::args::{RenderArgs, ViewArgs};
-use crate::camera::{self, Ortho, Shot};
+use crate::camera::{self, Ortho};
 use crate::failure::Failure;
 use crate::film::Sink;
-use crate::fit;
 use crate::kind::Kind;
 use crate::output;
 use crate::report::{CameraReport, PictureReport};
@@ -17,16 +18,18 @@ use crate::shape;
 use crate::values::Size;
 use annotations::{FeatureReport, Look, Wanted};
 use args::{Fill, Hatch, Hidden, Merge, NAMES, OF_ANNOTATIONS, Unit};
-use durer::math::{DVec2, DVec3, Vec4};
-use durer::paper::{self, Frame, LaidOut, Page, Scale, TitleBlock, Views};
+use callouts::Callouts;
+use durer::math::{DVec2, Vec4};
+use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock, ViewKind};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
-use durer::scene::{Camera, Projection, Scene};
+use durer::scene::{Camera, Scene};
 use durer::target::drawing::Drawing;
 use durer::target::sheet::Sheet;
-use durer::view::projection::NamedView;
+use durer::view::components::Component;
 use durer::visibility::line::hidden_line;
 use durer_formats::drawing::{DrawingFormat, DxfStrokes, FileOptions};
 use report::DrawingReport;
+use sheet::Shot;
 use std::time::Instant;
 
 /// Distance of hatching lines in the darkest tone, millimetres.
@@ -149,31 +152,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
         return Err(Failure::Usage(message.to_owned()));
     }
     check_weights(args, kind)?;
-    if args.drawing.sheet.is_none() {
-        return Ok(());
-    }
-    if kind == Kind::Drawing(DrawingFormat::GeoJson) {
-        let message = "--sheet: GeoJSON has no paper; write a file for each --view";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    let views = [
-        "view",
-        "azimuth",
-        "elevation",
-        "eye",
-        "target",
-        "up",
-        "fov",
-        "ortho",
-        "camera",
-        "turntable",
-    ];
-    match views.iter().find(|id| given(id)) {
-        Some(id) => Err(Failure::Usage(format!(
-            "--{id}: --sheet third-angle has its own four views; leave one of the two out"
-        ))),
-        None => Ok(()),
-    }
+    sheet::check(args, kind)
 }
 
 /// Refuses what tells visible lines apart where there are none.
@@ -236,6 +215,23 @@ pub struct Subject<'a> {
     pub format: &'a str,
     /// The material of the caps, where the model was cut.
     pub cap_material: Option<usize>,
+    /// The kinds of its parts, where they are to be numbered.
+    pub components: Vec<Component>,
+}
+
+/// A view, and what is seen.
+struct Shown {
+    /// Its part on a sheet; `None` without one.
+    kind: Option<ViewKind>,
+    camera: Camera,
+    drawing: Drawing,
+}
+
+impl Shown {
+    fn sheet_view(&self) -> Option<SheetView<'_>> {
+        let kind = self.kind.clone()?;
+        Some(SheetView { kind, camera: self.camera, drawing: &self.drawing })
+    }
 }
 
 /// Draws one picture of a model and writes its file; tells why nothing of the model is seen, where that
@@ -249,60 +245,73 @@ pub fn render(
 ) -> Result<(PictureReport, Option<String>), Failure> {
     let start = Instant::now();
     let style = args.drawing.style.unwrap_or_default();
-    let cameras = match args.drawing.sheet {
-        Some(_) => sheet_cameras(subject.scene).to_vec(),
-        None => vec![single_camera(args, subject.scene, frame)?],
+    let mut report = PictureReport::default();
+    let shots = match args.drawing.sheet {
+        Some(_) => sheet::shots(args, subject.scene)?,
+        None => {
+            let kind = args.drawing.callouts.then_some(ViewKind::Free);
+            vec![Shot::new(kind, single_camera(args, subject.scene, frame)?)]
+        }
     };
     let wanted = Wanted::new(&args.drawing.annotations, subject, args.drawing.weld)?;
-    let (mut drawings, mut statuses) = (Vec::new(), Vec::new());
-    let seen_from = cameras.iter().map(CameraReport::from).collect();
-    let mut report = PictureReport { cameras: seen_from, ..PictureReport::default() };
-    for &camera in &cameras {
-        let cap_material = subject.cap_material;
-        let shown = with_tones(style, args.drawing.hatch);
-        let mut options = DrawOptions { cap_material, ..draw_options(args, kind, shown, camera) };
+    report.cameras = shots.iter().map(|s| CameraReport::from(&s.camera)).collect();
+    let (mut shown, mut statuses) = (Vec::new(), Vec::new());
+    for shot in shots {
+        let (cut, cap_material) = match shot.cut(args, subject.scene, &mut report.notes)? {
+            Some(cut) => (Some(cut.scene), Some(cut.cap_material)),
+            None => (None, subject.cap_material),
+        };
+        let scene = cut.as_ref().unwrap_or(subject.scene);
+        let toned = with_tones(style, args.drawing.hatch);
+        let mut options =
+            DrawOptions { cap_material, ..draw_options(args, kind, toned, shot.camera) };
         options.lines.tolerance = line_tolerance(args, kind, subject);
-        let usage = |e: durer::Error| Failure::Usage(e.to_string());
-        let drawing = pipeline::draw(subject.scene, &options).map_err(usage)?;
+        let drawing = pipeline::draw(scene, &options).map_err(usage)?;
+        let drawing = weighted(args, scene, drawing, &shot.camera).map_err(usage)?;
         let DrawOptions { camera, aspect, .. } = &options;
-        let status = pipeline::drawing_status(subject.scene, camera, *aspect, &drawing);
+        let status = pipeline::drawing_status(scene, camera, *aspect, &drawing);
         statuses.push(status.map_err(usage)?);
-        drawings.push(drawing);
+        shown.push(Shown { kind: shot.kind, camera: shot.camera, drawing });
     }
     let unseen = report.set_status(&statuses);
+    sheet::add_details(args, &mut shown, &mut report.notes)?;
+    let called = if args.drawing.callouts {
+        // The cameras of sheets see all of the model in a square.
+        let aspect = if args.drawing.sheet.is_some() { 1.0 } else { aspect(args) };
+        Callouts::find(subject, &shown, aspect, &mut report.notes)?
+    } else {
+        Callouts::default()
+    };
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let room = wanted.as_ref().map_or(0.0, Wanted::room);
-    let mut laid = lay_out(args, kind, subject, (frame, room), &drawings)?;
+    let mut laid = lay_out(args, kind, subject, (frame, room), (&shown, &called))?;
     // In a line drawing the faces of a section are hatched, unless they are to be filled.
     let on_paper = kind != Kind::Drawing(DrawingFormat::GeoJson);
     let lines_only = on_paper && !style.has_regions() && args.drawing.hatch.is_none();
     if hatch(args, kind) == Hatch::Shade || lines_only {
-        // The paper's scale says how far apart lines are in the model.
-        let spacing = HATCH_SPACING / (laid.scale * unit(args, subject).millimetres());
-        drawings = drawings.into_iter().map(|d| pipeline::hatched(d, spacing)).collect();
-        laid = lay_out(args, kind, subject, (frame, room), &drawings)?;
-    }
-    if args.drawing.depth_cue || args.drawing.contour {
-        let all = drawings.into_iter().zip(&cameras);
-        let all = all.map(|(drawing, camera)| weighted(args, subject.scene, drawing, camera));
-        drawings = all.collect::<durer::Result<_>>().map_err(|e| Failure::Usage(e.to_string()))?;
-        laid = lay_out(args, kind, subject, (frame, room), &drawings)?;
+        for (view, placed) in shown.iter_mut().zip(&laid.views) {
+            // The scale on paper says how far apart lines are in the model.
+            let spacing = HATCH_SPACING / placed.factor;
+            view.drawing = pipeline::hatched(std::mem::take(&mut view.drawing), spacing);
+        }
+        laid = lay_out(args, kind, subject, (frame, room), (&shown, &called))?;
     }
     if let Some(wanted) = &wanted {
-        wanted.put(&mut laid, &cameras, &drawings, &look(args, subject))?;
+        wanted.put(&mut laid, &shown, &look(args, subject))?;
     }
     if args.drawing.machine.orders(kind.drawing()) {
         paper::order::sheet(&mut laid.sheet);
     }
+    report.notes.append(&mut laid.notes);
     report.geometry_seconds = geometry_seconds;
     report.triangles.given = subject.scene.triangle_count();
-    let all: Vec<&Drawing> = drawings.iter().collect();
+    let all: Vec<&Drawing> = shown.iter().map(|s| &s.drawing).collect();
     let features = wanted.iter().flat_map(|w| &w.features).map(FeatureReport::from).collect();
     let told_scale = told_scale(args, kind, subject, &laid);
     let drawing = DrawingReport::new(style.name(), &all, &laid, features);
     report.drawing = Some(DrawingReport { told_scale, ..drawing });
-    write(args, kind, sink, laid.sheet, &drawings, &mut report, start)?;
+    write(args, kind, sink, laid.sheet, &all, &mut report, start)?;
     report.files = vec![sink.name()];
     Ok((report, unseen))
 }
@@ -335,7 +344,7 @@ fn write(
     kind: Kind,
     sink: &mut Sink,
     sheet: Sheet,
-    drawings: &[Drawing],
+    drawings: &[&Drawing],
     report: &mut PictureReport,
     start: Instant,
 ) -> Result<(), Failure> {
@@ -357,7 +366,7 @@ fn write(
             report.raster_seconds = start.elapsed().as_secs_f64();
             let start = Instant::now();
             let empty = Drawing::default();
-            let drawing = drawings.first().unwrap_or(&empty);
+            let drawing = drawings.first().copied().unwrap_or(&empty);
             let options =
                 FileOptions { dxf: dxf_strokes(args), machine: args.drawing.machine.options() };
             output::deliver(target, |out| {
@@ -487,27 +496,9 @@ fn view(args: &RenderArgs) -> ViewArgs {
 
 /// The camera of the view options.
 fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result<Camera, Failure> {
-    let shot = Shot { view: None, size: size(args), turn: frame.zip(args.picture.turntable) };
+    let shot =
+        camera::Shot { view: None, size: size(args), turn: frame.zip(args.picture.turntable) };
     camera::camera(&view(args), scene, &shot)
-}
-
-/// Front, top, right, isometric: parallel, with one target, so that the views are aligned.
-fn sheet_cameras(scene: &Scene) -> [Camera; 4] {
-    let sphere = scene.bounding_sphere();
-    let target = fit::center(scene).or(sphere.map(|s| s.center)).unwrap_or(DVec3::ZERO);
-    let radius = sphere.map_or(1.0, |s| s.radius).max(target.abs().max_element() * 1e-9).max(1e-30);
-    let reach = radius * 2.5;
-    [NamedView::Front, NamedView::Top, NamedView::Right, NamedView::Iso].map(|view| {
-        let direction = view.direction(scene.up_axis);
-        Camera {
-            eye: target + direction.to_eye() * reach,
-            target,
-            up: direction.up(),
-            projection: Projection::Orthographic { height: 2.0 * radius * 1.05 },
-            near: reach - 1.2 * radius,
-            far: reach + 1.2 * radius,
-        }
-    })
 }
 
 fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
@@ -532,29 +523,38 @@ fn lay_out(
     kind: Kind,
     subject: &Subject,
     (frame, room): (Option<u32>, f64),
-    drawings: &[Drawing],
+    (shown, called): (&[Shown], &Callouts),
 ) -> Result<LaidOut, Failure> {
-    let paper = paper_options(args, kind, subject, frame, drawings)?;
+    let paper = paper_options(args, kind, subject, frame, shown)?;
     let options = paper::Options { around: room, ..paper };
     let name = args.drawing.title.clone().unwrap_or_else(|| subject.name.to_owned());
-    let laid = match drawings {
-        [front, top, right, iso] => {
-            let title = TitleBlock {
-                name,
-                unit: unit(args, subject).name().to_owned(),
-                date: args.drawing.date.clone(),
-            };
-            paper::third_angle(&Views { front, top, right, iso }, &title, &options)
-        }
-        [drawing, ..] => paper::lay_out(drawing, &name, &options),
-        [] => paper::lay_out(&Drawing::default(), &name, &options),
+    let views: Vec<SheetView> = shown.iter().filter_map(Shown::sheet_view).collect();
+    let laid = if views.is_empty() {
+        let empty = Drawing::default();
+        let drawing = shown.first().map_or(&empty, |s| &s.drawing);
+        paper::lay_out(drawing, &name, &options)
+    } else {
+        let sheet = args.drawing.sheet;
+        let title = sheet.map(|_| TitleBlock {
+            name,
+            unit: unit(args, subject).name().to_owned(),
+            date: args.drawing.date.clone(),
+        });
+        let contents = Contents {
+            angle: sheet.map(Into::into).unwrap_or_default(),
+            views: &views,
+            callouts: &called.callouts,
+            parts: &called.parts,
+            title: title.as_ref(),
+        };
+        paper::lay_out_views(&contents, &options)
     };
     laid.map_err(|e| Failure::Usage(format!("--{e}")))
 }
 
 /// Whether a drawing without page and scale is 1:1: for machines, and where that makes a handy sheet.
-fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, drawings: &[Drawing]) -> bool {
-    let sides = drawings.iter().filter_map(Drawing::bounds).map(|b| b.size().max_element());
+fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, shown: &[Shown]) -> bool {
+    let sides = shown.iter().filter_map(|s| s.drawing.bounds()).map(|b| b.size().max_element());
     let size = sides.fold(0.0, f64::max) * unit(args, subject).millimetres();
     match kind {
         Kind::Drawing(DrawingFormat::Dxf) => (SMALLEST..=LARGEST).contains(&size),
@@ -581,12 +581,17 @@ fn told_scale(args: &RenderArgs, kind: Kind, subject: &Subject, laid: &LaidOut) 
     })
 }
 
+/// Options that the library refuses.
+fn usage(e: durer::Error) -> Failure {
+    Failure::Usage(e.to_string())
+}
+
 fn paper_options(
     args: &RenderArgs,
     kind: Kind,
     subject: &Subject,
     frame: Option<u32>,
-    drawings: &[Drawing],
+    shown: &[Shown],
 ) -> Result<paper::Options, Failure> {
     let drawing = &args.drawing;
     let view = &args.view;
@@ -607,7 +612,7 @@ fn paper_options(
     let parallel = view.fov.is_none() && view.eye.is_none() && view.camera.is_none();
     let scale = match (on_page, parallel) {
         (true, true) => Scale::Standard,
-        (false, true) if is_true_size(args, kind, subject, drawings) => Scale::Given(1.0),
+        (false, true) if is_true_size(args, kind, subject, shown) => Scale::Given(1.0),
         _ => Scale::Fit,
     };
     // A painted window fills the picture, as pixels of surfaces do.

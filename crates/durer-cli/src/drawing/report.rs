@@ -32,9 +32,6 @@ pub struct DrawingReport {
     /// Round parts, where they are asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub features: Vec<FeatureReport>,
-    /// What the paper should show but does not.
-    #[serde(skip)]
-    pub notes: Vec<String>,
     /// What is to be told of the scale.
     #[serde(skip)]
     pub told_scale: Option<String>,
@@ -92,7 +89,6 @@ impl DrawingReport {
             border_edges: drawings.iter().map(|d| d.edges.borders).sum(),
             lines: LineClass::ALL.iter().filter_map(class).collect(),
             features,
-            notes: laid.notes.clone(),
             told_scale: None,
         }
     }

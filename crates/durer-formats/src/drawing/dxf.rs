@@ -2,7 +2,7 @@
 //! what reads DXF 2000 reads it.
 //!
 //! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the
-//! sheet is one with a colour, a line weight and a line type, CONTINUOUS or HIDDEN; polylines are
+//! sheet is one with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are
 //! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, text is TEXT, areas are HATCH with solid fill.
 //!
 //! Written from Autodesk's *DXF Reference* (2004).

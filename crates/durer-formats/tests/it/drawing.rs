@@ -1,9 +1,14 @@
 //! Drawings on paper and in files.
 
-use durer::math::DVec2;
-use durer::paper::{Hidden, LaidOut, Options, TitleBlock, Views, dashes, lay_out, third_angle};
+use durer::math::{DVec2, DVec3, Plane, Rect};
+use durer::paper::{
+    Angle, Callout, Contents, Detail, Hidden, LaidOut, Options, PartsListRow, SheetView,
+    TitleBlock, ViewKind, dashes, lay_out, lay_out_views,
+};
+use durer::scene::{Camera, Projection, UpAxis};
 use durer::target::drawing::{Anchor, Drawing, Label, Line, LineClass, Region, RegionKind};
 use durer::target::sheet::Mark;
+use durer::view::projection::NamedView;
 use durer_formats::drawing::{
     DrawingFormat, DxfStrokes, FileOptions, write, write_dxf, write_geojson, write_hpgl, write_svg,
 };
@@ -28,6 +33,7 @@ fn plate(w: f64, h: f64) -> Drawing {
             rings: vec![rectangle(w, h), hole.clone()],
             color: [200, 210, 230, 255],
             item: Some(7),
+            part: None,
         }],
         lines: vec![
             line(LineClass::Silhouette, 0, rectangle(w, h), true),
@@ -216,34 +222,318 @@ fn every_format_gives_the_same_bytes_again_and_takes_an_empty_sheet() {
     }
 }
 
+/// A parallel view of the origin from a side of a model whose z axis is up.
+fn camera(side: NamedView) -> Camera {
+    let direction = side.direction(UpAxis::Z);
+    Camera {
+        eye: direction.to_eye() * 500.0,
+        target: DVec3::ZERO,
+        up: direction.up(),
+        projection: Projection::Orthographic { height: 200.0 },
+        near: 1.0,
+        far: 1000.0,
+    }
+}
+
+/// The four usual views of a block of 120 × 70 × 40.
+fn block() -> [(NamedView, Drawing); 4] {
+    [
+        (NamedView::Front, plate(60.0, 20.0)),
+        (NamedView::Top, plate(60.0, 35.0)),
+        (NamedView::Right, plate(35.0, 20.0)),
+        (NamedView::Iso, plate(62.0, 45.0)),
+    ]
+}
+
+fn principal(views: &[(NamedView, Drawing)]) -> Vec<SheetView<'_>> {
+    let all = views.iter();
+    all.map(|(side, drawing)| SheetView {
+        kind: ViewKind::Principal(*side),
+        camera: camera(*side),
+        drawing,
+    })
+    .collect()
+}
+
+fn on_sheet(angle: Angle, views: &[SheetView], scale: &str, page: &str) -> durer::Result<LaidOut> {
+    let (page, scale) = (page.parse()?, scale.parse()?);
+    let options = Options { margin: 10.0, scale, page, ..Options::default() };
+    let title = TitleBlock { name: "Plate".to_owned(), unit: "mm".to_owned(), date: None };
+    let contents = Contents { angle, views, callouts: &[], parts: &[], title: Some(&title) };
+    lay_out_views(&contents, &options)
+}
+
+/// The rectangles around strokes of a layer.
+fn boxes(laid: &LaidOut, layer: &str) -> Vec<Rect> {
+    let layer = laid.sheet.layers.iter().find(|l| l.name == layer).expect("a layer");
+    let points = layer.marks.iter().filter_map(|m| match m {
+        Mark::Stroke { points, .. } => Rect::around(points.iter().copied()),
+        _ => None,
+    });
+    points.collect()
+}
+
+fn texts(laid: &LaidOut, layer: &str) -> Vec<(String, DVec2)> {
+    let layer = laid.sheet.layers.iter().find(|l| l.name == layer).expect("a layer");
+    let texts = layer.marks.iter().filter_map(|m| match m {
+        Mark::Text { text, at, .. } => Some((text.clone(), *at)),
+        _ => None,
+    });
+    texts.collect()
+}
+
+/// That views lie beside each other, within the frame and above the title block of an A4 sheet.
+fn assert_apart(views: &[Rect]) {
+    for (i, a) in views.iter().enumerate() {
+        assert!(a.min().min_element() > 10.0 && a.max().x < 287.0 && a.max().y < 184.0, "{a:?}");
+        assert!(views[..i].iter().all(|b| !a.overlaps(b)), "{views:?}");
+    }
+}
+
 #[test]
 fn third_angle_views_are_aligned_and_on_the_paper() {
-    let (front, top) = (plate(60.0, 20.0), plate(60.0, 35.0));
-    let (right, iso) = (plate(35.0, 20.0), plate(62.0, 45.0));
-    let views = Views { front: &front, top: &top, right: &right, iso: &iso };
-    let options = Options { margin: 10.0, scale: "auto".parse().unwrap(), ..Options::default() };
-    let title = TitleBlock { name: "Plate".to_owned(), unit: "mm".to_owned(), date: None };
-    let laid = third_angle(&views, &title, &options).unwrap();
+    let block = block();
+    let laid = on_sheet(Angle::Third, &principal(&block), "auto", "fit").unwrap();
     assert_eq!((laid.scale, laid.sheet.size), (1.0, DVec2::new(297.0, 210.0)));
-    let layer = laid.sheet.layers.iter().find(|l| l.name == "visible-silhouette").unwrap();
-    let boxes: Vec<(DVec2, DVec2)> = layer
-        .marks
-        .iter()
-        .map(|m| match m {
-            Mark::Stroke { points, .. } => {
-                points.iter().fold((points[0], points[0]), |(a, b), p| (a.min(*p), b.max(*p)))
-            }
-            other => panic!("{other:?}"),
-        })
-        .collect();
-    let [front, top, right, iso] = boxes[..] else { panic!("{boxes:?}") };
-    assert_eq!((front.0.x, front.1.x), (top.0.x, top.1.x));
-    assert_eq!((front.0.y, front.1.y), (right.0.y, right.1.y));
-    assert!(top.1.y < front.0.y && front.1.x < right.0.x);
-    assert!(iso.0.x > top.1.x && iso.1.y < right.0.y);
-    for (min, max) in boxes {
-        assert!(min.min_element() > 10.0 && max.x < 287.0 && max.y < 184.0);
+    let [front, top, right, iso] = boxes(&laid, "visible-silhouette")[..] else { panic!() };
+    assert_eq!((front.min().x, front.max().x), (top.min().x, top.max().x));
+    assert_eq!((front.min().y, front.max().y), (right.min().y, right.max().y));
+    assert!(top.max().y < front.min().y && front.max().x < right.min().x);
+    assert!(iso.min().x > top.max().x && iso.max().y < right.min().y);
+    assert_apart(&[front, top, right, iso]);
+}
+
+#[test]
+fn first_angle_views_stand_on_the_other_sides() {
+    let block = block();
+    let laid = on_sheet(Angle::First, &principal(&block), "auto", "fit").unwrap();
+    let [front, top, right, iso] = laid.views[..].iter().map(|v| v.bounds).collect::<Vec<_>>()[..]
+    else {
+        panic!("{:?}", laid.views)
+    };
+    assert_eq!((front.min().x, front.max().x), (top.min().x, top.max().x));
+    assert_eq!((front.min().y, front.max().y), (right.min().y, right.max().y));
+    assert!(top.min().y > front.max().y && front.min().x > right.max().x);
+    assert!(iso.max().x < top.min().x && iso.min().y > right.max().y);
+    assert_apart(&[front, top, right, iso]);
+    // The circles of the symbol are right of the cone; the cone narrows to the left either way.
+    for (angle, side) in [(Angle::First, 1.0), (Angle::Third, -1.0)] {
+        let laid = on_sheet(angle, &principal(&block), "auto", "fit").unwrap();
+        let block = boxes(&laid, "title-block");
+        let middle = |size: f64| {
+            let found = block.iter().find(|b| (b.size() - DVec2::splat(size)).length() < 0.1);
+            found.map(|b| (b.min().x + b.max().x) * 0.5).expect("a shape of the symbol")
+        };
+        assert!((middle(4.0) - (middle(8.0))).abs() < 0.1);
+        let symbol = boxes(&laid, "title-block");
+        let cone = symbol.iter().rev().find(|b| (b.size().y - 8.0).abs() < 1e-9).unwrap();
+        assert_eq!((middle(4.0) - (cone.min().x + cone.max().x) * 0.5).signum(), side);
     }
+}
+
+#[test]
+fn views_on_sheets_tell_where_points_of_the_model_are() {
+    let block = block();
+    let laid = on_sheet(Angle::Third, &principal(&block), "1:2", "A4").unwrap();
+    let corner = DVec3::new(60.0, -35.0, 20.0); // right, front, top
+    let at: Vec<DVec2> = laid.views.iter().map(|v| v.sheet_from_model(corner).unwrap()).collect();
+    assert_eq!(
+        laid.views.iter().map(|v| v.name.as_str()).collect::<Vec<_>>(),
+        ["front", "top", "right", "iso"]
+    );
+    assert!((at[0].x - at[1].x).abs() < 1e-9 && (at[0].y - at[2].y).abs() < 1e-9);
+    let upper_right = DVec2::new(laid.views[0].bounds.max().x, laid.views[0].bounds.min().y);
+    assert!((at[0] - upper_right).length() < 1e-9);
+    assert!((laid.views[0].factor - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn all_six_sides_have_their_places() {
+    use NamedView::{Back, Bottom, Front, Iso, Left, Right, Top};
+    let size = |side| match side {
+        Front | Back => (60.0, 20.0),
+        Top | Bottom => (60.0, 35.0),
+        Left | Right => (35.0, 20.0),
+        Iso => (62.0, 45.0),
+    };
+    let drawn: Vec<(NamedView, Drawing)> =
+        NamedView::ALL.iter().map(|v| (*v, plate(size(*v).0, size(*v).1))).collect();
+    for angle in [Angle::First, Angle::Third] {
+        let laid = on_sheet(angle, &principal(&drawn), "auto", "fit").unwrap();
+        let of = |side: NamedView| {
+            laid.views.iter().find(|v| v.name == side.name()).expect("a view").bounds
+        };
+        let turn = if angle == Angle::Third { 1.0 } else { -1.0 };
+        let right_of = |a: NamedView, b: NamedView| (of(a).min().x - of(b).min().x) * turn > 0.0;
+        let below = |a: NamedView, b: NamedView| (of(a).min().y - of(b).min().y) * turn > 0.0;
+        assert!(right_of(Right, Front) && right_of(Front, Left) && right_of(Back, Right));
+        assert!(below(Front, Top) && below(Bottom, Front) && right_of(Iso, Top));
+        let all: Vec<Rect> = laid.views.iter().map(|v| v.bounds).collect();
+        assert_apart(&all);
+    }
+}
+
+fn section(letter: &str, normal: DVec3, drawing: &Drawing) -> (ViewKind, Camera, Drawing) {
+    let plane = Plane { normal, distance: 10.0 };
+    let kind = ViewKind::Section { letter: letter.to_owned(), plane };
+    (kind, Camera { eye: normal * -500.0, ..camera(NamedView::Front) }, drawing.clone())
+}
+
+#[test]
+fn sections_get_views_with_titles_and_lines_where_they_cut() {
+    let block = block();
+    let mut views = principal(&block);
+    // What stays is on the right of x = −10, and above y = −10 in a view from above.
+    let (a, b) = (section("A", DVec3::X, &block[2].1), section("B", DVec3::Y, &block[0].1));
+    let askew = section("C", DVec3::new(1.0, 1.0, 1.0), &block[2].1);
+    for (kind, camera, drawing) in [&a, &b, &askew] {
+        views.push(SheetView { kind: kind.clone(), camera: *camera, drawing });
+    }
+    let laid = on_sheet(Angle::Third, &views, "auto", "A3").unwrap();
+    let names: Vec<&str> = laid.views[4..].iter().map(|v| v.name.as_str()).collect();
+    assert_eq!(names, ["A–A", "B–B", "C–C"]);
+    let titles = texts(&laid, "view-titles");
+    for (view, (title, at)) in laid.views[4..].iter().zip(&titles) {
+        assert_eq!(&view.name, title);
+        assert!(at.y < view.bounds.min().y && at.y > view.bounds.min().y - 10.0);
+    }
+    for (i, a) in laid.views.iter().enumerate() {
+        assert!(laid.views[..i].iter().all(|b| !a.bounds.overlaps(&b.bounds)));
+        assert!(a.bounds.max().y < laid.sheet.size.y - 26.0);
+    }
+    // A stands upright in the front view, at x = −10, with its arrows and letters left of it.
+    let (front, top) = (&laid.views[0], &laid.views[1]);
+    let lines = boxes(&laid, "cutting-planes");
+    let x = front.sheet_from_model(DVec3::new(-10.0, 0.0, 0.0)).unwrap().x;
+    assert!((lines[0].min().x - x).abs() < 1e-9 && lines[0].size().x < 1e-9);
+    assert!(lines[0].min().y < front.bounds.min().y && lines[0].max().y > front.bounds.max().y);
+    let letters = texts(&laid, "cutting-planes");
+    let said: Vec<&str> = letters.iter().map(|l| l.0.as_str()).collect();
+    assert_eq!(said, ["A", "A", "B", "B"]);
+    assert!(letters[..2].iter().all(|l| l.1.x < x - 9.0));
+    // B lies in the view from above and is looked at from below: from the front.
+    let y = top.sheet_from_model(DVec3::new(0.0, -10.0, 0.0)).unwrap().y;
+    assert!(letters[2..].iter().all(|l| l.1.y > y + 9.0 && l.1.x < top.bounds.max().x + 20.0));
+    // C is seen edge on by none.
+    assert_eq!(laid.notes.len(), 1);
+    assert!(laid.notes[0].contains("section C"), "{:?}", laid.notes);
+}
+
+#[test]
+fn details_are_cut_to_their_circles() {
+    let block = block();
+    let detail = Detail {
+        letter: "D".to_owned(),
+        of: 0,
+        center: DVec2::new(60.0, 20.0),
+        radius: 5.0,
+        scale: None,
+    };
+    let cut = detail.cut(&block[0].1).unwrap();
+    let [corner] = &cut.lines[..] else { panic!("{:?}", cut.lines) };
+    let expected = [(60.0, 15.0), (60.0, 20.0), (55.0, 20.0)].map(DVec2::from);
+    assert_eq!(corner.points.len(), 3);
+    assert!(corner.points.iter().zip(expected).all(|(p, e)| p.abs_diff_eq(e, 1e-9)), "{corner:?}");
+    assert!(!corner.closed && cut.labels.is_empty());
+    // A quarter of the disc is filled.
+    let quarter = std::f64::consts::PI * 25.0 / 4.0;
+    assert!((cut.regions[0].area() / quarter - 1.0).abs() < 2e-3, "{}", cut.regions[0].area());
+    let mut views = principal(&block);
+    let kind = ViewKind::Detail(detail);
+    views.push(SheetView { kind, camera: views[0].camera, drawing: &cut });
+    let laid = on_sheet(Angle::Third, &views, "auto", "A4").unwrap();
+    // 10 mm wide at 1:2; at 5:1 it is 50 mm.
+    assert_eq!((laid.scale, laid.views[4].factor), (0.5, 5.0));
+    assert_eq!(texts(&laid, "view-titles")[0].0, "D (5:1)");
+    let circles = boxes(&laid, "details");
+    assert!(
+        (circles[0].size() - 50.0).length() < 1e-9 && (circles[1].size() - 5.0).length() < 1e-9
+    );
+    assert!(circles[1].contains(laid.views[0].sheet_from_plane(DVec2::new(60.0, 20.0))));
+    let all: Vec<Rect> = laid.views.iter().map(|v| v.bounds).collect();
+    assert_apart(&all);
+}
+
+#[test]
+fn views_that_have_no_room_are_refused_and_fitted_paper_grows() {
+    let block = block();
+    let mut views = principal(&block);
+    let (kind, camera, drawing) = section("A", DVec3::X, &block[0].1);
+    views.push(SheetView { kind, camera, drawing: &drawing });
+    let error = on_sheet(Angle::Third, &views, "1:1", "A4").unwrap_err().to_string();
+    assert!(error.contains("5 views") && error.contains("1:2 has room"), "{error}");
+    let laid = on_sheet(Angle::Third, &views, "1:1", "fit").unwrap();
+    assert!(laid.views[4].bounds.max().y < laid.sheet.size.y - 26.0 && laid.scale == 1.0);
+    assert!(on_sheet(Angle::Third, &views, "auto", "20x40").is_err());
+    let filled = Options { page: "A4".parse().unwrap(), ..Options::default() };
+    let title = TitleBlock::default();
+    let contents = Contents {
+        angle: Angle::Third,
+        views: &views,
+        callouts: &[],
+        parts: &[],
+        title: Some(&title),
+    };
+    let laid = lay_out_views(&contents, &filled).unwrap();
+    assert!(laid.scale > 0.5 && laid.scale < 1.0, "{}", laid.scale);
+}
+
+#[test]
+fn callouts_stand_around_their_view_and_the_list_on_the_title_block() {
+    let block = block();
+    let views = principal(&block);
+    let callout = |(number, x): (&str, f64)| Callout {
+        view: 3,
+        number: number.to_owned(),
+        at: DVec2::new(x, 0.0),
+    };
+    let callouts = [("1", -30.0), ("2", 0.0), ("3", 30.0)].map(callout);
+    let part = |(number, name, quantity): (&str, &str, usize)| PartsListRow {
+        number: number.to_owned(),
+        name: name.to_owned(),
+        quantity,
+    };
+    let parts = [("1", "base", 1), ("2", "screw", 4), ("3", "lid", 1)].map(part);
+    let title = TitleBlock { name: "Block".to_owned(), unit: "mm".to_owned(), date: None };
+    let contents = Contents {
+        angle: Angle::Third,
+        views: &views,
+        callouts: &callouts,
+        parts: &parts,
+        title: Some(&title),
+    };
+    let page = "A3".parse().unwrap();
+    let options =
+        Options { page, margin: 10.0, scale: "1:1".parse().unwrap(), ..Options::default() };
+    let laid = lay_out_views(&contents, &options).unwrap();
+    let numbers = texts(&laid, "callouts");
+    assert_eq!(numbers.iter().map(|n| n.0.as_str()).collect::<Vec<_>>(), ["1", "2", "3"]);
+    let iso = laid.views[3].bounds;
+    let circles = boxes(&laid, "callouts");
+    let circles = circles.iter().filter(|b| (b.size() - 9.0).abs().max_element() < 0.1);
+    for circle in circles.clone() {
+        assert!(!circle.overlaps(&iso), "{circle:?} {iso:?}");
+        let others = laid.views[..3].iter();
+        assert!(others.clone().all(|v| !v.bounds.overlaps(circle)) && circle.min().y > 10.0);
+    }
+    assert_eq!(circles.count(), 3);
+    let rows: Vec<String> = texts(&laid, "parts-list").into_iter().map(|t| t.0).collect();
+    let expected = ["ITEM", "NAME", "QTY", "1", "base", "1", "2", "screw", "4", "3", "lid", "1"];
+    assert_eq!(rows, expected);
+    // Its heading stands on the title block, at the right; no view lies under it.
+    let list = Rect::around(boxes(&laid, "parts-list").iter().flat_map(|b| [b.min(), b.max()]));
+    let list = list.unwrap();
+    assert_eq!(list.max(), laid.sheet.size - DVec2::new(10.0, 26.0));
+    assert!(laid.views.iter().all(|v| !v.bounds.overlaps(&list)));
+    // Without a title block it takes its place.
+    let free = SheetView { kind: ViewKind::Free, ..views[3].clone() };
+    let callouts = callouts.clone().map(|c| Callout { view: 0, ..c });
+    let views = [free];
+    let contents = Contents { title: None, views: &views, callouts: &callouts, ..contents };
+    let laid = lay_out_views(&contents, &options).unwrap();
+    let list = boxes(&laid, "parts-list").iter().map(|b| b.max()).fold(DVec2::ZERO, DVec2::max);
+    assert_eq!(list, laid.sheet.size - 10.0);
+    assert!(laid.sheet.layers.iter().all(|l| l.name != "title-block"));
 }
 
 #[test]

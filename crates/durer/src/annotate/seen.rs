@@ -40,11 +40,12 @@ impl<'a> Seen<'a> {
         }
         let [right, up, back] = camera.axes();
         let lines = drawing.lines.iter().filter(|l| hidden || l.is_visible());
-        let points = lines.flat_map(|l| &l.points).map(|p| placed.from_plane(*p));
+        let points = lines.flat_map(|l| &l.points).map(|p| placed.sheet_from_plane(*p));
         let mut points: Vec<DVec2> = points.filter(|p| p.is_finite()).collect();
         points.sort_unstable_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
         points.dedup();
-        let drawn = drawing.bounds().map(|b| [b.min(), b.max()].map(|p| placed.from_plane(p)));
+        let drawn =
+            drawing.bounds().map(|b| [b.min(), b.max()].map(|p| placed.sheet_from_plane(p)));
         let bounds = drawn.and_then(Rect::around).unwrap_or(placed.bounds);
         Some(Self { placed, axes: [right, up, -back], points, bounds })
     }
@@ -60,7 +61,7 @@ impl<'a> Seen<'a> {
 
     /// A point of the world on the sheet.
     pub fn point(&self, p: DVec3) -> DVec2 {
-        self.placed.from_model(p).unwrap_or(DVec2::NAN)
+        self.placed.sheet_from_model(p).unwrap_or(DVec2::NAN)
     }
 
     /// A direction of the world on the sheet, where it is not of unit length any more.

@@ -1,23 +1,25 @@
 //! From the plane of a picture to paper: page, scale, pens, line types, layers.
 //!
-//! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`third_angle`] four views of a thing with a title
-//! block; [`paint`] makes pixels of a sheet. Writers of files take sheets.
+//! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`lay_out_views`] several views of a thing with a
+//! title block; [`paint`] makes pixels of a sheet. Writers of files take sheets.
 
 pub mod dashes;
 mod fitted;
+mod multiview;
 pub mod order;
 mod page;
 mod paint;
 mod pens;
 mod placed_view;
-mod third_angle;
 mod title_block;
 
+pub use multiview::{
+    Angle, Callout, Contents, Detail, PartsListRow, SheetView, ViewKind, lay_out_views,
+};
 pub use page::{Page, Scale, scale_text, standard_scale};
 pub use paint::paint;
 pub use pens::Pens;
 pub use placed_view::PlacedView;
-pub use third_angle::{Views, third_angle};
 pub use title_block::TitleBlock;
 
 use crate::curve::{pieces, stroke_font};
@@ -239,7 +241,7 @@ pub fn lay_out(drawing: &Drawing, title: &str, options: &Options) -> Result<Laid
     let origin = size * 0.5 - DVec2::new(middle.x, -middle.y) * factor;
     let mut sheet =
         Sheet { title: title.to_owned(), size, background: options.background, ..Sheet::default() };
-    put(&mut sheet, &[Placed { drawing, origin }], factor, options);
+    put(&mut sheet, &[Placed { drawing, origin, factor }], options);
     let view = PlacedView::new("", None, frame, origin, factor);
     Ok(LaidOut { sheet, scale, views: vec![view], notes: Vec::new() })
 }
@@ -261,6 +263,8 @@ struct Placed<'a> {
     drawing: &'a Drawing,
     /// Millimetres.
     origin: DVec2,
+    /// Millimetres per plane unit.
+    factor: f64,
 }
 
 impl<'a> Placed<'a> {
@@ -272,17 +276,16 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// Puts drawings onto a sheet at one scale: `factor` is millimetres per plane unit.
-fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
-    put_regions(sheet, views, factor);
+/// Puts drawings onto a sheet.
+fn put(sheet: &mut Sheet, views: &[Placed], options: &Options) {
+    put_regions(sheet, views);
     let deepest = match options.hidden {
         Hidden::Drop => 0,
         Hidden::Dashed => 1,
         Hidden::Layer => DEEPEST,
     };
     let is_drawn = |l: &&Line| deepest > 0 || l.is_visible();
-    let all: Vec<Strokes> =
-        views.iter().map(|v| Strokes::new(v, factor, options.fit, is_drawn)).collect();
+    let all: Vec<Strokes> = views.iter().map(|v| Strokes::new(v, options.fit, is_drawn)).collect();
     for depth in (0..=deepest).rev() {
         let steps = steps(views, depth);
         let classes = LineClass::ALL.iter().rev();
@@ -306,7 +309,7 @@ fn put(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
             }
         }
     }
-    put_labels(sheet, views, factor, options);
+    put_labels(sheet, views, options);
 }
 
 /// The steps of nearness that lines behind so many surfaces have, the farthest first.
@@ -351,14 +354,9 @@ struct Strokes<'a> {
 }
 
 impl<'a> Strokes<'a> {
-    fn new(
-        view: &Placed<'a>,
-        factor: f64,
-        tolerance: f64,
-        is_drawn: impl Fn(&&Line) -> bool,
-    ) -> Self {
+    fn new(view: &Placed<'a>, tolerance: f64, is_drawn: impl Fn(&&Line) -> bool) -> Self {
         let lines: Vec<_> = view.lines().filter(|(_, line)| is_drawn(line)).collect();
-        let origin = view.origin;
+        let (origin, factor) = (view.origin, view.factor);
         let curves = match tolerance > 0.0 {
             true => {
                 let alone: Vec<&Line> = lines.iter().map(|(_, line)| *line).collect();
@@ -404,12 +402,12 @@ fn corners(curve: &Curve) -> Vec<DVec2> {
     curve.iter().map(|(start, _)| start).chain(last).collect()
 }
 
-fn put_regions(sheet: &mut Sheet, views: &[Placed], factor: f64) {
+fn put_regions(sheet: &mut Sheet, views: &[Placed]) {
     let mut marks = Vec::new();
     for view in views {
         for region in &view.drawing.regions {
             let ring = |r: &Vec<DVec2>| -> Vec<DVec2> {
-                r.iter().map(|p| onto_paper(*p, view.origin, factor)).collect()
+                r.iter().map(|p| onto_paper(*p, view.origin, view.factor)).collect()
             };
             let rings: Vec<Vec<DVec2>> = region.rings.iter().map(ring).collect();
             if rings.iter().flatten().all(|p| p.is_finite()) && !rings.is_empty() {
@@ -422,12 +420,12 @@ fn put_regions(sheet: &mut Sheet, views: &[Placed], factor: f64) {
     }
 }
 
-fn put_labels(sheet: &mut Sheet, views: &[Placed], factor: f64, options: &Options) {
+fn put_labels(sheet: &mut Sheet, views: &[Placed], options: &Options) {
     let mut marks = Vec::new();
     for view in views {
         for label in view.drawing.labels.iter().filter(|l| l.at.is_finite() && l.height > 0.0) {
             let pen = text_pen(sheet, label.height, options);
-            let at = onto_paper(label.at, view.origin, factor);
+            let at = onto_paper(label.at, view.origin, view.factor);
             let (text, height, anchor) = (label.text.clone(), label.height, label.anchor);
             marks.push(Mark::Text { at, text, height, anchor, pen });
         }

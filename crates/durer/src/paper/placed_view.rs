@@ -35,19 +35,19 @@ impl PlacedView {
     }
 
     /// A point of the drawing's plane on the sheet, millimetres.
-    pub fn from_plane(&self, p: DVec2) -> DVec2 {
+    pub fn sheet_from_plane(&self, p: DVec2) -> DVec2 {
         onto_paper(p, self.origin, self.factor)
     }
 
     /// A point of the model on the sheet, millimetres; `None` where it lies before the near plane of a
     /// perspective view, or the camera is not known.
-    pub fn from_model(&self, p: DVec3) -> Option<DVec2> {
+    pub fn sheet_from_model(&self, p: DVec3) -> Option<DVec2> {
         let camera = self.camera.as_ref()?;
         let plane = PicturePlane::of_camera(camera, 1.0).ok()?;
         let seen = match camera.projection {
             Projection::Orthographic { .. } => Some(plane.plane_from_world(p).at),
             Projection::Perspective { .. } => plane.project(p),
         };
-        seen.map(|at| self.from_plane(at)).filter(|at| at.is_finite())
+        seen.map(|at| self.sheet_from_plane(at)).filter(|at| at.is_finite())
     }
 }

@@ -1,6 +1,6 @@
 //! The frame of a sheet and the block in its lower right corner that says what is drawn.
 
-use super::{Options, pen_index, scale_text, text_pen};
+use super::{Angle, Options, pen_index, scale_text, text_pen};
 use crate::curve::stroke_font;
 use crate::math::DVec2;
 use crate::target::drawing::Anchor;
@@ -36,7 +36,7 @@ const FRAME: f64 = 0.5;
 const THIN: f64 = 0.25;
 
 /// Adds the layers `frame` and `title-block`.
-pub fn put(sheet: &mut Sheet, title: &TitleBlock, scale: f64, options: &Options) {
+pub fn put(sheet: &mut Sheet, title: &TitleBlock, angle: Angle, scale: f64, options: &Options) {
     let color = options.pens.color;
     let line = |width: f64| Pen { width, color, dashes: Vec::new() };
     let (frame, thin) = (pen_index(sheet, line(FRAME)), pen_index(sheet, line(THIN)));
@@ -47,7 +47,7 @@ pub fn put(sheet: &mut Sheet, title: &TitleBlock, scale: f64, options: &Options)
     let corner = DVec2::new(min.x.max(max.x - WIDTH), max.y - HEIGHT);
     let mut marks = vec![rectangle(corner, max, frame)];
     let mut block = Block { marks: &mut marks, corner, right: max.x, thin };
-    symbol(block.cell(SYMBOL), &mut block, thin);
+    symbol(block.cell(SYMBOL), angle, &mut block, thin);
     let scale = scale_text(scale);
     let date = title.date.as_deref().unwrap_or_default();
     let cells = [("DATE", date, DATE), ("UNIT", &title.unit, UNIT), ("SCALE", &scale, SCALE)];
@@ -58,6 +58,12 @@ pub fn put(sheet: &mut Sheet, title: &TitleBlock, scale: f64, options: &Options)
     let width = block.right - corner.x;
     write(sheet, &mut block, "TITLE", &title.name, corner, width, options);
     sheet.layers.push(SheetLayer { name: "title-block".to_owned(), marks });
+}
+
+/// The height of letters at which a text has room: the given one, or less.
+pub fn fitted(text: &str, height: f64, room: f64) -> f64 {
+    let natural = stroke_font::line(text, height).advance;
+    if natural > room { height * room / natural } else { height }
 }
 
 struct Block<'a> {
@@ -90,9 +96,7 @@ fn write(
     width: f64,
     options: &Options,
 ) {
-    let room = (width - 2.0 * PAD).max(0.0);
-    let natural = stroke_font::line(text, TEXT).advance;
-    let height = if natural > room { TEXT * room / natural } else { TEXT };
+    let height = fitted(text, TEXT, (width - 2.0 * PAD).max(0.0));
     let lines = [(caption, CAPTION, PAD + CAPTION), (text, height, HEIGHT - PAD - 2.0)];
     for (text, height, y) in lines.into_iter().filter(|l| l.1 > 0.05) {
         let pen = text_pen(sheet, height, options);
@@ -107,12 +111,13 @@ fn write(
     }
 }
 
-/// The symbol of third-angle projection: a truncated cone from the side, and its narrow end, which is
-/// on the left, as seen from the left.
-fn symbol(at: DVec2, block: &mut Block, pen: usize) {
+/// The symbol of the projection: a truncated cone whose narrow end is on the left, and that end as seen
+/// from the left, on the side where the angle puts that view (ISO 5456-2).
+fn symbol(at: DVec2, angle: Angle, block: &mut Block, pen: usize) {
     let middle = at + DVec2::new(SYMBOL, HEIGHT) * 0.5;
     let (small, large) = (2.0, 4.0);
-    let (circles, cone) = (middle - DVec2::new(5.5, 0.0), middle + DVec2::new(5.5, 0.0));
+    let apart = DVec2::new(if angle == Angle::Third { 5.5 } else { -5.5 }, 0.0);
+    let (circles, cone) = (middle - apart, middle + apart);
     for radius in [small, large] {
         let points = (0..48).map(|i| {
             let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / 48.0);

@@ -201,8 +201,12 @@ fn seen_height(camera: &Camera) -> f64 {
 pub fn hatched(drawing: Drawing, spacing: f64) -> Drawing {
     let options = hatch::Options { spacing, ..hatch::Options::default() };
     let mut lines: Vec<Line> = hatch::hatch(&drawing.regions, &options);
+    let mut nearness = drawing.nearness;
+    if !nearness.is_empty() {
+        nearness.splice(..0, lines.iter().map(|_| None));
+    }
     lines.extend(drawing.lines);
-    Drawing { regions: Vec::new(), lines, ..drawing }
+    Drawing { regions: Vec::new(), lines, nearness, ..drawing }
 }
 
 /// The classes that `names` name, joined by commas; `all` is all that edges can be but

@@ -53,7 +53,7 @@ pub fn regions(
             let color = options.color_at(part(mean, low, high));
             let color = color.or(options.background).unwrap_or([255; 4]);
             let kind = RegionKind::Surface;
-            regions.push(Region { kind, rings: vec![ring], color, item: None });
+            regions.push(Region { kind, rings: vec![ring], color, item: None, part: None });
         }
     }
     Ok(regions)

@@ -145,6 +145,8 @@ pub struct Region {
     pub color: [u8; 4],
     /// The face that it shows: the triangle's index in scene order; `None` where several are merged.
     pub item: Option<u32>,
+    /// Of a cap, the instance that was cut, where that is known: parts are hatched in directions of their own.
+    pub part: Option<u32>,
 }
 
 impl Region {

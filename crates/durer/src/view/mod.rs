@@ -1,6 +1,8 @@
 //! From the world to the screen: windows and viewports, projection, culling, places for labels.
 
+pub mod components;
 pub mod cull;
+pub mod explode;
 pub mod interior_point;
 pub mod label;
 pub mod layout;

@@ -116,7 +116,7 @@ fn outlines_of_a_torus_are_as_long_as_they_are_exactly() {
             let found = lengths(&torus(around, across), &v);
             for (found, exact) in found.into_iter().zip(exact) {
                 let off = (found - exact).abs() / 20.0;
-                assert!(off < 0.01, "{to_eye}, {around} by {across}: {found}, not {exact}");
+                assert!(off < 0.004, "{to_eye}, {around} by {across}: {found}, not {exact}");
             }
         }
     }

@@ -375,6 +375,7 @@ fn visible_regions_hatched_by_tone() {
         rings: vec![[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from).to_vec()],
         color: [grey, grey, grey, 255],
         item: None,
+        part: None,
     };
     let length = |kind, grey| {
         let options = hatch::Options { spacing: 0.1, cross: false, ..Default::default() };
@@ -390,12 +391,37 @@ fn visible_regions_hatched_by_tone() {
 }
 
 #[test]
+fn caps_of_each_part_are_hatched_in_a_direction_of_their_own() {
+    let cap = |x: f64, part| Region {
+        kind: RegionKind::Cap,
+        rings: vec![[(x, 0.0), (x + 9.0, 0.0), (x + 9.0, 9.0), (x, 9.0)].map(DVec2::from).to_vec()],
+        color: [200, 60, 50, 255],
+        item: None,
+        part,
+    };
+    let regions = [cap(0.0, Some(3)), cap(10.0, Some(7)), cap(20.0, Some(3)), cap(30.0, None)];
+    let lines = hatch::hatch(&regions, &hatch::Options { spacing: 0.2, ..Default::default() });
+    let angle = |l: &durer::target::drawing::Line| {
+        let way = l.points[1] - l.points[0];
+        (way.y.atan2(way.x).to_degrees().round() as i64).rem_euclid(180)
+    };
+    for line in &lines {
+        let second = line.points[0].x > 9.5 && line.points[0].x < 19.5;
+        assert_eq!(angle(line), if second { 135 } else { 45 }, "{line:?}");
+    }
+    // 9 × 9 at a distance of four spacings.
+    let length: f64 = lines.iter().map(|l| l.length()).sum();
+    assert!((length / (4.0 * 81.0 / 0.8) - 1.0).abs() < 0.02, "{length}");
+}
+
+#[test]
 fn visible_regions_hatched_alike_share_their_lines() {
     let region = |x: f64, grey: u8| Region {
         kind: RegionKind::Surface,
         rings: vec![[(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 1.0)].map(DVec2::from).to_vec()],
         color: [grey, grey, grey, 255],
         item: None,
+        part: None,
     };
     let options = hatch::Options { spacing: 0.1, angle: 0.0, cross: true, ..Default::default() };
     let lines = hatch::hatch(&[region(0.05, 0), region(1.05, 0)], &options);

@@ -9,7 +9,6 @@ use args::{AnnotationArgs, Dimensioned};
 use durer::annotate::{self, Annotations, Feature, Shown};
 use durer::math::DVec3;
 use durer::paper::LaidOut;
-use durer::scene::Camera;
 use durer::target::drawing::Drawing;
 use durer::visibility::object::{Faces, Weld};
 use serde::Serialize;
@@ -75,14 +74,13 @@ impl Wanted {
     pub fn put(
         &self,
         laid: &mut LaidOut,
-        cameras: &[Camera],
-        drawings: &[Drawing],
+        shown: &[super::Shown],
         look: &Look,
     ) -> Result<(), Failure> {
-        for (view, camera) in laid.views.iter_mut().zip(cameras) {
-            view.camera.get_or_insert(*camera);
+        for (view, own) in laid.views.iter_mut().zip(shown) {
+            view.camera.get_or_insert(own.camera);
         }
-        let drawings: Vec<&Drawing> = drawings.iter().collect();
+        let drawings: Vec<&Drawing> = shown.iter().map(|s| &s.drawing).collect();
         let shown = Shown {
             views: &laid.views,
             drawings: &drawings,

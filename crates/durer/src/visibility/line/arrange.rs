@@ -5,6 +5,7 @@ use super::overlap::{Near, Piece, drawn_once};
 use super::page::{GridPoint, Page};
 use super::simplify::simplify;
 use super::stubs::without_stubs;
+use super::zigzag::without_zigzags;
 use crate::target::drawing::{Line, LineClass};
 use crate::{Error, Result};
 
@@ -25,6 +26,8 @@ pub(super) struct How {
     pub stubs: f64,
     /// How far beside a visible line a hidden one is under it.
     pub beneath: f64,
+    /// Whether silhouettes that are not sharp are those of smooth surfaces, which do not run to and fro.
+    pub smooth: bool,
 }
 
 impl How {
@@ -63,7 +66,10 @@ pub(super) fn corners(
 
 /// The finished lines.
 pub(super) fn arrange(page: &Page, pieces: Pieces, how: How) -> Vec<Line> {
-    let Pieces { all, corners } = pieces;
+    let Pieces { mut all, corners } = pieces;
+    if how.smooth {
+        without_zigzags(&mut all);
+    }
     let steps = how.tolerance * page.extent;
     let close = (steps * CLOSE).max(2.0);
     let near = Near {

@@ -19,6 +19,7 @@ mod stubs;
 mod table;
 mod vertex_normals;
 pub mod wireframe;
+mod zigzag;
 
 pub use edge_lines::{ClassSet, Intersections};
 pub use method::LineMethod;

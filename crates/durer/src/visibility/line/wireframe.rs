@@ -50,7 +50,7 @@ impl Default for Options {
 
 impl Options {
     fn how(&self) -> How {
-        How { tolerance: self.tolerance, stubs: 0.0, beneath: 0.0 }
+        How { tolerance: self.tolerance, stubs: 0.0, beneath: 0.0, smooth: false }
     }
 }
 

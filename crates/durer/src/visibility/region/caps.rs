@@ -21,8 +21,9 @@ use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::setup::Run;
 
-/// The visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected part a
-/// region of kind [`RegionKind::Cap`]. Of the options only the material and the culling count.
+/// The visible parts of a section's caps ([`Options::cap_material`]) alone, disjoint, each connected part of an
+/// instance's a region of kind [`RegionKind::Cap`]; what several instances have in common belongs to the first. Of
+/// the options only the material and the culling count.
 ///
 /// The scene must be what [`crate::view::section::cut`] gives: caps with faces on both of their sides are
 /// not told from others.
@@ -64,24 +65,45 @@ pub fn draw_caps(
         others.iter().for_each(|run| projector.project(run, &mut add));
     }
     let before = outlines(sides);
-    let mut visible = Shapes::new();
-    for (i, cap) in caps.iter().enumerate() {
-        let other_caps = caps.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, cap)| cap);
-        visible.append(&cap.visible(&before, other_caps)?);
-    }
-    // Where bodies go through each other their caps do, too.
-    let visible = combined(&visible, &Shapes::new(), BooleanOp::Union)?;
     let color = color.unwrap_or_default();
-    let regions = visible.polygons().map(|polygon| {
-        let plane_units = |ring: &[_]| ring.iter().map(|p| *p * frame.unit).collect();
-        let rings = polygon.rings().map(plane_units).collect();
-        Region { kind: RegionKind::Cap, rings, color, item: None }
-    });
-    Ok(Drawing { regions: regions.collect(), ..drawing })
+    let mut regions = Vec::new();
+    for (instance, visible) in by_part(&caps, &before)? {
+        regions.extend(visible.polygons().map(|polygon| {
+            let plane_units = |ring: &[_]| ring.iter().map(|p| *p * frame.unit).collect();
+            let rings = polygon.rings().map(plane_units).collect();
+            let part = u32::try_from(instance).ok();
+            Region { kind: RegionKind::Cap, rings, color, item: None, part }
+        }));
+    }
+    Ok(Drawing { regions, ..drawing })
+}
+
+/// What is seen of the caps of each instance. Where bodies go through each other their caps do, too: what is common
+/// to several is left to the first.
+fn by_part(caps: &[Cap], before: &Shapes) -> Result<Vec<(usize, Shapes)>> {
+    let mut parts: Vec<(usize, Shapes)> = Vec::new();
+    let mut taken: Vec<(Rect, Shapes)> = Vec::new();
+    for part in caps.chunk_by(|a, b| a.instance == b.instance) {
+        let mut visible = Shapes::new();
+        for cap in part {
+            let others = caps.iter().filter(|other| !std::ptr::eq(*other, cap));
+            visible.append(&cap.visible(before, others)?);
+        }
+        let Some(bounds) = Rect::around(visible.points().iter().copied()) else { continue };
+        let mut common = Shapes::new();
+        let overlapping = taken.iter().filter(|(other, _)| other.overlaps(&bounds));
+        overlapping.for_each(|(_, shapes)| common.append(shapes));
+        let own = combined(&visible, &common, BooleanOp::Difference)?;
+        taken.push((bounds, own.clone()));
+        parts.push((part[0].instance, own));
+    }
+    Ok(parts)
 }
 
 /// The caps of one mesh at one plane.
 struct Cap {
+    /// Index into [`Scene::instances`].
+    instance: usize,
     /// At least one.
     faces: Vec<Face>,
     plane: Plane,
@@ -96,7 +118,7 @@ impl Cap {
         // The plane of the largest is the most certain.
         let plane = world.plane(faces.iter().max_by_key(area)?.item)?;
         let from_within = world.side_of_mesh(run, &plane) == world.side_of_eye(view, &plane);
-        Some(Self { faces, plane, from_within })
+        Some(Self { instance: run.instance, faces, plane, from_within })
     }
 
     /// What outlines, and other caps, leave of it.

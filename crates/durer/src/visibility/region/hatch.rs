@@ -31,23 +31,46 @@ impl Default for Options {
 /// Tones told apart: every 8th, 4th, 2nd or each line.
 const TONES: i32 = 4;
 
+/// In which directions the caps of one part after the other are hatched, degrees beside the first: 45°, and then
+/// what can be told from it and from each other.
+const PARTS: [f64; 6] = [0.0, 90.0, 15.0, 105.0, -15.0, 75.0];
+
 /// Lines over one region, at most: beyond that it is black anyway.
 const MOST_LINES: f64 = 1e6;
 
 /// The lines that stand for the tones of regions; class [`LineClass::Hatch`].
 ///
-/// Caps get the standard hatching of sections, one distance at one angle, whatever their colour. Cost:
+/// Caps get the standard hatching of sections, one distance at one angle, whatever their colour; the caps of further
+/// parts ([`Region::part`]) get other angles. Cost:
 /// O(lines · sides of regions that they cross); nothing where the spacing is not a number above 0.
 pub fn hatch(regions: &[Region], options: &Options) -> Vec<Line> {
     if !(options.spacing.is_finite() && options.spacing > 0.0 && options.angle.is_finite()) {
         return Vec::new();
     }
-    let mut lines = family(regions, options, options.angle, |region| first_tone(region, options));
+    let [first, others @ ..] = by_direction(regions);
+    let mut lines = family(&first, options, options.angle, |region| first_tone(region, options));
     if options.cross {
         let across = options.angle + std::f64::consts::FRAC_PI_2;
-        lines.extend(family(regions, options, across, |region| second_tone(region, options)));
+        lines.extend(family(&first, options, across, |region| second_tone(region, options)));
+    }
+    for (turn, regions) in PARTS.iter().skip(1).zip(others) {
+        let angle = options.angle + turn.to_radians();
+        lines.extend(family(&regions, options, angle, |region| first_tone(region, options)));
     }
     lines
+}
+
+/// The regions by the direction of their lines: all in the first but caps of further parts.
+fn by_direction(regions: &[Region]) -> [Vec<&Region>; PARTS.len()] {
+    let mut parts: Vec<u32> = regions.iter().filter_map(|r| r.part).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    let mut found = [const { Vec::new() }; PARTS.len()];
+    for region in regions {
+        let rank = region.part.map_or(0, |part| parts.partition_point(|p| *p < part));
+        found[rank % PARTS.len()].push(region);
+    }
+    found
 }
 
 /// Every how many lines a region takes; `None` leaves it empty.
@@ -76,7 +99,7 @@ fn luminance(color: [u8; 4]) -> f64 {
 
 /// The lines of one direction.
 fn family(
-    regions: &[Region],
+    regions: &[&Region],
     options: &Options,
     angle: f64,
     stride: impl Fn(&Region) -> Stride,

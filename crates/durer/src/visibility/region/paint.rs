@@ -121,7 +121,7 @@ impl Paint {
                 _ => unit(trap.rings(index as usize, &room)),
             };
             let item = (options.merge == Merge::Face).then_some(key.of as u32);
-            Region { kind: key.kind, rings, color: key.color, item }
+            Region { kind: key.kind, rings, color: key.color, item, part: None }
         };
         let mut regions = match room[..] {
             [] => Vec::new(),
@@ -148,7 +148,8 @@ impl Paint {
             });
             let keys: Vec<(Key, f64)> = keys.collect();
             let rings = unit(below.rings(pairs[0].0 as usize, &room));
-            Region { kind: keys[0].0.kind, rings, color: mean_color(&keys), item: None }
+            let (kind, color) = (keys[0].0.kind, mean_color(&keys));
+            Region { kind, rings, color, item: None, part: None }
         };
         found.pairs.chunk_by(|a, b| a.0 == b.0).map(region).collect()
     }

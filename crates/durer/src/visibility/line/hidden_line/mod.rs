@@ -140,8 +140,8 @@ impl Options {
         };
         let all = edges(self.classes) == edges(ClassSet::default());
         let stubs = if all { self.stubs } else { 0.0 };
-        let Self { tolerance, beneath, .. } = *self;
-        How { tolerance, stubs, beneath }
+        let Self { tolerance, beneath, smooth, .. } = *self;
+        How { tolerance, stubs, beneath, smooth }
     }
 }
 
