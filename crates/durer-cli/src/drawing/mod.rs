@@ -220,7 +220,7 @@ pub struct Subject<'a> {
 }
 
 /// A view, and what is seen.
-struct Shown {
+pub struct Shown {
     /// Its part on a sheet; `None` without one.
     kind: Option<ViewKind>,
     camera: Camera,

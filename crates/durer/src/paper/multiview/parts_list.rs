@@ -23,6 +23,8 @@ const TEXT: f64 = 2.5;
 /// Widths of the columns for numbers and quantities, and of that for names at least and at most.
 const NUMBER: f64 = 12.0;
 const NAME: (f64, f64) = (45.0, 90.0);
+/// Below the views a list of so many rows is not divided.
+const HIGH: usize = 12;
 /// Space between a border and letters.
 const PAD: f64 = 1.6;
 
@@ -37,11 +39,11 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// A list of blocks that are at most so wide together, as few rows high as can be.
+    /// A list of blocks that are at most so wide together; of one, unless that is higher than [`HIGH`] rows.
     pub fn within_width(rows: &[PartsListRow], width: f64) -> Self {
         let own = width_of(rows);
-        let most = ((width / own).floor().max(1.0) as usize).min(rows.len().max(1));
-        let high = rows.len().div_ceil(most);
+        let most = (width / own).floor().max(1.0) as usize;
+        let high = rows.len().div_ceil(most.min(rows.len().div_ceil(HIGH)).max(1));
         Self { rows: high, blocks: rows.len().div_ceil(high.max(1)), width: own }
     }
 
