@@ -19,6 +19,11 @@ const GOLDEN: &[(&str, &str, &str)] = &[
         "bracket.stl",
         "--sheet third-angle --hidden dashed --page A3 --center-lines --dimension size,holes",
     ),
+    (
+        "bracket_sections",
+        "bracket.stl",
+        "--sheet first-angle --section A:0,1,0,-10 --section B:-1,0,0,20 --detail C:5,0,5,6 --page A3",
+    ),
     ("teapot", "teapot.obj", "--azimuth 25 --elevation 22"),
     ("crate", "crate.glb", "--style regions+lines --merge material --azimuth -25 --elevation 20"),
 ];
