@@ -3,7 +3,8 @@
 //!
 //! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the
 //! sheet is one with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are
-//! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, text is TEXT, areas are HATCH with solid fill.
+//! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, text is TEXT, dimensions are
+//! DIMENSION with their blocks, areas are HATCH with solid fill.
 //!
 //! Written from Autodesk's *DXF Reference* (2004).
 
@@ -21,9 +22,6 @@ const WEIGHTS: &[i64] = &[
     0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200,
     211,
 ];
-
-/// The line type of solid lines.
-const SOLID: &str = "CONTINUOUS";
 
 /// Handles of objects that others refer to.
 const BLOCK_RECORDS: u32 = 0x1;
@@ -57,7 +55,7 @@ pub enum DxfStrokes {
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result<()> {
-    let mut body = Tags { text: String::new(), next: FIRST, owner: MODEL, line_type: SOLID };
+    let mut body = Tags { text: String::new(), next: FIRST, owner: MODEL, line_type: CONTINUOUS };
     let dimensions = Dimensions::of(&mut body, sheet, strokes);
     tables(&mut body, sheet, &dimensions);
     blocks(&mut body, sheet, &dimensions);
@@ -79,7 +77,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result
     body.tag(0, "ENDSEC");
     objects(&mut body);
     body.tag(0, "EOF");
-    let mut head = Tags { text: String::new(), next: 0, owner: MODEL, line_type: SOLID };
+    let mut head = Tags { text: String::new(), next: 0, owner: MODEL, line_type: CONTINUOUS };
     header(&mut head, sheet, body.next);
     out.write_all(head.text.as_bytes())?;
     out.write_all(body.text.as_bytes())?;
@@ -232,20 +230,18 @@ fn viewport(tags: &mut Tags, sheet: &Sheet) {
     tags.tag(0, "ENDTAB");
 }
 
-/// The dashes of HIDDEN are those of the sheet's first dashed pen, those of CENTER of the first with dashes and dots.
+/// The dashes of HIDDEN and CENTER are those of the sheet's first pens of the kind; CENTER is there where it is used.
 fn line_types(tags: &mut Tags, sheet: &Sheet) {
-    let first = |dotted: bool| {
-        sheet.pens.iter().map(|p| &p.dashes).find(|d| !d.is_empty() && (d.len() > 2) == dotted)
-    };
-    let hidden: &[f64] = first(false).map_or(&[3.0, 1.5], |d| d.as_slice());
+    let first = |name: &str| sheet.pens.iter().find(|p| line_type(Some(p)) == name);
+    let hidden: &[f64] = first(HIDDEN).map_or(&[3.0, 1.5], |p| p.dashes.as_slice());
     let mut types: Vec<(&str, &str, &[f64])> = vec![
         ("ByBlock", "", &[]),
         ("ByLayer", "", &[]),
-        (SOLID, "Solid line", &[]),
-        ("HIDDEN", "Hidden __ __ __ __ __ __ __ __ __ __", hidden),
+        (CONTINUOUS, "Solid line", &[]),
+        (HIDDEN, "Hidden __ __ __ __ __ __ __ __ __ __", hidden),
     ];
-    if let Some(center) = first(true) {
-        types.push(("CENTER", "Center ____ _ ____ _ ____ _ ____", center));
+    if let Some(pen) = first(CENTER) {
+        types.push((CENTER, "Center ____ _ ____ _ ____ _ ____", &pen.dashes));
     }
     tags.table("LTYPE", LTYPES, types.len());
     for (name, description, dashes) in types {
@@ -289,11 +285,16 @@ fn layer(tags: &mut Tags, name: &str, pen: Option<&Pen>) {
     tags.handle(390, 0);
 }
 
+/// The names of line types: solid, dashed, and with dashes of two lengths in turn.
+const CONTINUOUS: &str = "CONTINUOUS";
+const HIDDEN: &str = "HIDDEN";
+const CENTER: &str = "CENTER";
+
 fn line_type(pen: Option<&Pen>) -> &'static str {
     match pen.map_or(0, |p| p.dashes.len()) {
-        0 => SOLID,
-        1 | 2 => "HIDDEN",
-        _ => "CENTER",
+        0 => CONTINUOUS,
+        1..=3 => HIDDEN,
+        _ => CENTER,
     }
 }
 

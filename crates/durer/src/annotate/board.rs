@@ -13,7 +13,8 @@ use crate::target::{Arc, Curve, Piece};
 const INSIDE: f64 = 1.0;
 
 /// Layers whose marks nothing may be written on.
-const SOLID: &[&str] = &["title-block", "parts-list", "view-titles", "text", "callouts"];
+const SOLID: &[&str] =
+    &["title-block", "parts-list", "view-titles", "text", "callouts", "cutting-planes", "details"];
 
 pub(super) struct Board<'a> {
     sheet: &'a mut Sheet,

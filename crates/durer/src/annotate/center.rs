@@ -3,6 +3,7 @@
 use super::board::{Board, Layer, arc_mark};
 use super::draw::reading;
 use super::feature::{Feature, FeatureKind};
+use super::quad::Quad;
 use super::seen::{Seen, Sight};
 use super::style::BEYOND;
 use crate::math::DVec2;
@@ -14,6 +15,10 @@ const SOLID: f64 = 24.0;
 
 /// Centres nearer than this are one, millimetres.
 const SAME: f64 = 0.05;
+
+/// An axis as seen: what those in line have in common, where it begins and ends along them, its way, and how far off the
+/// origin it lies.
+type Axis = ([i64; 3], (f64, f64), DVec2, f64);
 
 /// A circle that is seen in its true shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +48,10 @@ pub(super) fn put(board: &mut Board, view: &Seen, features: &[Feature], alone: b
     let mut add = |[a, b]: [DVec2; 2], pen: usize| {
         board.add(Layer::Center, Mark::Stroke { points: vec![a, b], closed: false, pen });
     };
-    axis_lines(&axes).into_iter().for_each(|line| add(line, pen));
+    // Details show a part of the model.
+    let around = Quad::of_rect(view.bounds()).wider(BEYOND + SAME);
+    let shown = |[a, b]: [DVec2; 2]| around.inside(a, b).map(|(s, t)| [a.lerp(b, s), a.lerp(b, t)]);
+    axis_lines(&axes).into_iter().filter_map(shown).for_each(|line| add(line, pen));
     for [a, b] in marks {
         // Crosses meet in dashes: they are drawn from their middles, where a dash begins.
         let middle = (a + b) * 0.5;
@@ -73,9 +81,10 @@ fn axis_lines(axes: &[(DVec2, [DVec2; 2])]) -> Vec<[DVec2; 2]> {
         })
         .collect();
     keyed.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)));
-    let mut lines: Vec<([i64; 3], (f64, f64), DVec2, f64)> = Vec::new();
+    let mut lines = Vec::with_capacity(keyed.len());
     for next in keyed {
-        match lines.last_mut() {
+        let last: Option<&mut Axis> = lines.last_mut();
+        match last {
             Some(last) if last.0 == next.0 && next.1.0 <= last.1.1 => {
                 last.1.1 = last.1.1.max(next.1.1);
             }
@@ -141,7 +150,7 @@ fn pitch_circle(circles: &[Circle]) -> Option<Circle> {
     angles.sort_by(f64::total_cmp);
     let step = TAU / count as f64;
     let even = angles.windows(2).all(|w| (w[1] - w[0] - step).abs() * radius < 4.0 * SAME);
-    (even && count != 4 || even && !is_square_to_page(&angles)).then_some(Circle { center, radius })
+    (even && (count != 4 || !is_square_to_page(&angles))).then_some(Circle { center, radius })
 }
 
 /// The same of circles of one radius, given by their centres: the centre and the radius.

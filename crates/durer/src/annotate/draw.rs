@@ -65,7 +65,7 @@ impl Board<'_> {
         let (length, width) = (to.distance(from), self.width(&said.text));
         let inside = length >= 2.0 * style.arrow + 1.5;
         let fits = width + 2.0 * GAP <= length;
-        let (mut start, mut end) = if inside { (0.0, length) } else { (0.0, length) };
+        let (mut start, mut end) = (0.0, length);
         if !inside {
             (start, end) = (-2.0 * style.arrow, length + 2.0 * style.arrow);
         }

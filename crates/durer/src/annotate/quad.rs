@@ -14,6 +14,16 @@ impl Quad {
         Self([a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)])
     }
 
+    /// One that stands straight, so much larger to each side.
+    pub fn wider(self, by: f64) -> Self {
+        let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let mut corners = self.0;
+        for (corner, (x, y)) in corners.iter_mut().zip(signs) {
+            *corner += DVec2::new(x, y) * by;
+        }
+        Self(corners)
+    }
+
     /// A segment, so much wide to each side.
     pub fn of_segment(a: DVec2, b: DVec2, half: f64) -> Self {
         let side = (b - a).normalize_or_zero().perp() * half;
@@ -36,12 +46,7 @@ impl Quad {
         // Capitals count, whatever the letters.
         let (min, max) = (DVec2::new(min.x, min.y.min(-height)), DVec2::new(max.x, max.y.max(0.0)));
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-        let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let mut quad = corners;
-        for (corner, (x, y)) in quad.iter_mut().zip(signs) {
-            *corner = at + along.rotate(*corner + DVec2::new(x, y) * space);
-        }
-        Self(quad)
+        Self(Self(corners).wider(space).0.map(|corner| at + along.rotate(corner)))
     }
 
     fn sides(&self) -> impl Iterator<Item = [DVec2; 2]> + '_ {

@@ -2,7 +2,7 @@
 //!
 //! Along an axis every part is moved beyond those that it would have to be drawn over to come out: of parts whose boxes
 //! overlap across the axis, the one that reaches farther up lies above, unless it is the one that reaches farthest
-//! down. From the middle outwards, distances grow alike. Cost: O(n²) for n instances.
+//! down. From the middle outwards, distances grow alike. It takes O(n²) for n instances.
 
 use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Instance, Mesh, Scene, Topology};

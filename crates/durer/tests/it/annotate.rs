@@ -198,10 +198,10 @@ fn a_thread_is_three_quarters_of_a_circle_or_two_lines() {
     let threads = vec![Thread { name: "boss 1".to_owned(), size }];
     let wanted = Annotations { threads, bosses: true, ..Annotations::default() };
     let (laid, notes) = annotated(&scene, TOP, &wanted);
-    assert_eq!((texts(&laid), notes.len()), (vec!["M8"], 1), "{notes:?}");
+    assert_eq!((texts(&laid), notes.len()), (vec!["M8"], 0), "{notes:?}");
     let [Mark::Curve { curve, .. }] = marks(&laid, "thread") else { panic!("one arc") };
     let [Piece::Arc(arc, _)] = curve.pieces[..] else { panic!("{curve:?}") };
-    let center = laid.views[0].from_model(DVec3::new(40.0, 20.0, 0.0)).expect("seen");
+    let center = laid.views[0].sheet_from_model(DVec3::new(40.0, 20.0, 0.0)).expect("seen");
     // The core of M8: 8 − 1.0825 · 1.25.
     assert!((arc.radii().x - 6.6468 / 2.0).abs() < 1e-3 && arc.center.distance(center) < 1e-3);
     assert!((arc.turn.abs().to_degrees() - 270.0).abs() < 1e-9 && !curve.closed);

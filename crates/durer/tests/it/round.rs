@@ -191,5 +191,5 @@ fn holes_of_parts_are_found() {
     let bolts = [(3.5, true); 8].into_iter().chain([(14.0, true), (20.0, false), (40.0, false)]);
     assert_radii("flange", &found, &bolts.collect::<Vec<_>>());
     // Its fillets are parts of rings, of which hardly any passes for a cylinder.
-    assert!(found.len() < 16, "{}", found.len());
+    assert!(found.len() < 20, "{}", found.len());
 }

@@ -57,7 +57,7 @@ pub fn put(annotator: &mut Annotator, callouts: &[Callout], placed: &[PlacedView
 fn ports(bounds: &Rect, count: usize) -> (Vec<DVec2>, f64) {
     let (min, size) = (bounds.min() - AWAY, bounds.size() + 2.0 * AWAY);
     let around = 2.0 * (size.x + size.y);
-    let number = ((around / APART).floor().max(1.0).min(1e4) as usize).max(count);
+    let number = ((around / APART).floor().clamp(1.0, 1e4) as usize).max(count);
     let apart = around / number as f64;
     let place = |i: usize| {
         // Clockwise from the middle of the upper side.

@@ -165,7 +165,7 @@ fn circle(points: impl Iterator<Item = DVec2> + Clone) -> Option<(DVec2, f64)> {
     }
     // The sums of x and y are 0.
     let determinant = xx * yy - xy * xy;
-    if !(determinant > 1e-18 * (xx + yy) * (xx + yy)) {
+    if determinant.is_nan() || determinant <= 1e-18 * (xx + yy) * (xx + yy) {
         return None;
     }
     let center = DVec2::new(xz * yy - yz * xy, yz * xx - xz * xy) * (0.5 / determinant);
@@ -202,12 +202,12 @@ fn rotate(m: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize) {
     let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
     let cos = 1.0 / (t * t + 1.0).sqrt();
     let sin = t * cos;
-    for k in 0..3 {
-        let (a, b) = (m[k][p], m[k][q]);
-        (m[k][p], m[k][q]) = (cos * a - sin * b, sin * a + cos * b);
+    for row in m.iter_mut() {
+        let (a, b) = (row[p], row[q]);
+        (row[p], row[q]) = (cos * a - sin * b, sin * a + cos * b);
     }
-    for k in 0..3 {
-        let (a, b) = (m[p][k], m[q][k]);
+    let (upper, lower) = (m[p], m[q]);
+    for (k, (a, b)) in upper.into_iter().zip(lower).enumerate() {
         (m[p][k], m[q][k]) = (cos * a - sin * b, sin * a + cos * b);
     }
     let (a, b) = (vectors[p], vectors[q]);

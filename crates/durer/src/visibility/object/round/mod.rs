@@ -60,8 +60,8 @@ const OF_SAGITTA: f64 = 0.25;
 /// How far they may always lie off: as a part of the radius, and of the model's extent (single precision).
 const OF_RADIUS: f64 = 2e-4;
 const OF_EXTENT: f64 = 1.0 / (1u64 << 21) as f64;
-/// How far they lie off part cylinders at most: as a part of the height of the arc, and of the model's extent (five
-/// digits in a file).
+/// How far they lie off in the end at most: part cylinders as a part of the height of the arc, full ones as a part of
+/// the model's extent (five digits in a file).
 const STRICT: f64 = 0.05;
 const DIGITS: f64 = 1e-5;
 /// Part cylinders cover at least this angle, and have this many facets.
@@ -293,12 +293,12 @@ impl Finder<'_> {
         let (low, high) = region.extent();
         let facets = region.directions();
         let (middle, angle) = covered(&facets);
-        let most = if angle >= TAU { 2.0 * region.tolerance } else { region.strict(self.extent) };
+        let most = region.strict(self.extent, angle >= TAU);
         let off = region.sums.points().iter().any(|p| surface.error(*p) > most);
         let bent = surface.radius * angle * (high - low);
         let torn = angle < TAU && region.sums.area() < WHOLE * bent;
         let few = facets.len() <= LEAST_FACETS || angle < LEAST_ANGLE || torn;
-        if off || few || surface.radius >= self.extent || !(high > low) {
+        if off || few || surface.radius >= self.extent || high <= low {
             return None;
         }
         if self.goes_on(edges, region, high - low) {
@@ -370,10 +370,12 @@ impl Region {
         self.tolerance = (sagitta * OF_SAGITTA).max(always);
     }
 
-    /// How far corners of a part cylinder may lie off in the end: patches of other surfaces are near a cylinder, too.
-    fn strict(&self, extent: f64) -> f64 {
+    /// How far corners may lie off in the end: patches of other surfaces are near a cylinder, too, the more so the
+    /// less of a circle they are.
+    fn strict(&self, extent: f64, full: bool) -> f64 {
         let sagitta = self.surface.radius * self.turn * self.turn / 8.0;
-        (sagitta * STRICT).max(extent * DIGITS)
+        let (part, digits) = if full { (OF_SAGITTA, DIGITS) } else { (STRICT, DIGITS * 0.2) };
+        (sagitta * part).max(extent * digits)
     }
 
     fn refit(&mut self, extent: f64) {
