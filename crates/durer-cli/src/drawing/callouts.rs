@@ -44,7 +44,7 @@ impl Callouts {
                 Some(at) => found.callouts.push(Callout { view, number: number.clone(), at }),
                 None => unseen.push(format!("{number} ({name})")),
             }
-            let quantity = component.instances.len();
+            let quantity = component.count;
             found.parts.push(PartsListRow { number, name, quantity });
         }
         if !unseen.is_empty() {

@@ -1,39 +1,68 @@
 //! The parts that a scene is assembled of, as lists of parts name and count them.
 
-use crate::scene::{Scene, Topology};
+use crate::scene::{Instance, Scene, Topology};
 
 /// Parts of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Component {
     /// What they are called; never empty.
     pub name: String,
-    /// Indices into [`Scene::instances`]: as many as there are of it.
+    /// How many there are of it.
+    pub count: usize,
+    /// Indices into [`Scene::instances`] of all that they are made of.
     pub instances: Vec<usize>,
 }
 
-/// Finds the kinds of parts of a scene: instances of one mesh are of one kind. In the order of the first of each;
-/// what has no triangles is no part.
+/// Finds the kinds of parts of a scene: those made of the same meshes are of one kind. In the order of the first of
+/// each; what has no triangles is no part.
 ///
-/// A kind is called as its instances are, without the numbers that tell them apart: `bolt` for `bolt.001` and
+/// A kind is called as its parts are, without the numbers that tell them apart: `bolt` for `bolt.001` and
 /// `bolt.002`. Cost: O(n log n) for n instances.
 pub fn components(scene: &Scene) -> Vec<Component> {
-    let is_part = |mesh: usize| {
-        let mesh = scene.meshes.get(mesh);
+    let is_seen = |i: &usize| {
+        let mesh = scene.instances.get(*i).and_then(|placed| scene.meshes.get(placed.mesh));
         mesh.is_some_and(|m| m.topology == Topology::Triangles && m.triangle_count() > 0)
     };
-    let mut by_mesh: Vec<(usize, usize)> =
-        scene.instances.iter().enumerate().map(|(i, placed)| (placed.mesh, i)).collect();
-    by_mesh.retain(|(mesh, _)| is_part(*mesh));
-    by_mesh.sort_unstable();
-    let mut kinds: Vec<Vec<usize>> =
-        by_mesh.chunk_by(|a, b| a.0 == b.0).map(|c| c.iter().map(|p| p.1).collect()).collect();
-    kinds.sort_unstable_by_key(|instances| instances.first().copied());
-    let component = |(index, instances): (usize, Vec<usize>)| {
-        let names = instances.iter().filter_map(|i| scene.instances.get(*i));
-        let names: Vec<&str> = names.map(|i| i.name.trim()).collect();
-        Component { name: common_name(&names, index + 1), instances }
+    let mesh = |i: &usize| scene.instances.get(*i).map(|placed| placed.mesh);
+    let seen = parts(scene).into_iter().map(|part| part.into_iter().filter(is_seen).collect());
+    let mut by_meshes: Vec<(Vec<Option<usize>>, Vec<usize>)> = seen
+        .filter(|part: &Vec<usize>| !part.is_empty())
+        .map(|part| (part.iter().map(mesh).collect(), part))
+        .collect();
+    by_meshes.sort_unstable();
+    let mut kinds: Vec<Vec<Vec<usize>>> = by_meshes
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|c| c.iter().map(|p| p.1.clone()).collect())
+        .collect();
+    kinds.sort_unstable();
+    let component = |(index, parts): (usize, Vec<Vec<usize>>)| {
+        let first = parts.iter().filter_map(|part| scene.instances.get(*part.first()?));
+        let names: Vec<&str> = first.map(|i| i.name.trim()).collect();
+        let (name, count) = (common_name(&names, index + 1), parts.len());
+        Component { name, count, instances: parts.into_iter().flatten().collect() }
     };
     kinds.into_iter().enumerate().map(component).collect()
+}
+
+/// The instances of each part: those that follow each other in one place under one name, as files have an instance for
+/// each material of an object.
+pub(super) fn parts(scene: &Scene) -> Vec<Vec<usize>> {
+    let mut parts: Vec<Vec<usize>> = Vec::new();
+    let mut last: Option<&Instance> = None;
+    for (i, instance) in scene.instances.iter().enumerate() {
+        let goes_on = last.is_some_and(|last| {
+            !instance.name.is_empty()
+                && last.name == instance.name
+                && last.world_from_mesh == instance.world_from_mesh
+                && last.mesh != instance.mesh
+        });
+        match parts.last_mut() {
+            Some(part) if goes_on => part.push(i),
+            _ => parts.push(vec![i]),
+        }
+        last = Some(instance);
+    }
+    parts
 }
 
 /// What instances of one kind are called, or by its number.
@@ -60,7 +89,7 @@ fn number_off(name: &str) -> &str {
 mod tests {
     use super::*;
     use crate::math::{DMat4, Vec3};
-    use crate::scene::{Instance, Mesh};
+    use crate::scene::Mesh;
 
     #[test]
     fn instances_of_one_mesh_are_counted_and_named_by_what_they_share() {
@@ -79,8 +108,32 @@ mod tests {
             ..Scene::default()
         };
         let found: Vec<(String, usize)> =
-            components(&scene).into_iter().map(|c| (c.name, c.instances.len())).collect();
+            components(&scene).into_iter().map(|c| (c.name, c.count)).collect();
         let expected = [("plate", 1), ("M5", 2), ("part 3", 1), ("lid 2", 1)];
         assert_eq!(found, expected.map(|(name, count)| (name.to_owned(), count)));
+    }
+
+    #[test]
+    fn materials_of_one_object_are_one_part() {
+        let mesh = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], ..Mesh::default() };
+        let at = |mesh, x: f64, name: &str| Instance {
+            mesh,
+            world_from_mesh: DMat4::from_translation(crate::math::DVec3::X * x),
+            name: name.to_owned(),
+        };
+        // A wheel of rubber and steel, twice, and an axle.
+        let wheels = [0.0, 9.0].map(|x| [at(0, x, "wheel"), at(1, x, "wheel")]);
+        let mut instances: Vec<Instance> = wheels.into_iter().flatten().collect();
+        instances.push(at(2, 0.0, "axle"));
+        let scene = Scene { meshes: vec![mesh; 3], instances, ..Scene::default() };
+        let found = components(&scene);
+        let wheel = Component { name: "wheel".to_owned(), count: 2, instances: vec![0, 1, 2, 3] };
+        let axle = Component { name: "axle".to_owned(), count: 1, instances: vec![4] };
+        assert_eq!(found, [wheel, axle]);
+        let exploded =
+            crate::view::explode::explode(&scene, crate::view::explode::Way::Radial, None);
+        let places: Vec<DMat4> =
+            exploded.expect("exploded").instances.iter().map(|i| i.world_from_mesh).collect();
+        assert!(places[0] == places[1] && places[2] == places[3] && places[0] != places[2]);
     }
 }

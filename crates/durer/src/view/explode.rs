@@ -4,6 +4,7 @@
 //! overlap across the axis, the one that reaches farther up lies above, unless it is the one that reaches farthest
 //! down. From the middle outwards, distances grow alike. It takes O(n²) for n instances.
 
+use super::components;
 use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Aabb, Instance, Mesh, Scene, Topology};
 use crate::{Error, Result};
@@ -71,27 +72,36 @@ pub fn explode(scene: &Scene, way: Way, gap: Option<f64>) -> Result<Scene> {
         Way::Radial => away(&parts, &whole, gap),
         _ => along(&parts, &whole, way as usize, gap, &mut traces),
     };
-    for ((index, _), shift) in parts.iter().zip(shifts) {
-        let placed = &mut exploded.instances[*index];
-        placed.world_from_mesh = DMat4::from_translation(shift) * placed.world_from_mesh;
+    for ((part, _), shift) in parts.iter().zip(shifts) {
+        for &index in part {
+            let placed = &mut exploded.instances[index];
+            placed.world_from_mesh = DMat4::from_translation(shift) * placed.world_from_mesh;
+        }
     }
     add_traces(&mut exploded, &traces);
     Ok(exploded)
 }
 
-/// The instances that have something to show, with their boxes in the world.
-fn parts(scene: &Scene) -> Vec<(usize, Aabb)> {
-    let placed = |(index, instance): (usize, &Instance)| {
+/// The instances of each part that has something to show, with its box in the world.
+type Part = (Vec<usize>, Aabb);
+
+fn parts(scene: &Scene) -> Vec<Part> {
+    let bounds = |index: &usize| {
+        let instance = &scene.instances[*index];
         let mesh = &scene.meshes[instance.mesh];
         let points = mesh.positions.iter().map(|p| p.as_dvec3());
         let world = points.map(|p| instance.world_from_mesh.transform_point3(p));
-        Some(index).filter(|_| mesh.primitive_count() > 0).zip(Aabb::around(world))
+        Aabb::around(world).filter(|_| mesh.primitive_count() > 0)
     };
-    scene.instances.iter().enumerate().filter_map(placed).collect()
+    let part = |part: Vec<usize>| {
+        let all = part.iter().filter_map(bounds).reduce(|a, b| a.union(&b))?;
+        Some((part, all))
+    };
+    components::parts(scene).into_iter().filter_map(part).collect()
 }
 
-fn away(parts: &[(usize, Aabb)], whole: &Aabb, gap: Option<f64>) -> Vec<DVec3> {
-    let way = |p: &(usize, Aabb)| p.1.center() - whole.center();
+fn away(parts: &[Part], whole: &Aabb, gap: Option<f64>) -> Vec<DVec3> {
+    let way = |p: &Part| p.1.center() - whole.center();
     let farthest = parts.iter().map(|p| way(p).length()).fold(0.0, f64::max);
     let share = gap.map_or(RADIAL_GAP, |gap| if farthest > 0.0 { gap / farthest } else { 0.0 });
     parts.iter().map(|p| way(p) * share).collect()
@@ -99,7 +109,7 @@ fn away(parts: &[(usize, Aabb)], whole: &Aabb, gap: Option<f64>) -> Vec<DVec3> {
 
 /// Shifts along an axis; adds what leads from each part to the one below it.
 fn along(
-    parts: &[(usize, Aabb)],
+    parts: &[Part],
     whole: &Aabb,
     axis: usize,
     gap: Option<f64>,
@@ -133,7 +143,7 @@ fn along(
 
 /// Which parts lie above others along an axis.
 struct Stacks<'a> {
-    parts: &'a [(usize, Aabb)],
+    parts: &'a [Part],
     axis: usize,
     beside: f64,
 }
