@@ -525,7 +525,7 @@ fn names_without_room_are_written_in_two_lines_or_short() {
     };
     // The box of all letters in a picture of one unit a pixel.
     let ink = |name: &str| {
-        folder.write("a.geojson", &area(name));
+        folder.write("a.geojson", area(name));
         folder.must("draw a.geojson -o a.png --size 100x50 --window 0,0,100,50 --stroke none --fill white --label NAME --label-halo none");
         let picture = picture(&folder, "a.png");
         let dark: Vec<(usize, usize)> = picture

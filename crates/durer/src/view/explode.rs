@@ -2,7 +2,7 @@
 //!
 //! Along an axis every part is moved beyond those that it would have to be drawn over to come out: of parts whose boxes
 //! overlap across the axis, the one that reaches farther up lies above, unless it is the one that reaches farthest
-//! down. From the middle outwards, distances grow alike. It takes O(n²) for n instances.
+//! down and not farthest up too. From the middle outwards, distances grow alike. It takes O(n²) for n instances.
 
 use super::components;
 use crate::math::{DMat4, DVec3, Vec3};
@@ -160,15 +160,16 @@ impl Stacks<'_> {
         })
     }
 
-    /// From below upwards: first what reaches farther down than all that it overlaps and not farther up, then the rest
-    /// by its upper end.
+    /// From below upwards: first what reaches farther down than all that it overlaps, and not farther up than all of
+    /// them, then the rest by its upper end.
     fn order(&self) -> Vec<usize> {
         let ends = |i: usize| (self.parts[i].1.min[self.axis], self.parts[i].1.max[self.axis]);
         let is_base = |i: usize| {
             let (low, high) = ends(i);
-            let mut others = (0..self.parts.len()).filter(|j| *j != i && self.overlap(i, *j));
-            let under = |j: usize| low < ends(j).0 - self.beside && high <= ends(j).1 + self.beside;
-            others.all(under)
+            let others = (0..self.parts.len()).filter(|j| *j != i && self.overlap(i, *j));
+            let others: Vec<(f64, f64)> = others.map(ends).collect();
+            others.iter().all(|other| low < other.0 - self.beside)
+                && (others.is_empty() || others.iter().any(|o| high <= o.1 + self.beside))
         };
         let key = |i: usize| {
             let base = is_base(i);

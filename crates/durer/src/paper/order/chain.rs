@@ -34,7 +34,7 @@ impl Chain {
     }
 
     /// The chain, begun at one of its places.
-    fn from_place(self, first: usize) -> Self {
+    fn begun_at(self, first: usize) -> Self {
         match self {
             Self::Straight(stroke) => Self::Straight(stroke.begun_at(first)),
             Self::Curved(curve) if first == 0 => Self::Curved(curve),
@@ -96,7 +96,7 @@ pub(super) fn in_turn(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
     let places: Vec<Stroke> = chains.iter().map(Chain::places).collect();
     let mut chains: Vec<Option<Chain>> = chains.into_iter().map(Some).collect();
     let turns = turns(&places, start).into_iter();
-    turns.filter_map(|t| Some(chains.get_mut(t.index)?.take()?.from_place(t.first))).collect()
+    turns.filter_map(|t| Some(chains.get_mut(t.index)?.take()?.begun_at(t.first))).collect()
 }
 
 /// Makes one chain of open ones that follow each other without a gap.
