@@ -115,7 +115,9 @@ impl Board<'_> {
         let body = (elbow - tip).normalize_or_zero();
         let lines = vec![stroke(vec![tip, elbow, end], thin), arrow(tip, body, &style)];
         let at = DVec2::new((elbow.x + end.x) * 0.5, elbow.y - GAP);
-        let landing = Quad::of_segment(elbow, end, 0.5);
+        // Two texts side by side on one line would be read as one.
+        let apart = DVec2::X * (sign * style.text * 0.5);
+        let landing = Quad::of_segment(elbow - apart, end + apart, 0.5);
         let leader = Some([tip + body * 0.5, elbow]);
         let text = DimensionText {
             at,
