@@ -51,7 +51,7 @@ fn main() {
     let fit = FitOptions { lens: Lens::Orthographic, ..FitOptions::default() };
     let camera = fit_box(scene.bounds().as_ref(), &direction, &fit).expect("camera");
     let view = View::new(camera, 1000, 1000).expect("view");
-    let mut options = Options { hidden: !has("--no-hidden"), pen_order: has("--pen"), smooth: has("--smooth"), ..Options::default() };
+    let mut options = Options { hidden: !has("--no-hidden"), smooth: has("--smooth"), ..Options::default() };
     options.tolerance = number("--tolerance", options.tolerance);
     if has("--wire") {
         options.classes = options.classes.with(durer::target::drawing::LineClass::Wire);
