@@ -90,7 +90,8 @@ impl Wanted {
             color: look.color,
         };
         let notes = annotate::annotate(&mut laid.sheet, &self.annotations, &shown);
-        laid.notes.extend(notes.map_err(|e| Failure::Usage(e.to_string()))?);
+        let wrong = |e: durer::Error| Failure::Usage(format!("--annotations, --thread: {e}"));
+        laid.notes.extend(notes.map_err(wrong)?);
         Ok(())
     }
 }
