@@ -403,3 +403,18 @@ fn levels_cut_the_surface_between_its_points() {
             .is_err()
     );
 }
+
+#[test]
+fn nothing_hangs_from_the_borders_of_holes() {
+    // A row of three points beside a surface, the first of them its corner, and two that are alone.
+    let f = |x: f64, z: f64| match (x as i32, z as i32) {
+        (0..=1, 0..=1) | (2..=3, 1) | (1..=2, 3) => 0.0,
+        _ => f64::NAN,
+    };
+    let field = HeightField::from_fn([4, 4], [0.0, 3.0], [0.0, 3.0], f).expect("field");
+    let found = curves(&field, &camera(20.0, 60.0, false), &ALL, &mut NoTrace).expect("curves");
+    let ends = |c: &Curve| [c.points[0], c.points[c.points.len() - 1]].map(|p| (p.x, p.z));
+    assert!(!found.iter().any(|c| ends(c).contains(&(1.0, 1.0)) && ends(c).contains(&(2.0, 1.0))));
+    assert!(found.iter().any(|c| ends(c) == [(1.0, 3.0), (2.0, 3.0)]), "{found:?}");
+    assert!(found.iter().flat_map(ends).filter(|p| *p == (1.0, 1.0)).count() >= 2);
+}

@@ -298,7 +298,8 @@ impl<'a> Walk<'a> {
         self.polygon = polygon;
     }
 
-    /// Where a cell is missing, its sides that belong to no other cell are drawn.
+    /// Where a cell is missing, its sides that belong to no other cell are drawn, but for those that would hang from the
+    /// surface by one end.
     fn hole(&mut self, column: usize, row: usize, t: &mut impl Tracer<Step>) {
         let cell = |c: Option<usize>, r: Option<usize>| self.field.cell(c?, r?);
         let (c, r) = (Some(column), Some(row));
@@ -310,10 +311,18 @@ impl<'a> Walk<'a> {
         ];
         for ((family, ends), beyond) in SIDES.into_iter().zip(beyond) {
             let there = |k: &usize| self.field.height(column + (k & 1), row + (k >> 1)).is_some();
-            if beyond.is_none() && ends.iter().all(there) {
+            let hangs = || ends.iter().any(|k| self.holds(column + (k & 1), row + (k >> 1)));
+            if beyond.is_none() && ends.iter().all(there) && !hangs() {
                 self.side(column, row, family, ends, false, t);
             }
         }
+    }
+
+    /// Whether a point is a corner of a cell that is there.
+    fn holds(&self, column: usize, row: usize) -> bool {
+        let cell =
+            |c: usize, r: usize| self.field.cell(column.checked_sub(c)?, row.checked_sub(r)?);
+        (0..4).any(|k| cell(k & 1, k >> 1).is_some())
     }
 
     /// Draws a side of a cell, unless that is done.
