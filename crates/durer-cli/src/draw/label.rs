@@ -38,7 +38,7 @@ const BETTER: f64 = 0.1;
 #[derive(Debug)]
 pub struct Label {
     pub text: String,
-    /// What is written where the text finds no room.
+    /// A shorter text, written where the whole finds no room.
     pub short: Option<String>,
     pub anchor: Anchor,
     /// Those of small numbers are placed first.
@@ -266,7 +266,7 @@ struct Planned {
     /// Letters that its font does not have.
     missing: Vec<char>,
     fit: Fit,
-    /// Whether its area hardly holds any way to write it.
+    /// True where its area holds less than half of each way to write it.
     tiny: bool,
     /// The share of it that its area holds.
     held: f64,

@@ -1,4 +1,4 @@
-//! What can be said of machines with pens, for all commands that write drawings.
+//! The options of machines with pens, for all commands that write drawings.
 
 use crate::failure::Failure;
 use crate::values;

@@ -289,7 +289,8 @@ pub fn render(
     // In a line drawing the faces of a section are hatched, unless they are to be filled.
     let on_paper = kind != Kind::Drawing(DrawingFormat::GeoJson);
     let lines_only = on_paper && !style.has_regions() && args.drawing.hatch.is_none();
-    if hatch(args, kind) == Hatch::Shade || lines_only {
+    let has_areas = shown.iter().any(|s| !s.drawing.regions.is_empty());
+    if has_areas && (hatch(args, kind) == Hatch::Shade || lines_only) {
         for (view, placed) in shown.iter_mut().zip(&laid.views) {
             // The scale on paper says how far apart lines are in the model.
             let spacing = HATCH_SPACING / placed.factor;
@@ -552,7 +553,7 @@ fn lay_out(
     laid.map_err(|e| Failure::Usage(format!("--{e}")))
 }
 
-/// Whether a drawing without page and scale is 1:1: for machines, and where that makes a handy sheet.
+/// Returns whether a drawing without page and scale is 1:1: for machines, and where that makes a handy sheet.
 fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, shown: &[Shown]) -> bool {
     let sides = shown.iter().filter_map(|s| s.drawing.bounds()).map(|b| b.size().max_element());
     let size = sides.fold(0.0, f64::max) * unit(args, subject).millimetres();
@@ -565,10 +566,11 @@ fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, shown: &[Shown
     }
 }
 
-/// What the scale is, where whoever cuts or measures the drawing may be wrong about it.
+/// Returns the warning about the scale of drawings that machines cut or that are measured, if one is due.
 fn told_scale(args: &RenderArgs, kind: Kind, subject: &Subject, laid: &LaidOut) -> Option<String> {
     let asked = matches!(args.drawing.scale, Some(Scale::Given(_)));
-    if kind != Kind::Drawing(DrawingFormat::Dxf) || args.drawing.sheet.is_some() {
+    let cuts = matches!(kind, Kind::Drawing(DrawingFormat::Dxf | DrawingFormat::Gcode));
+    if !cuts || args.drawing.sheet.is_some() {
         return None;
     }
     if !asked && laid.scale != 1.0 {

@@ -1,4 +1,4 @@
-//! What can be said of annotations.
+//! The options of annotations.
 
 use clap::{Args, ValueEnum, ValueHint};
 use durer::annotate::{Thread, ThreadSize};
@@ -38,7 +38,7 @@ pub struct AnnotationArgs {
 /// `--dimension`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Dimensioned {
-    /// How large the whole is
+    /// The size of the whole
     Size,
     /// The diameters of holes
     Holes,

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 /// More than anybody writes.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// What the file has.
+/// The contents of the file.
 #[derive(Debug, Default, PartialEq)]
 pub struct Listed {
     pub dimensions: Vec<Request>,

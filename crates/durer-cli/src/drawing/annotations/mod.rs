@@ -13,7 +13,7 @@ use durer::target::drawing::Drawing;
 use durer::visibility::object::{Faces, Weld};
 use serde::Serialize;
 
-/// What is asked for, and the round parts of the model.
+/// The annotations asked for, and the round parts of the model.
 pub struct Wanted {
     annotations: Annotations,
     pub features: Vec<Feature>,
@@ -31,7 +31,7 @@ pub struct FeatureReport {
     pub diameter: f64,
     /// Where its axis begins and ends.
     pub ends: [[f64; 3]; 2],
-    /// How much of the circle there is, degrees.
+    /// The angle of the arc that is there, degrees.
     pub angle: f64,
 }
 
@@ -49,7 +49,7 @@ impl From<&Feature> for FeatureReport {
 }
 
 impl Wanted {
-    /// What the options ask for; `None` where that is nothing.
+    /// Reads the options; `None` where they ask for nothing.
     pub fn new(
         args: &AnnotationArgs,
         subject: &Subject,
@@ -96,13 +96,13 @@ impl Wanted {
     }
 }
 
-/// What annotations need to know of the drawing.
+/// The properties of a drawing that its annotations follow.
 pub struct Look {
     /// Millimetres per unit of the model.
     pub unit: f64,
     /// Whether hidden lines are drawn.
     pub hidden: bool,
-    /// Of pens.
+    /// The colour of pens.
     pub color: [u8; 4],
 }
 
