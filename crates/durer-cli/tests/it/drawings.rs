@@ -546,3 +546,12 @@ fn round_faces_are_few_hatches() {
     let (bands, shades) = (count(""), count("--merge shade"));
     assert!(bands <= 20 && shades > 60, "{bands} bands, {shades} shades");
 }
+
+#[test]
+fn g_code_tells_its_scale() {
+    let folder = folder();
+    let told = folder.must("render bracket.stl -o b.gcode").err;
+    assert!(told.contains(":1; --scale 1:1 makes it as large as the model"), "{told}");
+    let told = folder.must("render bracket.stl -o b.gcode --scale 1:1 --unit mm").err;
+    assert!(!told.contains("the drawing is"), "{told}");
+}
