@@ -8,14 +8,16 @@ mod edges;
 mod floor;
 mod runs;
 mod status;
+mod tone_marks;
 
 pub use callouts::seen_at;
 pub use contour::contoured;
 pub use depth_cue::depth_cued;
-pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes};
+pub use draw::{DrawOptions, DrawStyle, draw, hatched, line_classes, with_marks};
 pub use edges::{EdgeStyle, draw_edges};
 pub use floor::{add_axes, add_grid, add_ground};
 pub use status::{Status, Unseen, drawing_status, status};
+pub use tone_marks::{ToneMarks, tone_marks};
 
 use crate::math::{Vec4, exp2};
 use crate::scene::{Camera, Light, Scene};

@@ -70,7 +70,8 @@ pub struct DrawingArgs {
     pub contour: bool,
     /// Whether areas are hatched instead of filled [default: shade for .hpgl and .gcode, else none]
     ///
-    /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. The caps
+    /// With `shade` the style hidden-line is hatched between its lines, too; a wireframe cannot be. `contour` and
+    /// `stipple` are for that style: their marks follow the shading of pictures, as it is with smooth normals. The caps
     /// of a --section are hatched among lines anyway; `none` fills them.
     #[arg(long, value_name = "HOW")]
     pub hatch: Option<Hatch>,
@@ -268,8 +269,12 @@ pub enum Hidden {
 /// `--hatch`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Hatch {
-    /// Lines, the closer the darker
+    /// Straight lines over areas of one tone, the closer the darker
     Shade,
+    /// Lines along the curvature of surfaces, the closer the darker, crossed where it is darkest
+    Contour,
+    /// Dots as wide as the pen `stipple`, the closer the darker
+    Stipple,
     /// Areas are filled
     None,
 }

@@ -6,6 +6,7 @@ mod callouts;
 pub mod machine;
 pub mod report;
 mod sheet;
+mod tones;
 
 use crate::args::{RenderArgs, ViewArgs};
 use crate::camera::{self, Ortho};
@@ -34,6 +35,9 @@ use std::time::Instant;
 
 /// Distance of hatching lines in the darkest tone, millimetres.
 const HATCH_SPACING: f64 = 0.7;
+
+/// The same for lines along the curvature.
+const CONTOUR_SPACING: f64 = 0.6;
 
 /// The length of stubs on paper, percent of the drawing's larger side.
 const STUBS: f64 = 1.0;
@@ -142,6 +146,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
                        regions+lines or shadows";
         return Err(Failure::Usage(message.to_owned()));
     }
+    tones::check(args)?;
     let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
     if geojson && args.drawing.fit.is_some_and(|fit| fit > 0.0) {
         let message = "--fit: GeoJSON has no curves, and no paper; leave it out";
@@ -255,7 +260,7 @@ pub fn render(
     };
     let wanted = Wanted::new(&args.drawing.annotations, subject, args.drawing.weld)?;
     report.cameras = shots.iter().map(|s| CameraReport::from(&s.camera)).collect();
-    let (mut shown, mut statuses) = (Vec::new(), Vec::new());
+    let (mut shown, mut statuses, mut sources) = (Vec::new(), Vec::new(), Vec::new());
     for shot in shots {
         let (cut, cap_material) = match shot.cut(args, subject.scene, &mut report.notes)? {
             Some(cut) => (Some(cut.scene), Some(cut.cap_material)),
@@ -272,6 +277,7 @@ pub fn render(
         let status = pipeline::drawing_status(scene, camera, *aspect, &drawing);
         statuses.push(status.map_err(usage)?);
         shown.push(Shown { kind: shot.kind, camera: shot.camera, drawing });
+        sources.push((cut, options));
     }
     let unseen = report.set_status(&statuses);
     sheet::add_details(args, &mut shown, &mut report.notes)?;
@@ -290,12 +296,23 @@ pub fn render(
     let on_paper = kind != Kind::Drawing(DrawingFormat::GeoJson);
     let lines_only = on_paper && !style.has_regions() && args.drawing.hatch.is_none();
     let has_areas = shown.iter().any(|s| !s.drawing.regions.is_empty());
-    if has_areas && (hatch(args, kind) == Hatch::Shade || lines_only) {
+    let hatched = has_areas && (hatch(args, kind) != Hatch::None || lines_only);
+    // The scale on paper says how far apart lines are in the model.
+    if hatched {
         for (view, placed) in shown.iter_mut().zip(&laid.views) {
-            // The scale on paper says how far apart lines are in the model.
             let spacing = HATCH_SPACING / placed.factor;
             view.drawing = pipeline::hatched(std::mem::take(&mut view.drawing), spacing);
         }
+    }
+    let marked = tones::asked(args).is_some();
+    if marked {
+        for ((view, placed), (cut, options)) in shown.iter_mut().zip(&laid.views).zip(&sources) {
+            let scene = cut.as_ref().unwrap_or(subject.scene);
+            let drawing = std::mem::take(&mut view.drawing);
+            view.drawing = tones::marked(args, scene, options, drawing, placed.factor)?;
+        }
+    }
+    if hatched || marked {
         laid = lay_out(args, kind, subject, (frame, room), (&shown, &called))?;
     }
     if let Some(wanted) = &wanted {
@@ -449,7 +466,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         merge: merge.into(),
         trapped: match drawing.fill {
             Some(fill) => fill == Fill::Trapped,
-            None => viewed && drawing.hatch != Some(Hatch::Shade),
+            None => viewed && matches!(drawing.hatch, None | Some(Hatch::None)),
         },
         cap_material: None,
     }

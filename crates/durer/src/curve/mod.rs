@@ -6,6 +6,7 @@ pub mod fit;
 mod flatten;
 mod path;
 pub mod pieces;
+pub mod streamlines;
 pub mod stroke_font;
 pub mod text;
 

@@ -46,7 +46,7 @@ const LEAST: usize = 5;
 
 /// Lines of meshes, hatching and axes are straight.
 fn is_fitted(class: LineClass) -> bool {
-    !matches!(class, LineClass::Wire | LineClass::Hatch | LineClass::Axis)
+    !matches!(class, LineClass::Wire | LineClass::Hatch | LineClass::Stipple | LineClass::Axis)
 }
 
 /// Whether the class's lines come from faces, which may stand for something round.
@@ -71,7 +71,8 @@ fn key(p: DVec2) -> [u64; 2] {
 
 impl Shared {
     fn new(lines: &[&Line], origin: DVec2, factor: f64, near: f64) -> Self {
-        let lines = || lines.iter().filter(|l| l.class != LineClass::Hatch);
+        let lines =
+            || lines.iter().filter(|l| !matches!(l.class, LineClass::Hatch | LineClass::Stipple));
         let mut all: Vec<[u64; 2]> =
             lines().flat_map(|l| l.points.iter().map(|p| key(*p))).collect();
         all.sort_unstable();

@@ -32,18 +32,18 @@ pub const NEARNESS: [(f64, f64); NEARNESS_STEPS as usize] =
 const HIDDEN_GREY: u8 = 0x90;
 
 impl Default for Pens {
-    /// Contours 0.7 mm, outlines 0.5 mm, edges and the model's own lines 0.35 mm, what lies on surfaces 0.18 mm, hidden lines 0.25 mm; black.
+    /// Contours 0.7 mm, outlines and dots 0.5 mm, edges and the model's own lines 0.35 mm, what lies on surfaces 0.18 mm, hidden lines 0.25 mm; black.
     fn default() -> Self {
         let mut pens =
             Self { widths: [0.25; LineClass::ALL.len()], hidden: 0.25, color: [0, 0, 0, 255] };
         for &class in LineClass::ALL {
             use LineClass::{
                 Axis, Border, Contour, Crease, Grid, Hatch, Intersection, Mark, Material,
-                NonManifold, Section, Shadow, Silhouette, Wire,
+                NonManifold, Section, Shadow, Silhouette, Stipple, Wire,
             };
             let width = match class {
                 Contour => 0.7,
-                Silhouette | Border | Section => 0.5,
+                Silhouette | Border | Section | Stipple => 0.5,
                 Crease | NonManifold | Intersection | Mark => 0.35,
                 Material | Grid | Axis => 0.25,
                 Wire | Shadow | Hatch => 0.18,

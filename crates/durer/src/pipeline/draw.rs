@@ -186,7 +186,7 @@ fn region_options(options: &DrawOptions) -> region::Options {
 }
 
 /// The height of the picture in the plane through the target, model units.
-fn seen_height(camera: &Camera) -> f64 {
+pub(super) fn seen_height(camera: &Camera) -> f64 {
     match camera.projection {
         Projection::Orthographic { height } => height,
         Projection::Perspective { fov_y } => {
@@ -200,13 +200,18 @@ fn seen_height(camera: &Camera) -> f64 {
 /// darkest tone, plane units. For pens, which know no grey; regions have to be disjoint.
 pub fn hatched(drawing: Drawing, spacing: f64) -> Drawing {
     let options = hatch::Options { spacing, ..hatch::Options::default() };
-    let mut lines: Vec<Line> = hatch::hatch(&drawing.regions, &options);
-    let mut nearness = drawing.nearness;
+    let lines = hatch::hatch(&drawing.regions, &options);
+    with_marks(Drawing { regions: Vec::new(), ..drawing }, lines)
+}
+
+/// Adds the marks that show tones, of [`super::tone_marks`] or [`hatch`], beneath the lines of a drawing.
+pub fn with_marks(drawing: Drawing, marks: Vec<Line>) -> Drawing {
+    let (mut lines, mut nearness) = (marks, drawing.nearness);
     if !nearness.is_empty() {
         nearness.splice(..0, lines.iter().map(|_| None));
     }
     lines.extend(drawing.lines);
-    Drawing { regions: Vec::new(), lines, nearness, ..drawing }
+    Drawing { lines, nearness, ..drawing }
 }
 
 /// The classes that `names` name, joined by commas; `all` is all that edges can be but

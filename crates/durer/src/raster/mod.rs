@@ -12,5 +12,6 @@ pub mod paint;
 pub mod polygon;
 pub mod seed_fill;
 pub mod span;
+pub mod stipple;
 pub mod triangle;
 pub mod triangulate;

@@ -28,6 +28,8 @@ pub enum LineClass {
     Shadow,
     /// A line of hatching.
     Hatch,
+    /// A dot, drawn as a stroke much shorter than its pen is wide.
+    Stipple,
     /// A line of a surface y = f(x, z) along which x or z is constant.
     Grid,
     /// An axis, its ticks, or a frame.
@@ -50,6 +52,7 @@ impl LineClass {
         Self::Wire,
         Self::Shadow,
         Self::Hatch,
+        Self::Stipple,
         Self::Grid,
         Self::Axis,
         Self::Mark,
@@ -69,6 +72,7 @@ impl LineClass {
             Self::Wire => "wire",
             Self::Shadow => "shadow",
             Self::Hatch => "hatch",
+            Self::Stipple => "stipple",
             Self::Grid => "grid",
             Self::Axis => "axis",
             Self::Mark => "mark",

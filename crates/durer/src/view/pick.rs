@@ -123,7 +123,7 @@ pub fn pick(scene: &Scene, view: &View, area: Area) -> Vec<Hit> {
 }
 
 /// The instances with their meshes in the order of items: those of triangles first.
-fn in_item_order(scene: &Scene) -> impl Iterator<Item = (usize, &Mesh)> {
+pub(crate) fn in_item_order(scene: &Scene) -> impl Iterator<Item = (usize, &Mesh)> {
     let of = |triangles: bool| {
         let mesh = |(i, placed): (usize, &crate::scene::Instance)| (i, &scene.meshes[placed.mesh]);
         let wanted =

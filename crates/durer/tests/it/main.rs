@@ -65,6 +65,7 @@ mod surface_ray;
 mod surface_scenes;
 mod surface_warnock;
 mod tidy;
+mod tone_marks;
 mod view_cull;
 mod view_label;
 mod view_pick;

@@ -92,7 +92,7 @@ fn second_tone(region: &Region, options: &Options) -> Stride {
 }
 
 /// Perceived lightness of a colour, 0…1: the root of its linear luminance.
-fn luminance(color: [u8; 4]) -> f64 {
+pub(crate) fn luminance(color: [u8; 4]) -> f64 {
     let [r, g, b] = [color[0], color[1], color[2]].map(|c| f64::from(decode_srgb8(c)));
     (0.2126 * r + 0.7152 * g + 0.0722 * b).sqrt()
 }

@@ -1,0 +1,48 @@
+//! `--hatch contour` and `--hatch stipple`: marks between the lines of a drawing.
+
+use super::args::Hatch;
+use super::{CONTOUR_SPACING, usage};
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use durer::pipeline::{self, DrawOptions, DrawStyle, ToneMarks};
+use durer::scene::Scene;
+use durer::target::drawing::{Drawing, LineClass};
+
+/// Which marks are asked for.
+pub fn asked(args: &RenderArgs) -> Option<Hatch> {
+    args.drawing.hatch.filter(|hatch| matches!(hatch, Hatch::Contour | Hatch::Stipple))
+}
+
+/// Refuses marks in styles that have fills, or show what is hidden.
+pub fn check(args: &RenderArgs) -> Result<(), Failure> {
+    let Some(hatch) = asked(args) else { return Ok(()) };
+    let style = args.drawing.style.unwrap_or_default();
+    if style == DrawStyle::HiddenLine {
+        return Ok(());
+    }
+    let name = if hatch == Hatch::Stipple { "stipple" } else { "contour" };
+    Err(Failure::Usage(format!(
+        "--hatch {name}: its marks are drawn between the lines of --style hidden-line, not in the style {style}; \
+         use that style, or --hatch shade"
+    )))
+}
+
+/// Adds the marks for the tones of what a drawing shows; `factor` is its scale, millimetres for a plane unit.
+pub fn marked(
+    args: &RenderArgs,
+    scene: &Scene,
+    options: &DrawOptions,
+    drawing: Drawing,
+    factor: f64,
+) -> Result<Drawing, Failure> {
+    let marks = match asked(args) {
+        None => return Ok(drawing),
+        Some(Hatch::Stipple) => {
+            let pens = args.drawing.pen.unwrap_or_default();
+            ToneMarks::Dots { diameter: pens.width(LineClass::Stipple) / factor }
+        }
+        Some(_) => ToneMarks::Contours { spacing: CONTOUR_SPACING / factor },
+    };
+    let lines = pipeline::tone_marks(scene, options, marks).map_err(usage)?;
+    Ok(pipeline::with_marks(drawing, lines))
+}
