@@ -44,6 +44,9 @@ pub struct Streamline {
 /// Points of one line at most.
 const MOST_POINTS: i32 = 100_000;
 
+/// How much of the separation a new line needs on both sides: with all of it, gaps up to twice as wide would stay.
+const ROOM: f64 = 0.75;
+
 /// A line ends where it would turn by more than 60° in a step.
 const SHARPEST_TURN: f64 = 0.5;
 
@@ -90,8 +93,7 @@ impl<F: Field> Tracing<'_, F> {
     /// Traces the line through a seed, unless another is too near.
     fn try_seed(&mut self, seed: DVec2, new: &mut VecDeque<usize>) {
         let Some(separation) = self.separation(seed) else { return };
-        // What rounding takes from a seed beside a line does not count.
-        if self.placed.any(seed, separation * (1.0 - 1e-6), |_| true) {
+        if self.placed.any(seed, separation * ROOM, |_| true) {
             return;
         }
         let Some(direction) = self.field.direction(seed) else { return };

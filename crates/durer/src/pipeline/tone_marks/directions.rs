@@ -34,7 +34,7 @@ pub struct Directions {
 /// eye gets lines that rise to the right at 45°.
 const SLANT: DVec3 = DVec3::new(1.0, 1.0, 0.4);
 
-/// How much the slant weighs beside a clear curvature.
+/// How much the slant weighs where no curvature is clear.
 const WEIGHT_OF_SLANT: f64 = 0.04;
 
 /// How often curvatures are evened out, and how much neighbours then weigh: over some four pixels, so facets do not show.
@@ -63,7 +63,9 @@ impl Directions {
             let slanted = sides.normal.cross(SLANT).normalize_or_zero();
             let turned = if across == Across::Yes { sides.normal.cross(slanted) } else { slanted };
             let bent_way = bent.directions[usize::from(second[i] != (across == Across::Yes))];
-            Tensor::of(bent_way) * bent.weight + Tensor::of(turned) * WEIGHT_OF_SLANT
+            let unclear = 1.0 - bent.weight;
+            Tensor::of(bent_way) * bent.weight
+                + Tensor::of(turned) * (WEIGHT_OF_SLANT * unclear * unclear)
         };
         let [along, across] = [Across::No, Across::Yes].map(|across| {
             let own = (0..sides.len()).map(|i| direction(i, across)).collect();
