@@ -6,6 +6,7 @@ use durer::target::drawing::Drawing;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::view::projection::{FitOptions, Lens, ViewDirection, fit_box};
+use durer::visibility::line::Smooth;
 use durer::visibility::line::hidden_line::{self, Options};
 use durer::visibility::line::Intersections;
 use durer_formats::{ReadOptions, Resources};
@@ -51,7 +52,8 @@ fn main() {
     let fit = FitOptions { lens: Lens::Orthographic, ..FitOptions::default() };
     let camera = fit_box(scene.bounds().as_ref(), &direction, &fit).expect("camera");
     let view = View::new(camera, 1000, 1000).expect("view");
-    let mut options = Options { hidden: !has("--no-hidden"), smooth: has("--smooth"), ..Options::default() };
+    let smooth = if has("--smooth") { Smooth::Auto } else { Smooth::Off };
+    let mut options = Options { hidden: !has("--no-hidden"), smooth, ..Options::default() };
     options.tolerance = number("--tolerance", options.tolerance);
     if has("--wire") {
         options.classes = options.classes.with(durer::target::drawing::LineClass::Wire);

@@ -10,7 +10,7 @@ use durer::math::DVec3;
 use durer::paper::{self, Page, Pens, Scale};
 use durer::pipeline::{DrawStyle, line_classes};
 use durer::view::projection::NamedView;
-use durer::visibility::line::{ClassSet, edge_lines};
+use durer::visibility::line::{self, ClassSet, edge_lines};
 use durer::visibility::object::Weld;
 use durer::visibility::region;
 
@@ -30,10 +30,11 @@ pub struct DrawingArgs {
     /// turn by more than TO degrees and it goes straight on: for sculpted models, whose edges fade.
     #[arg(long, value_name = "FROM[,TO]", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
     pub crease: Crease,
-    /// Which lines are drawn, joined by commas [default: all but wire and shadow]
+    /// Which lines are drawn, joined by commas [default: all but tangent, wire and shadow]
     ///
-    /// silhouette, crease, border, non-manifold, material, intersection, section, shadow, wire; `all` is
-    /// all but the last two.
+    /// silhouette, crease, border, non-manifold, material, intersection, section, tangent, shadow, wire; `all` is
+    /// all but the last three. `tangent` is where curved faces meet others smoothly, as a fillet a plane: --lines
+    /// all,tangent.
     #[arg(long, value_name = "CLASSES", value_parser = |s: &str| line_classes(s).map_err(|e| e.to_string()))]
     pub lines: Option<ClassSet>,
     /// Cut back lines that end in the open, where that takes at most this much of the drawing's larger
@@ -83,8 +84,9 @@ pub struct DrawingArgs {
     #[arg(long, value_name = "HOW")]
     pub fill: Option<Fill>,
     /// Draw outlines of round parts where the normals turn away, not along the edges between facets
-    #[arg(long)]
-    pub smooth: bool,
+    /// [default: auto; off for .geojson and with --stubs 0; without a word: on]
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
+    pub smooth: Option<Smooth>,
     /// Where lines are drawn in which faces penetrate each other
     #[arg(long, value_name = "WHERE", default_value = "bodies")]
     pub intersections: Intersections,
@@ -303,6 +305,18 @@ pub enum Fill {
     Trapped,
 }
 
+/// `--smooth`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Smooth {
+    /// On objects that the mesh says are round: where most of what bends turns by less than 25 degrees from facet to
+    /// facet
+    Auto,
+    /// On all that has no creases
+    On,
+    /// Outlines are edges of the mesh
+    Off,
+}
+
 /// `--intersections`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Intersections {
@@ -421,6 +435,16 @@ impl From<Intersections> for edge_lines::Intersections {
         match which {
             Intersections::Bodies => Self::BetweenBodies,
             Intersections::All => Self::All,
+        }
+    }
+}
+
+impl From<Smooth> for line::Smooth {
+    fn from(how: Smooth) -> Self {
+        match how {
+            Smooth::Auto => Self::Auto,
+            Smooth::On => Self::On,
+            Smooth::Off => Self::Off,
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::report::{CameraReport, PictureReport};
 use crate::shape;
 use crate::values::Size;
 use annotations::{FeatureReport, Look, Wanted};
-use args::{Fill, Hatch, Hidden, Merge, NAMES, OF_ANNOTATIONS, Unit};
+use args::{Fill, Hatch, Hidden, Merge, NAMES, OF_ANNOTATIONS, Smooth, Unit};
 use callouts::Callouts;
 use durer::math::{DVec2, Vec4};
 use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock, ViewKind};
@@ -454,7 +454,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             // Programs get all there is; on paper hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
             intersections: drawing.intersections.into(),
-            smooth: drawing.smooth,
+            smooth: drawing.smooth.unwrap_or(if all { Smooth::Off } else { Smooth::Auto }).into(),
             weld: drawing.weld,
             stubs: drawing.stubs.unwrap_or(if geojson { 0.0 } else { STUBS }) / 100.0,
             beneath: drawing.beneath.unwrap_or(if all { 0.0 } else { BENEATH }) / 100.0,

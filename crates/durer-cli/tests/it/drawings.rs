@@ -399,9 +399,13 @@ fn outlines_are_smooth_and_bodies_searched_where_that_is_asked_for() {
     };
     assert_eq!(length("crossing.obj", "intersection", ""), 0.0);
     assert!(length("crossing.obj", "intersection", "--intersections all") > 0.1);
-    let (sharp, smooth) =
-        (length("teapot.obj", "silhouette", ""), length("teapot.obj", "silhouette", "--smooth"));
+    let outlines = |options| length("teapot.obj", "silhouette", options);
+    let (sharp, smooth) = (outlines("--smooth=off"), outlines("--smooth"));
     assert!(smooth > 0.5 * sharp && smooth != sharp, "{smooth} {sharp}");
+    // Round parts are found, and drawings with all lines of the mesh keep them.
+    assert_eq!(outlines(""), outlines("--smooth=auto"));
+    assert_ne!(outlines(""), sharp);
+    assert_eq!(outlines("--stubs 0"), outlines("--stubs 0 --smooth=off"));
 }
 
 /// A box as text in STL; each corner of a facet is moved by what `moved` says of its number.

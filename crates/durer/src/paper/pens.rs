@@ -39,14 +39,14 @@ impl Default for Pens {
         for &class in LineClass::ALL {
             use LineClass::{
                 Axis, Border, Contour, Crease, Grid, Hatch, Intersection, Mark, Material,
-                NonManifold, Section, Shadow, Silhouette, Stipple, Wire,
+                NonManifold, Section, Shadow, Silhouette, Stipple, Tangent, Wire,
             };
             let width = match class {
                 Contour => 0.7,
                 Silhouette | Border | Section | Stipple => 0.5,
                 Crease | NonManifold | Intersection | Mark => 0.35,
                 Material | Grid | Axis => 0.25,
-                Wire | Shadow | Hatch => 0.18,
+                Tangent | Wire | Shadow | Hatch => 0.18,
             };
             pens.set(class, width);
         }

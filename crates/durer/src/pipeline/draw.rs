@@ -220,13 +220,14 @@ pub fn with_marks(drawing: Drawing, marks: Vec<Line>) -> Drawing {
 /// # Errors
 /// [`Error::Parameter`] for a name that is none.
 pub fn line_classes(names: &str) -> Result<ClassSet> {
-    if names.trim() == "all" {
-        return Ok(ClassSet::default());
-    }
     let one = |set: ClassSet, name: &str| {
+        if name.trim() == "all" {
+            let all = LineClass::ALL.iter().filter(|c| ClassSet::default().contains(**c));
+            return Ok(all.fold(set, |set, class| set.with(*class)));
+        }
         let class: LineClass = name.trim().parse().map_err(|_| {
             let expected = "classes joined by commas: silhouette, crease, border, non-manifold, \
-                            material, intersection, section, shadow, wire; or all";
+                            material, intersection, section, tangent, shadow, wire; or all";
             Error::parameter("lines", name, expected)
         })?;
         Ok(set.with(class))

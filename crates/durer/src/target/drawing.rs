@@ -22,6 +22,8 @@ pub enum LineClass {
     Intersection,
     /// The outline of a cut by a section plane.
     Section,
+    /// Where a curved face meets another smoothly, as a fillet a plane.
+    Tangent,
     /// Any other edge of the mesh.
     Wire,
     /// The border between light and shadow.
@@ -49,6 +51,7 @@ impl LineClass {
         Self::Material,
         Self::Intersection,
         Self::Section,
+        Self::Tangent,
         Self::Wire,
         Self::Shadow,
         Self::Hatch,
@@ -69,6 +72,7 @@ impl LineClass {
             Self::Material => "material",
             Self::Intersection => "intersection",
             Self::Section => "section",
+            Self::Tangent => "tangent",
             Self::Wire => "wire",
             Self::Shadow => "shadow",
             Self::Hatch => "hatch",

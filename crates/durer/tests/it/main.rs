@@ -64,6 +64,7 @@ mod surface_methods;
 mod surface_ray;
 mod surface_scenes;
 mod surface_warnock;
+mod tangent_edges;
 mod tidy;
 mod tone_marks;
 mod view_cull;

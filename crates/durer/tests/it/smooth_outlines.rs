@@ -2,14 +2,17 @@
 
 use crate::line_oracle::{distance, segments};
 use crate::line_scenes::{Triangle, quad, soup, torus, view};
-use durer::math::{DVec2, DVec3};
+use durer::math::{DMat4, DVec2, DVec3};
+use durer::scene::Instance;
 use durer::target::drawing::{Drawing, LineClass};
 use durer::trace::NoTrace;
 use durer::view::View;
+use durer::visibility::line::Smooth;
 use durer::visibility::line::hidden_line::{Options, draw};
 
 fn smooth(triangles: &[Triangle], view: &View) -> Drawing {
-    let options = Options { smooth: true, hidden: false, tolerance: 1e-6, ..Options::default() };
+    let options =
+        Options { smooth: Smooth::On, hidden: false, tolerance: 1e-6, ..Options::default() };
     draw(&soup(triangles), view, &options, &mut NoTrace).expect("drawing")
 }
 
@@ -96,7 +99,7 @@ fn outlines_of_balls_are_one_line_whatever_the_mesh() {
 
 /// The lengths of outlines, visible and hidden.
 fn lengths(triangles: &[Triangle], view: &View) -> [f64; 2] {
-    let options = Options { smooth: true, tolerance: 1e-6, ..Options::default() };
+    let options = Options { smooth: Smooth::On, tolerance: 1e-6, ..Options::default() };
     let drawing = draw(&soup(triangles), view, &options, &mut NoTrace).expect("drawing");
     assert_eq!(drawing.length(|l| l.class != LineClass::Silhouette), 0.0);
     [true, false].map(|visible| drawing.length(|l| l.is_visible() == visible))
@@ -199,7 +202,7 @@ fn outlines_of_cylinders_and_cones_are_straight() {
                 }
             }
             let v = view(DVec3::ZERO, DVec3::new(0.2, -1.0, 0.3), 8.0, false);
-            let options = Options { smooth: true, stubs: 0.01, ..Options::default() };
+            let options = Options { smooth: Smooth::On, stubs: 0.01, ..Options::default() };
             let drawing = draw(&soup(&triangles), &v, &options, &mut NoTrace).expect("drawing");
             // The rim at the bottom is half an outline and half hidden; seen from above.
             let ellipse = {
@@ -227,4 +230,97 @@ fn cone_side(cos: f64) -> f64 {
     let y = sin2 / height;
     let x2 = 1.0 - y * y / sin2;
     (x2 + (height - y).powi(2)).sqrt()
+}
+
+/// A body of revolution of `n` facets around z with this profile of radii and heights, from the bottom up, without lids.
+fn turned(profile: &[[f64; 2]], n: usize) -> Vec<Triangle> {
+    let at = |k: usize, [r, z]: [f64; 2]| {
+        let (s, c) = (k as f64 / n as f64 * std::f64::consts::TAU).sin_cos();
+        DVec3::new(r * c, r * s, z)
+    };
+    let cells = profile.windows(2).flat_map(|w| (0..n).map(move |k| (k, w[0], w[1])));
+    let quads = cells.map(|(k, a, b)| [at(k, a), at(k + 1, a), at(k + 1, b), at(k, b)]);
+    quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
+}
+
+#[test]
+fn a_cylinder_that_ends_in_a_cone_is_straight() {
+    // Its rim turns by 35°: that is no crease, but nothing is round along the axis.
+    let aside = 4.0 - 1.5 * 35.0_f64.to_radians().tan();
+    let barrel = turned(&[[4.0, -6.0], [4.0, 6.0], [aside, 7.5]], 60);
+    for to_eye in [DVec3::new(0.0, -1.0, 0.1), DVec3::new(0.3, -1.0, -0.2)] {
+        let drawing = smooth(&barrel, &view(DVec3::ZERO, to_eye, 20.0, false));
+        let across = |p: &DVec2| p.x.abs();
+        let widest = drawing.lines.iter().flat_map(|l| &l.points).map(across).fold(0.0, f64::max);
+        assert!((widest - 4.0).abs() < 0.01, "{to_eye}: {widest}");
+    }
+}
+
+#[test]
+fn what_is_modelled_in_few_facets_keeps_them() {
+    let drawn = |triangles: &[Triangle], smooth: Smooth| {
+        let v = view(DVec3::ZERO, DVec3::new(1.0, -1.7, 0.9), 4.0, false);
+        let options = Options { smooth, tolerance: 1e-6, ..Options::default() };
+        draw(&soup(triangles), &v, &options, &mut NoTrace).expect("drawing").lines
+    };
+    for (n, round) in [(12, true), (9, true), (6, false), (5, false)] {
+        let ball = ball(n);
+        let auto = drawn(&ball, Smooth::Auto);
+        assert_eq!(auto == drawn(&ball, Smooth::On), round, "{n}");
+        assert_eq!(auto == drawn(&ball, Smooth::Off), !round, "{n}");
+    }
+    // Nothing of a box bends.
+    let cube = bar(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]);
+    assert_eq!(drawn(&cube, Smooth::Auto), drawn(&cube, Smooth::Off));
+}
+
+#[test]
+fn each_object_is_round_or_not() {
+    let scene = |parts: [&[Triangle]; 2]| {
+        let parts = parts.map(soup);
+        let [mut scene, other] = parts;
+        let offset = DMat4::from_translation(DVec3::new(3.0, 0.0, 0.0));
+        scene.meshes.extend(other.meshes);
+        scene.instances.push(Instance { mesh: 1, world_from_mesh: offset, name: String::new() });
+        scene
+    };
+    let (round, coarse) = (ball(12), ball(5));
+    let v = view(DVec3::new(1.5, 0.0, 0.0), DVec3::new(0.2, -1.7, 0.9), 8.0, false);
+    let drawn = |parts, smooth| {
+        let options = Options { smooth, tolerance: 1e-6, ..Options::default() };
+        draw(&scene(parts), &v, &options, &mut NoTrace).expect("drawing").lines
+    };
+    let auto = drawn([&round, &coarse], Smooth::Auto);
+    let of = |smooth| drawn([&round, &coarse], smooth);
+    let (on, off) = (of(Smooth::On), of(Smooth::Off));
+    let side = |lines: &[durer::target::drawing::Line], right: bool| {
+        let of = lines.iter().filter(|l| (l.points[0].x > 0.0) == right).cloned();
+        of.collect::<Vec<_>>()
+    };
+    assert_eq!(side(&auto, false), side(&on, false));
+    assert_eq!(side(&auto, true), side(&off, true));
+    assert_ne!(side(&on, true), side(&off, true));
+}
+
+#[test]
+fn outlines_of_open_shells_are_whole() {
+    // Bowls, seen from above and below, whose insides bend towards the eye.
+    let profile: Vec<[f64; 2]> = (0..=12)
+        .map(|k| (k as f64 / 12.0 * 1.3 + 0.25).sin_cos())
+        .map(|(s, c)| [2.0 * s, -2.0 * c])
+        .collect();
+    let bowl = turned(&profile, 48);
+    for z in [0.3, -0.3, 0.8, -0.8] {
+        let v = view(DVec3::ZERO, DVec3::new(0.2, -1.0, z), 8.0, false);
+        let options = Options { stubs: 0.01, ..Options::default() };
+        let drawn = |smooth| {
+            let options = Options { smooth, ..options };
+            draw(&soup(&bowl), &v, &options, &mut NoTrace).expect("drawing")
+        };
+        let [smooth, plain] = [Smooth::On, Smooth::Off].map(drawn);
+        for visible in [true, false] {
+            let [a, b] = [&smooth, &plain].map(|d| d.length(|l| l.is_visible() == visible));
+            assert!((a - b).abs() < 0.02 * 20.0, "{z} {visible}: {a}, {b}");
+        }
+    }
 }

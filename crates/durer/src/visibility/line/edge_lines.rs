@@ -1,6 +1,8 @@
 //! Which edges are lines: silhouettes, creases, borders and the like.
 
 use super::facing::{Facing, Pair};
+use super::smooth_silhouette::Whole;
+use super::tangent::Tangents;
 use crate::target::drawing::LineClass;
 use crate::visibility::object::{Bodies, Edges, Faces, Side};
 
@@ -108,6 +110,9 @@ pub(super) struct Rules<'a> {
     /// As in `materials`; its faces are the caps of a section.
     pub cap: Option<u32>,
     pub classes: ClassSet,
+    /// Tangent edges, where they are wanted, and what the triangles are parts of.
+    pub tangents: Option<&'a Tangents>,
+    pub whole: Whole<'a>,
     /// Cosine of the crease angle.
     pub crease: f32,
     /// Cosine of the angle down to which a crease goes on; at least `crease`.
@@ -207,8 +212,15 @@ impl Rules<'_> {
             .or_else(|| crease(Sharpness::Sharp))
             .or_else(border)
             .or_else(|| crease(Sharpness::Weak))
+            .or_else(|| self.is_tangent(pair).then_some(LineClass::Tangent))
             .or_else(|| self.wire());
         (class, sharpness)
+    }
+
+    fn is_tangent(&self, pair: Pair) -> bool {
+        let Some(tangents) = self.tangents else { return false };
+        let [a, b] = pair.items.map(|item| self.whole.triangle(self.faces, item));
+        a.zip(b).is_some_and(|(a, b)| tangents.contains([a, b]))
     }
 
     /// Whether some of the triangles are of a cap and some are not.

@@ -1,6 +1,7 @@
 //! Visible lines: what of the edges of a scene can be seen, as exact drawings.
 
 mod arrange;
+mod bend;
 mod chain;
 mod crease_chain;
 pub mod edge_lines;
@@ -12,14 +13,17 @@ mod marks;
 mod method;
 mod overlap;
 mod page;
+mod roundness;
 mod simplify;
 mod smooth_silhouette;
 mod smooth_surface;
 mod stubs;
 mod table;
+mod tangent;
 mod vertex_normals;
 pub mod wireframe;
 mod zigzag;
 
 pub use edge_lines::{ClassSet, Intersections};
 pub use method::LineMethod;
+pub use roundness::Smooth;

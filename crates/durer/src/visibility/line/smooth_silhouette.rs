@@ -13,11 +13,9 @@
 //! the other side lies folded over the outline, and what lies behind it is counted once less: so the number of surfaces
 //! in front changes at the outline, to the bit, and 2014's search for consistent positions is not needed.
 //!
-//! A surface hides its own outline where it bends towards the eye, behind a cusp: there the slope grows against the
-//! sight. Like the radial curvature of Doug DeCarlo, Adam Finkelstein, Szymon Rusinkiewicz and Anthony Santella,
-//! *Suggestive contours for conveying shape*, SIGGRAPH 2003, that is averaged over the faces around each
-//! vertex and linear along edges. O(n log n).
+//! Where a surface hides its own outline, `bend` says. O(n log n).
 
+use super::bend::{Bend, Bends};
 use super::smooth_surface::SmoothSurface;
 use crate::math::DVec3;
 use crate::scene::Scene;
@@ -45,15 +43,6 @@ pub(super) struct Divided {
     surface: SmoothSurface,
 }
 
-/// How a surface bends at an outline.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Bend {
-    /// The curvature along the sight, in 1 / world units: below 0 where the surface hides the outline itself.
-    pub radial: f32,
-    /// How far in front of the outline a facet of the same surface may lie that does not hide it, world units.
-    pub reach: f32,
-}
-
 /// What faces were before they were divided, if they were.
 #[derive(Clone, Copy)]
 pub(super) struct Whole<'a>(pub Option<&'a Divided>);
@@ -62,6 +51,11 @@ impl Whole<'_> {
     /// The corners of the triangle that a triangle of `faces` is a part of.
     pub fn corners(self, faces: &Faces, item: u32) -> Option<[DVec3; 3]> {
         self.0.map_or_else(|| faces.corners(item), |d| d.whole.corners(self.item(item)))
+    }
+
+    /// The triangle that one of `faces` is a part of.
+    pub fn triangle(self, faces: &Faces, item: u32) -> Option<[u32; 3]> {
+        self.0.map_or_else(|| faces.triangle(item), |d| d.whole.triangle(self.item(item)))
     }
 
     /// The normal of the smooth surface that a sliver lies in, if it is turned against that.
@@ -79,6 +73,19 @@ impl Whole<'_> {
         self.0.map_or(&[], |d| &d.turns)
     }
 
+    /// Whether an outline runs through the triangle that one is a part of, or touches it.
+    pub fn at_outline(self, item: u32) -> bool {
+        self.0.is_some_and(|d| d.surface.shows_both(self.item(item)))
+    }
+
+    /// Whether the triangle that one is a part of has a vertex of those that others are parts of.
+    pub fn is_beside(self, item: u32, others: [u32; 2]) -> bool {
+        let Some(divided) = self.0 else { return false };
+        let of = |item: u32| divided.whole.triangle(self.item(item)).unwrap_or_default();
+        let own = of(item);
+        others.iter().any(|o| of(*o).iter().any(|v| own.contains(v)))
+    }
+
     /// How the surface bends at a vertex of an outline; see [`Divided`].
     pub fn bend(self, vertex: u32) -> Bend {
         self.0.and_then(|d| d.bends.get(vertex as usize)).copied().unwrap_or_default()
@@ -92,14 +99,15 @@ impl Whole<'_> {
 
 /// A place of the silhouette on an edge of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Crossing {
+pub(super) struct Crossing {
     /// The edge, the smaller vertex first.
-    edge: [u32; 2],
+    pub edge: [u32; 2],
     /// 0 … 1 from the first vertex.
-    at: f64,
+    pub at: f64,
     /// The surface's corners at both vertices.
-    corners: [u32; 2],
-    item: u32,
+    pub corners: [u32; 2],
+    /// The triangle.
+    pub item: u32,
 }
 
 /// A part of a triangle.
@@ -111,20 +119,20 @@ struct Part {
 /// A corner of a part of a triangle: its vertex, and where it lies on the flat triangle.
 type Corner = (u32, DVec3);
 
-/// Divides the faces.
+/// Divides the faces that are said to be `round`, item by item; edges are sharp from an angle on, radians.
 pub(super) fn divided(
     scene: &Scene,
     whole: Faces,
     edges: &Edges,
     plane: &PicturePlane,
-    crease: f64,
+    (round, sharp): (&[bool], f64),
 ) -> Divided {
-    let surface = SmoothSurface::new(scene, (&whole, edges), plane, crease);
+    let surface = SmoothSurface::new(scene, (&whole, edges), plane, (round, sharp));
     let mut crossings = crossings(&whole, &surface);
     crossings.sort_unstable_by(|a, b| {
         a.edge.cmp(&b.edge).then(a.at.total_cmp(&b.at)).then(a.item.cmp(&b.item))
     });
-    let bends = bends(&whole, &surface, &crossings, plane);
+    let bends = Bends::new(&whole, &surface, &crossings, plane);
     let found = Vertices::new(&whole, &surface, edges, &crossings, &bends);
     let mut parts = Vec::new();
     let mut crossed = vec![false; whole.points().len()];
@@ -157,39 +165,6 @@ fn crossings(faces: &Faces, surface: &SmoothSurface) -> Vec<Crossing> {
         }
     }
     found
-}
-
-/// The curvature along the sight at each corner of the surface that is beside an outline: an average over
-/// its triangles, by area.
-fn bends(
-    faces: &Faces,
-    surface: &SmoothSurface,
-    crossings: &[Crossing],
-    plane: &PicturePlane,
-) -> Vec<f64> {
-    let mut beside = vec![false; surface.slopes.len()];
-    crossings.iter().flat_map(|c| c.corners).for_each(|c| beside[c as usize] = true);
-    let mut sums = vec![[0.0; 2]; surface.slopes.len()];
-    for (item, _) in faces.triangles() {
-        let Some(corners) = surface.corners(item) else { continue };
-        if corners.iter().all(|c| !beside[*c as usize]) {
-            continue;
-        }
-        let Some([a, b, c]) = faces.corners(item) else { continue };
-        let slopes = corners.map(|c| surface.slopes[c as usize]);
-        let (u, v) = (b - a, c - a);
-        let sight = plane.sight_at((a + b + c) / 3.0).normalize_or_zero();
-        // The gradient of what is linear in a plane, times twice its area.
-        let across = u.cross(v);
-        let gradient = (v * (slopes[1] - slopes[0]) - u * (slopes[2] - slopes[0])).cross(across);
-        let growth = gradient.dot(sight) / across.length();
-        if growth.is_finite() {
-            for sum in corners.map(|c| c as usize) {
-                sums[sum] = [sums[sum][0] + growth, sums[sum][1] + across.length()];
-            }
-        }
-    }
-    sums.into_iter().map(|[growth, area]| if area > 0.0 { growth / area } else { 0.0 }).collect()
 }
 
 /// Where a function that is linear along the edges of a triangle changes its sign. Neighbours with
@@ -232,7 +207,7 @@ impl<'a> Vertices<'a> {
         surface: &'a SmoothSurface,
         edges: &Edges,
         crossings: &'a [Crossing],
-        bends: &[f64],
+        bends: &Bends,
     ) -> Self {
         let mut found = Self {
             faces,
@@ -249,8 +224,7 @@ impl<'a> Vertices<'a> {
                     && same.len() == sides
                     && same.iter().all(|c| c.corners == same[0].corners);
                 let vertex = found.vertex(&same[0], all_alike);
-                let bend = found.bend(same, bends);
-                found.bends[vertex as usize] = bend;
+                found.bends[vertex as usize] = bends.at(&same[0]);
                 found.vertices.extend(same.iter().map(|_| vertex));
             }
         }
@@ -271,34 +245,6 @@ impl<'a> Vertices<'a> {
         self.points.push(if round { curve_over(ends, normals, at) } else { flat(ends, at) });
         self.bends.push(Bend::default());
         self.points.len() as u32 - 1
-    }
-
-    /// How the surface bends at a crossing, which all these are.
-    ///
-    /// A facet stays within the surface by the chord's sagitta s or reaches over it, and the outline is made of chords
-    /// as well. On a surface of curvature k along the sight, what reaches over an outline by 2s has come forward by
-    /// √(2 · 2s / k); but no facet reaches further than it is long.
-    fn bend(&self, same: &[Crossing], bends: &[f64]) -> Bend {
-        let [a, b] = same[0].corners.map(|c| bends[c as usize]);
-        let radial = a + (b - a) * same[0].at;
-        let reach = |c: &Crossing| {
-            let (sagitta, length) = self.sagitta(c.item).unwrap_or_default();
-            length.min(2.0 * (sagitta / radial.max(0.0)).sqrt())
-        };
-        let reach = same.iter().map(reach).fold(0.0, f64::max);
-        Bend { radial: radial as f32, reach: reach as f32 }
-    }
-
-    /// How far the sides of a triangle lie from the surface at most, and the length of its longest.
-    fn sagitta(&self, item: u32) -> Option<(f64, f64)> {
-        let (places, corners) = (self.faces.corners(item)?, self.surface.corners(item)?);
-        let normals = corners.map(|c| self.surface.normals[c as usize]);
-        let sides = [0, 1, 2].map(|k| {
-            let (along, turn) =
-                (places[(k + 1) % 3] - places[k], normals[(k + 1) % 3] - normals[k]);
-            (along.dot(turn).abs() / 8.0, along.length())
-        });
-        sides.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))
     }
 
     /// Pushes the parts of a triangle, if it has more than one.

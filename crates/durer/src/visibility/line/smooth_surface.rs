@@ -46,19 +46,21 @@ struct Seen<'a> {
     scene: &'a Scene,
     faces: &'a Faces,
     plane: &'a PicturePlane,
+    /// Of each item whether it stands for a smooth surface.
+    round: &'a [bool],
 }
 
 impl SmoothSurface {
-    /// The surface of the faces, with edges sharper than the angle `crease`, radians.
+    /// The surface of the faces that are said to be `round`, item by item, with edges from the angle `sharp` on, radians.
     pub fn new(
         scene: &Scene,
         (faces, edges): (&Faces, &Edges),
         plane: &PicturePlane,
-        crease: f64,
+        (round, sharp): (&[bool], f64),
     ) -> Self {
-        let seen = Seen { scene, faces, plane };
+        let seen = Seen { scene, faces, plane, round };
         let without = seen.without_normals();
-        let directions = Directions::new(faces, edges, crease, &without);
+        let directions = Directions::new(faces, edges, sharp, &without);
         let near = seen.near_outlines(&directions);
         let mut found = Self {
             corners: vec![[NONE; 3]; faces.len()],
@@ -89,6 +91,13 @@ impl SmoothSurface {
         let slopes = (0..3).filter(|k| is_of_part(*k)).map(|k| self.slopes[corners[k] as usize]);
         let steepest = slopes.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
         if steepest.abs() < EDGE_ON { 0 } else { -steepest.signum() as i8 }
+    }
+
+    /// Whether both sides of the surface are seen at a triangle's corners.
+    pub fn shows_both(&self, item: u32) -> bool {
+        let slopes = |c: [u32; 3]| c.map(|c| self.slopes[c as usize]);
+        let both = |s: [f64; 3]| s.iter().any(|s| *s >= 0.0) && s.iter().any(|s| *s <= 0.0);
+        self.corners(item).is_some_and(|c| both(slopes(c)))
     }
 
     /// The normal of the surface at a sliver that is turned against it.
@@ -172,7 +181,8 @@ impl Seen<'_> {
     fn without_normals(&self) -> Vec<u32> {
         let runs = self.faces.runs().iter();
         let without = runs.filter(|r| self.scene.meshes[r.mesh].normals.is_empty());
-        without.flat_map(|r| r.items.clone()).collect()
+        let items = without.flat_map(|r| r.items.clone());
+        items.filter(|item| self.round[*item as usize]).collect()
     }
 
     /// Of each item whether it is at most two triangles away from where faces of both sides meet, or normals
@@ -194,7 +204,7 @@ impl Seen<'_> {
         }
         let mut found = vec![false; self.faces.len()];
         for (item, t) in self.faces.triangles() {
-            found[item as usize] = t.iter().any(|v| near[*v as usize]);
+            found[item as usize] = self.round[item as usize] && t.iter().any(|v| near[*v as usize]);
         }
         found
     }

@@ -8,6 +8,7 @@
 //! What is beyond a sharp edge does not count: beyond a crease, and beyond a bend between two flat faces that are
 //! no facets of anything round. O(n) for vertices of bounded degree.
 
+use super::roundness::FLAT;
 use crate::math::DVec3;
 use crate::visibility::object::{Edges, Faces};
 
@@ -18,12 +19,9 @@ const SLIVER: f64 = 0.125;
 /// How many slivers may lie beside each other; more are a strip of a round part, and turned as that is.
 const SLIVERS: usize = 4;
 
-/// The cosine within which faces are one flat face: 0.1°. Less may be rounding of the file's coordinates.
-const FLAT: f64 = 1.0 - 1.5e-6;
-
 /// How many times as sharp a round part may bend at one side of a facet as at another. Triangulations are irregular, and
 /// springs bend that much more around their wire than along it.
-const UNEVEN: f64 = 8.0;
+pub(super) const UNEVEN: f64 = 8.0;
 
 /// How many triangles a facet of a round part has at most: two, where it is a quadrilateral, and as many beside.
 const FACET: usize = 4;
@@ -138,35 +136,62 @@ impl<'a> Directions<'a> {
 
     /// Half the square of the curvature at an edge between two triangles: of the angle over their mean height.
     fn bend(&self, ends: [u32; 2], items: [u32; 2]) -> f64 {
-        let [p, q] = ends.map(|v| self.faces.points()[v as usize]);
-        let twice_area =
-            |item: u32| self.faces.corners(item).map_or(0.0, |c| direction(c).0.length());
-        let height = (twice_area(items[0]) + twice_area(items[1])) / (2.0 * p.distance(q));
+        let height = (self.height(ends, items[0]) + self.height(ends, items[1])) / 2.0;
         (1.0 - self.of(items[0]).dot(self.of(items[1]))) / (height * height)
     }
 
-    /// Whether the flat face that a triangle is a part of bends at another edge than `ends` too, as facets of round
-    /// parts do, by at least `least`.
+    /// Whether the flat face that a triangle is a part of bends again, straight across from the edge `ends`, as facets
+    /// of round parts do, by at least `least`. How it bends at its other sides is of no matter: a cylinder is round, and
+    /// the rim where it meets a cone is not.
     fn is_facet(&self, ends: [u32; 2], item: u32, least: f64) -> bool {
+        let next = self.next_bend(ends, item).1;
+        next.is_some_and(|curvature| curvature * curvature >= 2.0 * least)
+    }
+
+    /// How wide the flat face is that a triangle is a part of, straight across from the edge `ends`, as far as that is
+    /// looked at, and how much the surface bends that way at its other end: the turn over the mean width of the faces there,
+    /// if it is round.
+    pub fn next_bend(&self, mut ends: [u32; 2], mut item: u32) -> (f64, Option<f64>) {
+        let [p, q] = ends.map(|v| self.faces.points()[v as usize]);
         let own = self.of(item);
-        let mut parts = vec![item];
-        let mut next = 0;
-        while let Some(&part) = parts.get(next) {
-            next += 1;
-            let Some(t) = self.faces.triangle(part) else { continue };
-            for side in sides(t).into_iter().filter(|s| !same_edge(*s, ends)) {
-                let Some(beside) = self.edges.across(side, part) else { continue };
-                let cosine = own.dot(self.of(beside));
-                if cosine >= FLAT {
-                    if parts.len() < FACET && !parts.contains(&beside) {
-                        parts.push(beside);
-                    }
-                } else if cosine >= self.crease && self.bend(side, [part, beside]) >= least {
-                    return true;
-                }
+        let (mut at, mut far) = ((p + q) / 2.0, 0.0);
+        let along = own.cross(q - p).normalize_or_zero();
+        for _ in 0..FACET {
+            let Some((side, exit)) = self.walk(item, ends, at, along) else { return (far, None) };
+            far += at.distance(exit);
+            let Some(beside) = self.edges.across(side, item) else { return (far, None) };
+            let cosine = own.dot(self.of(beside));
+            if cosine < FLAT {
+                let width = (far + self.height(side, beside)) / 2.0;
+                let turn = self.of(beside).dot(along).abs();
+                return (far, (cosine >= self.crease).then(|| turn / width));
             }
+            (item, ends, at) = (beside, side, exit);
         }
-        false
+        (far, None)
+    }
+
+    /// Where a line through a point of one side of a triangle leaves it, and through which other side.
+    fn walk(
+        &self,
+        item: u32,
+        ends: [u32; 2],
+        at: DVec3,
+        along: DVec3,
+    ) -> Option<([u32; 2], DVec3)> {
+        let apex = self.faces.triangle(item)?.into_iter().find(|v| !ends.contains(v))?;
+        let place = |v: u32| self.faces.points()[v as usize];
+        let beside = self.of(item).cross(along);
+        let offset = |v: u32| (place(v) - at).dot(beside);
+        let end = ends.into_iter().find(|v| (offset(*v) > 0.0) != (offset(apex) > 0.0))?;
+        let part = offset(apex) / (offset(apex) - offset(end));
+        Some(([apex, end], place(apex) + (place(end) - place(apex)) * part))
+    }
+
+    /// The height of a triangle over one of its sides.
+    fn height(&self, [a, b]: [u32; 2], item: u32) -> f64 {
+        let length = self.faces.points()[a as usize].distance(self.faces.points()[b as usize]);
+        self.faces.corners(item).map_or(0.0, |c| direction(c).0.length() / length)
     }
 }
 

@@ -33,7 +33,9 @@ use super::intersection::intersections;
 use super::marks::marks;
 use super::overlap::Piece;
 use super::page::{GridPoint, Page, Projected, Vertex, arranged, on_page};
+use super::roundness::Smooth;
 use super::smooth_silhouette::{Whole, divided};
+use super::tangent::Tangents;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::scene::Scene;
@@ -74,10 +76,10 @@ pub struct Options {
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): where they
     /// end is [`LineClass::Section`].
     pub cap_material: Option<usize>,
-    /// Whether silhouettes are those of the smooth surface that the mesh stands for, where its normals
+    /// Whether silhouettes are those of the smooth surfaces that meshes stand for, where their normals
     /// are at a right angle to the sight, and not the edges between faces. The mesh is divided along
     /// them, with its new vertices on the smooth surface, and all lines are those of the divided mesh.
-    pub smooth: bool,
+    pub smooth: Smooth,
     /// Whether hidden lines are given too. Without them the work ends where a line is known to be
     /// hidden, and the drawing has visible lines only.
     pub hidden: bool,
@@ -111,7 +113,7 @@ impl Default for Options {
             crease_end: std::f64::consts::PI,
             intersections: Intersections::default(),
             cap_material: None,
-            smooth: false,
+            smooth: Smooth::Off,
             hidden: true,
             tolerance: 5e-5,
             stubs: 0.0,
@@ -136,12 +138,13 @@ impl Options {
     /// Stubs are known by what they do not touch, so only where everything is drawn.
     fn how(&self) -> How {
         let edges = |set: ClassSet| {
-            set.with(LineClass::Wire).with(LineClass::Section).with(LineClass::Mark)
+            let loose = set.with(LineClass::Wire).with(LineClass::Section).with(LineClass::Mark);
+            loose.with(LineClass::Tangent)
         };
         let all = edges(self.classes) == edges(ClassSet::default());
         let stubs = if all { self.stubs } else { 0.0 };
         let Self { tolerance, beneath, smooth, .. } = *self;
-        How { tolerance, stubs, beneath, smooth }
+        How { tolerance, stubs, beneath, smooth: smooth != Smooth::Off }
     }
 }
 
@@ -223,13 +226,21 @@ pub fn draw(
     let window = plane.window();
     let mut edges = faces.take_edges();
     let count = edges.count();
-    let found = if options.smooth {
-        let mut divided = divided(scene, faces, &edges, &plane, options.crease);
+    let wanted = options.classes.contains(LineClass::Tangent);
+    let tangents = wanted.then(|| Tangents::new(&faces, &edges, options.crease));
+    let tangents = tangents.as_ref();
+    let round = options.smooth.items(&faces, &edges, options.crease);
+    let found = if let Some(round) = round {
+        let sharp = options.smooth.sharp_from(options.crease);
+        let mut divided = divided(scene, faces, &edges, &plane, (&round, sharp));
         edges = divided.faces.take_edges();
         let whole = Whole(Some(&divided));
-        on_page(&divided.faces, plane, |p| pieces(&divided.faces, edges, whole, p, options, t))
+        on_page(&divided.faces, plane, |p| {
+            pieces(&divided.faces, edges, (whole, tangents), p, options, t)
+        })
     } else {
-        on_page(&faces, plane, |p| pieces(&faces, edges, Whole(None), p, options, t))
+        let whole = (Whole(None), tangents);
+        on_page(&faces, plane, |p| pieces(&faces, edges, whole, p, options, t))
     };
     let lines = arranged(found, options.how());
     Ok(Drawing { window, lines, edges: count, ..Drawing::default() })
@@ -239,7 +250,7 @@ pub fn draw(
 fn pieces(
     faces: &Faces,
     edges: Edges,
-    whole: Whole<'_>,
+    (whole, tangents): (Whole<'_>, Option<&Tangents>),
     projected: &Projected,
     options: &Options,
     t: &mut impl Tracer<Step>,
@@ -247,7 +258,8 @@ fn pieces(
     t.step(|| Step::Page(projected.page));
     let (bodies, edges) = Bodies::of_edges(faces, edges);
     let facing = Facing::new(faces, &bodies, &edges, projected, whole, options.tolerance);
-    let lines = Lines::new(faces, &bodies, edges, &facing, options, (projected, whole));
+    let sources = (projected, whole, tangents);
+    let lines = Lines::new(faces, &bodies, edges, &facing, options, sources);
     let all = lines.some(0..lines.len()).map(|l| l.ends);
     let occluders = Occluders::new(faces, &bodies, &facing, projected, all);
     drop((bodies, facing));
@@ -274,7 +286,7 @@ impl<'a> Lines<'a> {
         edges: Edges,
         facing: &Facing,
         options: &Options,
-        (projected, whole): (&'a Projected, Whole<'a>),
+        (projected, whole, tangents): (&'a Projected, Whole<'a>, Option<&Tangents>),
     ) -> Self {
         let rules = Rules {
             faces,
@@ -284,6 +296,8 @@ impl<'a> Lines<'a> {
             materials: materials(faces),
             cap: options.cap_material.map(|m| material_number(Some(m))),
             classes: options.classes,
+            tangents,
+            whole,
             crease: libm::cos(options.crease) as f32,
             crease_end: libm::cos(options.crease_end.min(options.crease)) as f32,
         };
@@ -326,7 +340,8 @@ impl<'a> Lines<'a> {
             (false, true) => [a / (a - b), 1.0],
             (false, false) => [0.0; 2],
         };
-        let reach = if a + b < 0.0 { 0.0 } else { bends[0].reach.max(bends[1].reach) };
+        let closed = of.outside != Outside::Both;
+        let reach = if closed && a + b < 0.0 { 0.0 } else { bends[0].reach.max(bends[1].reach) };
         let reach = f64::from(reach) / self.projected.page.step;
         FeatureLine { smooth: true, fold, reach, ..line }
     }
@@ -341,8 +356,8 @@ impl<'a> Lines<'a> {
             let line = FeatureLine::new(ends, l.class, l.items)?;
             if !l.smooth {
                 let is_smooth = |item: &u32| self.whole.is_smooth(*item);
-                let outline = l.class == LineClass::Silhouette && l.items.iter().any(is_smooth);
-                let vertices = if outline { l.ends } else { line.vertices };
+                let any = l.items.iter().any(is_smooth);
+                let vertices = if any { l.ends } else { line.vertices };
                 return Some(FeatureLine { vertices, ..line });
             }
             let turned = line.ends[0].at != ends[0].at;
@@ -364,7 +379,7 @@ fn hide(
     let jobs: Vec<_> = (0..count).step_by(JOB).map(|i| i..(i + JOB).min(count)).collect();
     let page = occluders.page();
     let covers_of = |line: &FeatureLine, covers: &mut Vec<Cover>| {
-        covers_of(line, occluders, page.touching, !options.hidden, covers);
+        covers_of(line, occluders, whole, page.touching, !options.hidden, covers);
     };
     let hide = |range: Range<usize>| {
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
@@ -463,6 +478,7 @@ fn meeting_lines(
 fn covers_of(
     line: &FeatureLine,
     occluders: &Occluders<'_>,
+    whole: Whole<'_>,
     touching: f64,
     enough: bool,
     covers: &mut Vec<Cover>,
@@ -476,7 +492,11 @@ fn covers_of(
         if line.items.contains(&face.item) {
             return true;
         }
-        if line.vertices[0] != NO_ITEM && occluders.is_beside(face.item, line.vertices) {
+        let outline = line.class == LineClass::Silhouette || whole.at_outline(face.item);
+        if line.vertices[0] != NO_ITEM && outline && occluders.is_beside(face.item, line.vertices) {
+            return true;
+        }
+        if line.smooth && line.fold == [0.0; 2] && whole.is_beside(face.item, line.items) {
             return true;
         }
         let own = line.reach > touching && occluders.same_body(line.items[0], face.item);

@@ -1,0 +1,116 @@
+//! Which objects stand for smooth surfaces.
+//!
+//! A mesh of a round part turns a little at each of its edges; one that is modelled in few facets turns by more, and
+//! they are what it is. Told apart by area, object by object, from the angles alone: not by the view, so that all views
+//! of a thing are drawn alike. O(n).
+
+use crate::math::DVec3;
+use crate::parallel;
+use crate::visibility::object::{Edges, Faces};
+use std::ops::Range;
+
+/// Whether outlines are those of the smooth surfaces that meshes stand for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Smooth {
+    /// They run along edges of the mesh.
+    #[default]
+    Off,
+    /// They are smooth on objects that the mesh says are round: where most of what bends, by area and without
+    /// creases, turns by less than 25° from facet to facet. Bends of more than 30° are edges on these, too.
+    Auto,
+    /// They are smooth wherever the mesh has no creases.
+    On,
+}
+
+/// The cosine within which faces are one flat face: 0.1°. Less may be rounding of the file's coordinates.
+pub(super) const FLAT: f64 = 1.0 - 1.5e-6;
+
+/// The turn in radians up to which facets may be those of a round part: as for curves through lines
+/// ([`crate::curve::fit`]), of 30° with 12 facets all around.
+const ROUND: f64 = std::f64::consts::FRAC_PI_6;
+
+/// The cosine of 25°: facets that turn by more are seen as such, with or without shading.
+const COARSE: f64 = 0.906;
+
+/// The part of the bent area that may turn by so much on a round object, at fins and small features: meshes of round
+/// parts have up to 5 %, those of few facets from 20 % on.
+const COARSE_PART: f64 = 0.125;
+
+impl Smooth {
+    /// The angle in radians from which edges of smooth surfaces are sharp, where creases are from `crease` on.
+    pub(super) fn sharp_from(self, crease: f64) -> f64 {
+        if self == Self::Auto { crease.min(ROUND) } else { crease }
+    }
+
+    /// Of each item whether it is of an object that has smooth outlines; `None` if none is.
+    pub(super) fn items(self, faces: &Faces, edges: &Edges, crease: f64) -> Option<Vec<bool>> {
+        if self == Self::Off || self == Self::On {
+            return (self == Self::On).then(|| vec![true; faces.len()]);
+        }
+        let objects = faces.runs().iter().map(|r| r.instance + 1).max().unwrap_or(0);
+        let mut bent = vec![Bent::default(); objects];
+        for (object, part) in bends(faces, edges, libm::cos(crease)) {
+            bent[object].round += part.round;
+            bent[object].coarse += part.coarse;
+        }
+        let is_round = |b: &Bent| b.round > 0.0 && b.coarse <= COARSE_PART * (b.round + b.coarse);
+        if !bent.iter().any(is_round) {
+            return None;
+        }
+        let mut items = vec![false; faces.len()];
+        for run in faces.runs().iter().filter(|r| is_round(&bent[r.instance])) {
+            items[run.items.start as usize..run.items.end as usize].fill(true);
+        }
+        Some(items)
+    }
+}
+
+/// How much of an object bends: the areas beside its edges, twice.
+#[derive(Debug, Clone, Copy, Default)]
+struct Bent {
+    round: f64,
+    coarse: f64,
+}
+
+/// How much bends, in parts of one object each, in an order that is always the same.
+fn bends(faces: &Faces, edges: &Edges, crease: f64) -> Vec<(usize, Bent)> {
+    let count = faces.points().len() as u32;
+    let jobs: Vec<_> = (0..count).step_by(1 << 15).map(|v| v..(v + (1 << 15)).min(count)).collect();
+    parallel::map(jobs, |vertices| bends_from(faces, edges, crease, vertices)).concat()
+}
+
+/// The same of the edges whose smaller vertices lie in a range.
+fn bends_from(
+    faces: &Faces,
+    edges: &Edges,
+    crease: f64,
+    vertices: Range<u32>,
+) -> Vec<(usize, Bent)> {
+    let mut found: Vec<(usize, Bent)> = Vec::new();
+    let (mut items, mut object) = (0..0, 0);
+    for (_, sides) in edges.from_vertices(vertices) {
+        let [a, b] = sides else { continue };
+        let pair = [a.item(), b.item()].map(|item| normal(faces, item));
+        let lengths = pair.map(DVec3::length);
+        let cosine = pair[0].dot(pair[1]) / (lengths[0] * lengths[1]);
+        let cosine = if a.forward() == b.forward() { -cosine } else { cosine };
+        if !(cosine < FLAT && cosine >= crease) {
+            continue;
+        }
+        if !items.contains(&a.item()) {
+            let Some(run) = faces.run_of(a.item()) else { continue };
+            (items, object) = (run.items.clone(), run.instance);
+        }
+        if found.last().is_none_or(|f| f.0 != object) {
+            found.push((object, Bent::default()));
+        }
+        let Some((_, bent)) = found.last_mut() else { continue };
+        let area = lengths[0] + lengths[1];
+        *(if cosine < COARSE { &mut bent.coarse } else { &mut bent.round }) += area;
+    }
+    found
+}
+
+fn normal(faces: &Faces, item: u32) -> DVec3 {
+    faces.corners(item).map_or(DVec3::ZERO, |[a, b, c]| (b - a).cross(c - a))
+}

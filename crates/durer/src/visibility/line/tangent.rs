@@ -1,0 +1,67 @@
+//! Where curved faces meet others smoothly.
+//!
+//! A mesh does not say where its faces were, but there the curvature changes at once: straight across the first edge of a
+//! fillet, the surface bends as the fillet does on one side, and on the other, of a plane or along a cylinder, hardly. The
+//! facets of the fillet begin on the edge itself, so the mesh turns there by half of what it turns from facet to facet.
+//! O(n log n).
+
+use super::roundness::FLAT;
+use super::vertex_normals::{Directions, UNEVEN};
+use crate::parallel;
+use crate::visibility::object::{Edges, Faces, Side};
+use std::ops::Range;
+
+/// How much of a facet's own turn an edge turns by: half of it, or less where what meets it is coarse too, or a whole turn
+/// where the triangulation is uneven.
+const TURN: Range<f64> = 0.25..1.0;
+
+/// The edges of the mesh that are tangent edges, the smaller vertex first, in order.
+pub(super) struct Tangents(Vec<[u32; 2]>);
+
+impl Tangents {
+    /// Those with bends of less than the angle `crease`, in radians.
+    pub fn new(faces: &Faces, edges: &Edges, crease: f64) -> Self {
+        let items: Vec<u32> = faces.triangles().map(|(item, _)| item).collect();
+        let directions = Directions::new(faces, edges, crease, &items);
+        let (count, crease) = (faces.points().len() as u32, libm::cos(crease));
+        let jobs: Vec<_> =
+            (0..count).step_by(JOB).map(|v| v..(v + JOB as u32).min(count)).collect();
+        let of = |vertices| {
+            let edges = edges.from_vertices(vertices);
+            let tangent =
+                edges.filter(|(ends, sides)| is_tangent(&directions, *ends, sides, crease));
+            tangent.map(|(ends, _)| ends).collect::<Vec<_>>()
+        };
+        Self(parallel::map(jobs, of).concat())
+    }
+
+    /// Whether the edge between two triangles is one.
+    pub fn contains(&self, [a, b]: [[u32; 3]; 2]) -> bool {
+        let mut common = a.into_iter().filter(|v| b.contains(v));
+        let (Some(p), Some(q), None) = (common.next(), common.next(), common.next()) else {
+            return false;
+        };
+        self.0.binary_search(&[p.min(q), p.max(q)]).is_ok()
+    }
+}
+
+/// Vertices per job.
+const JOB: usize = 1 << 15;
+
+fn is_tangent(directions: &Directions<'_>, ends: [u32; 2], sides: &[Side], crease: f64) -> bool {
+    let [a, b] = sides else { return false };
+    let items = [a.item(), b.item()];
+    let cosine = directions.of(items[0]).dot(directions.of(items[1]));
+    if a.forward() == b.forward() || !(crease..FLAT).contains(&cosine) {
+        return false;
+    }
+    let turn = (2.0 * (1.0 - cosine)).sqrt();
+    let [a, b] = items.map(|item| directions.next_bend(ends, item));
+    let meets = |round: (f64, Option<f64>), flat: (f64, Option<f64>)| {
+        let (width, Some(curvature)) = round else { return false };
+        let own = turn / (curvature * width);
+        // What meets it is wider than one facet of it, or it would be as round.
+        TURN.contains(&own) && width < flat.0 && flat.1.is_none_or(|o| o * UNEVEN <= curvature)
+    };
+    meets(a, b) || meets(b, a)
+}
