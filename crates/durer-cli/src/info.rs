@@ -8,7 +8,8 @@ use crate::messages::Messages;
 use crate::report;
 use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
 use durer::view::cull::triangle_area;
-use durer::view::topology::mesh_topology;
+use durer::view::topology::written_topology;
+use durer::visibility::object::{Edges, Faces};
 use durer_formats::{Model, ModelFormat};
 use serde::Serialize;
 use std::fmt::Write;
@@ -179,12 +180,23 @@ fn area(scene: &Scene) -> Option<f64> {
     (scene.triangle_count() > 0).then_some(sum)
 }
 
-/// Whether all meshes of triangles that are shown are closed.
+/// Whether all meshes of triangles that are shown are closed, each or together.
 fn closed(scene: &Scene) -> Option<bool> {
     let shown = |i: usize| scene.instances.iter().any(|instance| instance.mesh == i);
     let meshes = scene.meshes.iter().enumerate();
     let solid = meshes.filter(|(i, mesh)| mesh.triangle_count() > 0 && shown(*i));
-    solid.map(|(_, mesh)| mesh_topology(mesh).closed).reduce(|a, b| a && b)
+    let of_mesh = |mesh| written_topology(mesh, scene.last_digit).closed;
+    let each = solid.map(|(_, mesh)| of_mesh(mesh)).reduce(|a, b| a && b)?;
+    Some(each || closed_together(scene))
+}
+
+/// Whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that go along each
+/// other are one.
+fn closed_together(scene: &Scene) -> bool {
+    Faces::new(scene).is_ok_and(|faces| {
+        let edges = Edges::new(&faces, |_| true);
+        edges.iter().all(|(_, sides)| sides.len() == 2)
+    })
 }
 
 fn material(material: &Material) -> MaterialInfo {

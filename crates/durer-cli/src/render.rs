@@ -4,7 +4,7 @@ use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::report::DrawingReport;
-use crate::drawing::{self, Subject};
+use crate::drawing::{self, Annotated, Subject};
 use crate::encoding;
 use crate::environment;
 use crate::explode;
@@ -24,6 +24,7 @@ use durer::scene::{AlphaMode, Material, Scene};
 use durer::target::Framebuffer;
 use durer::view::components::components;
 use durer::view::layout::Layout;
+use durer::view::objects::divided;
 use durer_formats::{Model, png};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -278,6 +279,10 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     }
     messages.warnings(&name, &model.warnings);
     staging::give_materials(&args.stage, args.look.color, &mut model.scene);
+    let assembles = args.drawing.callouts || args.explode.explode.is_some();
+    if let Some(divided) = assembles.then(|| divided(&model.scene)).flatten() {
+        model.scene = divided;
+    }
     // What is cut has no meshes in common any more.
     let components = if args.drawing.callouts { components(&model.scene) } else { Vec::new() };
     let cap_material = section::apply(&args.section, &mut model.scene, &name, messages)?;
@@ -301,13 +306,24 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     let mut unseen_of_all = None;
     let mut film = job.film();
     let kind = wanted(args).kind;
+    let is_drawing = drawing::is_wanted(args, kind);
+    let annotated = match is_drawing {
+        true => Annotated::new(&args.drawing.annotations, &model.scene, args.drawing.weld)
+            .map_err(|failure| with_file(&name, failure))?,
+        false => None,
+    };
+    let subject = Subject {
+        scene: &model.scene,
+        name: &job.stem,
+        format: &model.format,
+        cap_material,
+        components,
+        annotated,
+    };
     for picture in &job.pictures {
         messages.progress.stage(|| format!("rendering {name}"));
         let mut sink = film.as_mut().map_or(Sink::File(&picture.color), Sink::Film);
-        let report = if drawing::is_wanted(args, kind) {
-            let (scene, format) = (&model.scene, model.format.as_str());
-            let components = components.clone();
-            let subject = Subject { scene, name: &job.stem, format, cap_material, components };
+        let report = if is_drawing {
             drawing::render(args, &subject, picture.frame, &mut sink, kind)
         } else {
             render_picture(args, &model.scene, picture, &mut sink)

@@ -7,7 +7,7 @@ use crate::values;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use durer::math::DVec3;
-use durer::paper::{self, Page, Pens, Scale};
+use durer::paper::{self, Break, Page, Pens, Scale};
 use durer::pipeline::{DrawStyle, line_classes};
 use durer::view::projection::NamedView;
 use durer::visibility::line::{self, ClassSet, edge_lines};
@@ -120,8 +120,8 @@ pub struct DrawingArgs {
     /// How large things are on the paper: 1:10, 2:1, …, or auto
     ///
     /// `auto` takes the largest of 1:1, 1:2, 1:5, 1:10 … and 2:1, 5:1, 10:1 … that fits, and is the default
-    /// for parallel views with --page or --sheet. Without them a .dxf is 1:1, for machines, and so is an .svg of 20 to
-    /// 420 mm where the unit is known, from the file or --unit; all else fills the paper, 180 mm without a page.
+    /// for parallel views with --page or --sheet. Without them a .dxf is 1:1, for machines, and where the unit is known,
+    /// from the file or --unit, so are a .gcode, and an .svg of 20 to 420 mm; all else fills the paper, 180 mm without a page.
     #[arg(long, value_name = "SCALE", value_parser = parsed::<Scale>)]
     pub scale: Option<Scale>,
     /// What a unit of the model is [default: m for glTF, COLLADA and FBX, else mm]
@@ -142,6 +142,13 @@ pub struct DrawingArgs {
     /// --detail B:30,0,8,4 or --detail B:30,0,8,4,10:1,front. May be given several times.
     #[arg(long, value_name = "LETTER:X,Y,Z,RADIUS[,SCALE[,VIEW]]", requires = "sheet", allow_hyphen_values = true, value_parser = detail)]
     pub detail: Vec<DetailSpec>,
+    /// Leave out what lies between two places on an axis: x, y or z, in the model's own units
+    ///
+    /// Views that see the axis in its true length show the rest moved together, with break lines where it is broken;
+    /// all others show all of the model. Dimensions keep the true length. E.g. --break x:40,260. May be given several
+    /// times.
+    #[arg(id = "break", long, value_name = "AXIS:FROM,TO", allow_hyphen_values = true, value_parser = parsed::<Break>)]
+    pub breaks: Vec<Break>,
     /// Number the parts of an assembly around the isometric view, or the only one, and list them
     ///
     /// Parts are the objects of the file; those of one mesh have one number and are counted.
@@ -183,12 +190,14 @@ pub const NAMES: &[&str] = &[
     "pens",
     "feed",
     "travel",
+    "gcode_lines",
     "pen_down",
     "pen_up",
     "page",
     "margin",
     "scale",
     "unit",
+    "break",
     "callouts",
     "title",
     "center_lines",

@@ -41,7 +41,10 @@ impl Callouts {
         for (i, (component, at)) in components.iter().zip(places).enumerate() {
             let (number, name) = ((i + 1).to_string(), component.name.clone());
             match at {
-                Some(at) => found.callouts.push(Callout { view, number: number.clone(), at }),
+                Some(at) => {
+                    let at = seen.breaks.drawn_at(at);
+                    found.callouts.push(Callout { view, number: number.clone(), at });
+                }
                 None => unseen.push(format!("{number} ({name})")),
             }
             let quantity = component.count;

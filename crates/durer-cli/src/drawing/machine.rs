@@ -28,6 +28,9 @@ pub struct MachineArgs {
     /// Such moves are G1 with this speed then, for GRBL takes none for G0.
     #[arg(long, value_name = "MM/MIN", allow_hyphen_values = true, value_parser = values::positive)]
     pub travel: Option<f64>,
+    /// Write arcs to .gcode as chords, for machines that know no G2 and G3
+    #[arg(long)]
+    pub gcode_lines: bool,
     /// The G-code that puts the pen down; \n begins a line [default: 'M3 S1000\nG4 P0.2']
     ///
     /// The default is for a servo on the spindle's output of GRBL, which gets 0.2 seconds to turn. Machines that
@@ -54,6 +57,7 @@ impl MachineArgs {
             pens: self.pens.map(|n| usize::try_from(n).unwrap_or(usize::MAX)),
             feed: self.feed.unwrap_or(default.feed),
             travel: self.travel,
+            arcs: !self.gcode_lines,
             pen_down: self.pen_down.clone().unwrap_or(default.pen_down),
             pen_up: self.pen_up.clone().unwrap_or(default.pen_up),
         }
@@ -65,6 +69,7 @@ impl MachineArgs {
         let of_gcode = [
             ("feed", self.feed.is_some()),
             ("travel", self.travel.is_some()),
+            ("gcode-lines", self.gcode_lines),
             ("pen-down", self.pen_down.is_some()),
             ("pen-up", self.pen_up.is_some()),
         ];

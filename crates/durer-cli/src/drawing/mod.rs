@@ -2,6 +2,7 @@
 
 pub mod annotations;
 pub mod args;
+mod broken;
 mod callouts;
 pub mod machine;
 pub mod report;
@@ -17,11 +18,14 @@ use crate::output;
 use crate::report::{CameraReport, PictureReport};
 use crate::shape;
 use crate::values::Size;
-use annotations::{FeatureReport, Look, Wanted};
+pub use annotations::Annotated;
+use annotations::{FeatureReport, Look};
 use args::{Fill, Hatch, Hidden, Merge, NAMES, OF_ANNOTATIONS, Smooth, Unit};
 use callouts::Callouts;
 use durer::math::{DVec2, Vec4};
-use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock, ViewKind};
+use durer::paper::{
+    self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock, ViewBreaks, ViewKind,
+};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
 use durer::scene::{Camera, Scene};
 use durer::target::drawing::Drawing;
@@ -50,8 +54,8 @@ const BENEATH: f64 = 0.2;
 /// are no more exact.
 const FIT: f64 = 0.02;
 
-/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF as far as its
-/// digits reach, for SVG what a desk or a screen has room for.
+/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF and G-code as far
+/// as their digits reach, for SVG what a desk or a screen has room for.
 const SMALLEST: f64 = 0.1;
 const LARGEST: f64 = 900_000.0;
 const HANDY: std::ops::RangeInclusive<f64> = 20.0..=420.0;
@@ -157,6 +161,7 @@ pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
         return Err(Failure::Usage(message.to_owned()));
     }
     check_weights(args, kind)?;
+    broken::check(args, kind)?;
     sheet::check(args, kind)
 }
 
@@ -222,6 +227,8 @@ pub struct Subject<'a> {
     pub cap_material: Option<usize>,
     /// The kinds of its parts, where they are to be numbered.
     pub components: Vec<Component>,
+    /// What is to be written on its drawings, with its round parts.
+    pub annotated: Option<Annotated>,
 }
 
 /// A view, and what is seen.
@@ -230,12 +237,19 @@ pub struct Shown {
     kind: Option<ViewKind>,
     camera: Camera,
     drawing: Drawing,
+    /// What the drawing leaves out.
+    breaks: ViewBreaks,
 }
 
 impl Shown {
     fn sheet_view(&self) -> Option<SheetView<'_>> {
         let kind = self.kind.clone()?;
-        Some(SheetView { kind, camera: self.camera, drawing: &self.drawing })
+        Some(SheetView {
+            kind,
+            camera: self.camera,
+            drawing: &self.drawing,
+            breaks: self.breaks.clone(),
+        })
     }
 }
 
@@ -258,7 +272,8 @@ pub fn render(
             vec![Shot::new(kind, single_camera(args, subject.scene, frame)?)]
         }
     };
-    let wanted = Wanted::new(&args.drawing.annotations, subject, args.drawing.weld)?;
+    let annotated = &subject.annotated;
+    let breaks = broken::breaks(args, subject.scene, &shots, &mut report.notes)?;
     report.cameras = shots.iter().map(|s| CameraReport::from(&s.camera)).collect();
     let (mut shown, mut statuses, mut sources) = (Vec::new(), Vec::new(), Vec::new());
     for shot in shots {
@@ -276,7 +291,9 @@ pub fn render(
         let DrawOptions { camera, aspect, .. } = &options;
         let status = pipeline::drawing_status(scene, camera, *aspect, &drawing);
         statuses.push(status.map_err(usage)?);
-        shown.push(Shown { kind: shot.kind, camera: shot.camera, drawing });
+        let breaks = breaks.seen_by(&shot.camera);
+        let drawing = breaks.cut(drawing).map_err(usage)?;
+        shown.push(Shown { kind: shot.kind, camera: shot.camera, drawing, breaks });
         sources.push((cut, options));
     }
     let unseen = report.set_status(&statuses);
@@ -290,7 +307,7 @@ pub fn render(
     };
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let room = wanted.as_ref().map_or(0.0, Wanted::room);
+    let room = annotated.as_ref().map_or(0.0, Annotated::room);
     let mut laid = lay_out(args, kind, subject, (frame, room), (&shown, &called))?;
     // In a line drawing the faces of a section are hatched, unless they are to be filled.
     let on_paper = kind != Kind::Drawing(DrawingFormat::GeoJson);
@@ -308,15 +325,15 @@ pub fn render(
     if marked {
         for ((view, placed), (cut, options)) in shown.iter_mut().zip(&laid.views).zip(&sources) {
             let scene = cut.as_ref().unwrap_or(subject.scene);
-            let drawing = std::mem::take(&mut view.drawing);
-            view.drawing = tones::marked(args, scene, options, drawing, placed.factor)?;
+            let marks = tones::marks(args, (scene, options), &view.breaks, placed.factor)?;
+            view.drawing = pipeline::with_marks(std::mem::take(&mut view.drawing), marks);
         }
     }
     if hatched || marked {
         laid = lay_out(args, kind, subject, (frame, room), (&shown, &called))?;
     }
-    if let Some(wanted) = &wanted {
-        wanted.put(&mut laid, &shown, &look(args, subject))?;
+    if let Some(annotated) = annotated {
+        annotated.put(&mut laid, &shown, &look(args, subject))?;
     }
     if args.drawing.machine.orders(kind.drawing()) {
         paper::order::sheet(&mut laid.sheet);
@@ -325,7 +342,7 @@ pub fn render(
     report.geometry_seconds = geometry_seconds;
     report.triangles.given = subject.scene.triangle_count();
     let all: Vec<&Drawing> = shown.iter().map(|s| &s.drawing).collect();
-    let features = wanted.iter().flat_map(|w| &w.features).map(FeatureReport::from).collect();
+    let features = annotated.iter().flat_map(|a| &a.features).map(FeatureReport::from).collect();
     let told_scale = told_scale(args, kind, subject, &laid);
     let drawing = DrawingReport::new(style.name(), &all, &laid, features);
     report.drawing = Some(DrawingReport { told_scale, ..drawing });
@@ -411,7 +428,7 @@ fn line_tolerance(args: &RenderArgs, kind: Kind, subject: &Subject) -> f64 {
     let extent = match (args.drawing.page, args.drawing.scale) {
         (Some(Page::Exact(size) | Page::Either(size)), _) => size.max_element(),
         (_, Some(Scale::Given(scale))) => truth * scale,
-        _ if kind == Kind::Drawing(DrawingFormat::Dxf) => truth,
+        _ if matches!(kind, Kind::Drawing(DrawingFormat::Dxf | DrawingFormat::Gcode)) => truth,
         _ => 0.0,
     };
     match fit > 0.0 && extent > 0.0 && extent.is_finite() {
@@ -424,6 +441,16 @@ fn dxf_strokes(args: &RenderArgs) -> DxfStrokes {
     match args.drawing.dxf_polylines || args.drawing.fit == Some(0.0) {
         true => DxfStrokes::Polylines,
         false => DxfStrokes::Pieces,
+    }
+}
+
+/// Whether areas reach under what covers them.
+fn is_trapped(args: &RenderArgs, kind: Kind) -> bool {
+    let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
+    let viewed = paper || !kind.is_vector();
+    match args.drawing.fill {
+        Some(fill) => fill == Fill::Trapped,
+        None => viewed && matches!(args.drawing.hatch, None | Some(Hatch::None)),
     }
 }
 
@@ -440,8 +467,6 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         _ => Merge::Shade,
     });
     let all = geojson || drawing.stubs == Some(0.0);
-    let paper = matches!(kind, Kind::Drawing(DrawingFormat::Svg | DrawingFormat::Pdf));
-    let viewed = paper || !kind.is_vector();
     let default = hidden_line::Options::default();
     DrawOptions {
         style,
@@ -464,10 +489,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
         exposure: args.look.exposure,
         cull: args.look.cull.into(),
         merge: merge.into(),
-        trapped: match drawing.fill {
-            Some(fill) => fill == Fill::Trapped,
-            None => viewed && matches!(drawing.hatch, None | Some(Hatch::None)),
-        },
+        trapped: is_trapped(args, kind),
         cap_material: None,
     }
 }
@@ -579,6 +601,9 @@ fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, shown: &[Shown
         Kind::Drawing(DrawingFormat::Svg) => {
             known_unit(args, subject).is_some() && HANDY.contains(&size)
         }
+        Kind::Drawing(DrawingFormat::Gcode) => {
+            known_unit(args, subject).is_some() && (SMALLEST..=LARGEST).contains(&size)
+        }
         _ => false,
     }
 }
@@ -589,6 +614,15 @@ fn told_scale(args: &RenderArgs, kind: Kind, subject: &Subject, laid: &LaidOut) 
     let cuts = matches!(kind, Kind::Drawing(DrawingFormat::Dxf | DrawingFormat::Gcode));
     if !cuts || args.drawing.sheet.is_some() {
         return None;
+    }
+    let size = laid.sheet.size;
+    let on_bed = kind != Kind::Drawing(DrawingFormat::Gcode) || args.drawing.page.is_some();
+    if !asked && !on_bed && laid.scale == 1.0 && size.max_element() > *HANDY.end() {
+        let [width, height] = [size.x, size.y].map(|v| v.ceil());
+        return Some(format!(
+            "the drawing is as large as the model, {width} × {height} mm; --page, e.g. {width}x{height}, tells how \
+             large the machine is, and makes the drawing fit"
+        ));
     }
     if !asked && laid.scale != 1.0 {
         let scale = paper::scale_text(laid.scale);
@@ -618,7 +652,9 @@ fn paper_options(
     // turntable, which have to fit each other.
     let placed =
         view.eye.is_some() || view.camera.is_some() || matches!(view.ortho, Some(Ortho::Height(_)));
-    let window = drawing.sheet.is_none() && (placed || frame.is_some() || !kind.is_vector());
+    let window = drawing.sheet.is_none()
+        && drawing.breaks.is_empty()
+        && (placed || frame.is_some() || !kind.is_vector());
     let page = drawing.page.unwrap_or_else(|| match kind {
         Kind::Picture(_) | Kind::Gif if drawing.sheet.is_none() && drawing.scale.is_none() => {
             let Size { width, height } = args.picture.size;
@@ -652,6 +688,7 @@ fn paper_options(
         hidden: drawing.hidden.into(),
         pens: drawing.pen.unwrap_or_default(),
         fit: curve_fit(args, kind),
+        fit_areas: kind.is_vector() && !is_trapped(args, kind),
         background: background(args, kind)?,
         around: 0.0,
     })

@@ -171,14 +171,15 @@ fn detail(spec: &DetailSpec, shown: &[Shown]) -> Result<Option<Shown>, Failure> 
             continue;
         }
         let plane = PicturePlane::of_camera(&view.camera, 1.0).map_err(super::usage)?;
-        let center = plane.plane_from_world(spec.center).at;
+        let center = view.breaks.drawn_at(plane.plane_from_world(spec.center).at);
         let (letter, scale) = (spec.letter.clone(), spec.scale);
         let detail = Detail { letter, of, center, radius: spec.radius, scale };
         let drawing = detail.cut(&view.drawing).map_err(super::usage)?;
         let length = seen(&drawing);
         if length > best.as_ref().map_or(0.0, |b| b.0) {
             let kind = Some(ViewKind::Detail(detail));
-            best = Some((length, Shown { kind, camera: view.camera, drawing }));
+            let breaks = view.breaks.clone();
+            best = Some((length, Shown { kind, camera: view.camera, drawing, breaks }));
         }
     }
     Ok(best.map(|b| b.1))

@@ -4,9 +4,10 @@ use super::args::Hatch;
 use super::{CONTOUR_SPACING, usage};
 use crate::args::RenderArgs;
 use crate::failure::Failure;
+use durer::paper::ViewBreaks;
 use durer::pipeline::{self, DrawOptions, DrawStyle, ToneMarks};
 use durer::scene::Scene;
-use durer::target::drawing::{Drawing, LineClass};
+use durer::target::drawing::{Drawing, Line, LineClass};
 
 /// Which marks are asked for.
 pub fn asked(args: &RenderArgs) -> Option<Hatch> {
@@ -27,16 +28,15 @@ pub fn check(args: &RenderArgs) -> Result<(), Failure> {
     )))
 }
 
-/// Adds the marks for the tones of what a drawing shows; `factor` is its scale, millimetres for a plane unit.
-pub fn marked(
+/// The marks for the tones of what a view shows; `factor` is its scale, millimetres for a plane unit.
+pub fn marks(
     args: &RenderArgs,
-    scene: &Scene,
-    options: &DrawOptions,
-    drawing: Drawing,
+    (scene, options): (&Scene, &DrawOptions),
+    breaks: &ViewBreaks,
     factor: f64,
-) -> Result<Drawing, Failure> {
+) -> Result<Vec<Line>, Failure> {
     let marks = match asked(args) {
-        None => return Ok(drawing),
+        None => return Ok(Vec::new()),
         Some(Hatch::Stipple) => {
             let pens = args.drawing.pen.unwrap_or_default();
             ToneMarks::Dots { diameter: pens.width(LineClass::Stipple) / factor }
@@ -44,5 +44,7 @@ pub fn marked(
         Some(_) => ToneMarks::Contours { spacing: CONTOUR_SPACING / factor },
     };
     let lines = pipeline::tone_marks(scene, options, marks).map_err(usage)?;
-    Ok(pipeline::with_marks(drawing, lines))
+    // The lines of the breaks themselves are in the drawing already.
+    let cut = breaks.cut(Drawing { lines, ..Drawing::default() }).map_err(usage)?;
+    Ok(cut.lines.into_iter().filter(|l| l.class != LineClass::Break).collect())
 }

@@ -88,7 +88,9 @@ fn a_file_names_features_views_and_threads() {
     }
     folder.must(&format!("{shared} -o n.dxf --annotations a.toml --hidden dashed --center-lines"));
     let dxf = String::from_utf8_lossy(&folder.read("n.dxf")).into_owned();
-    for part in ["AcDbRotatedDimension", "\n*D1\n", "\nCENTER\n", "25 h7", "\ndimension\n"] {
+    for part in
+        ["AcDbRotatedDimension", "\n*D1\n", "\nCENTER\n", "25 h7", "\ndimension\n", "\n$DIMLFAC\n"]
+    {
         assert!(dxf.contains(part), "{part}");
     }
 }
@@ -124,4 +126,107 @@ fn what_is_wrong_is_told() {
     let ended = folder.must("render cube.obj -o x.svg --view front --dimension holes,size");
     assert!(ended.err.contains("has no hole"), "{}", ended.err);
     assert_eq!(labels(&folder.read("x.svg")), ["2", "2"]);
+}
+
+/// A bar along x from 0 to 300, 20 thick, with a step at each end.
+const BAR: &str = "v 0 -10 -10\nv 300 -10 -10\nv 300 10 -10\nv 0 10 -10\nv 0 -10 10\nv 300 -10 10\nv 300 10 10\nv 0 10 10\n\
+                   f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+#[test]
+fn broken_views_keep_true_lengths() {
+    let folder = Folder::new();
+    folder.write("bar.obj", BAR);
+    fs::write(
+        folder.path("a.toml"),
+        "[[dimension]]\nkind = 'linear'\nfrom = [20, 10, 10]\nto = [280, 10, 10]\nview = 'front'\n",
+    )
+    .unwrap();
+    let shared = "render bar.obj --break x:50,250 --dimension size";
+    folder.must(&format!("{shared} -o s.svg --sheet third-angle --annotations a.toml"));
+    let found = labels(&folder.read("s.svg"));
+    for text in ["300", "260", "20"] {
+        assert!(found.iter().any(|l| l == text), "{found:?}");
+    }
+    let svg = String::from_utf8_lossy(&folder.read("s.svg")).into_owned();
+    assert!(svg.contains("inkscape:label=\"visible-break\""));
+    folder.must(&format!("{shared} -o b.dxf --view front"));
+    let dxf = String::from_utf8_lossy(&folder.read("b.dxf")).into_owned();
+    // Programs that measure anew find another length, so the text says it.
+    assert!(dxf.contains("\n  1\n300\n") || dxf.contains("\n1\n300\n"));
+    // The paper is as wide as what is left: two ends of 50 and a gap.
+    let json = folder.must("render bar.obj -o b.dxf --view front --break x:50,250 --json").json();
+    let width = json["models"][0]["pictures"][0]["drawing"]["page"][0].as_f64().unwrap();
+    assert!((width - 102.5 - 10.0 - 0.5).abs() < 1e-6, "{width}");
+}
+
+#[test]
+fn breaks_that_cannot_be_shown_are_told() {
+    let folder = Folder::new();
+    folder.write("bar.obj", BAR);
+    for (options, part) in [
+        ("-o b.geojson --break x:50,250", "GeoJSON"),
+        ("-o b.svg --break x:50,250 --fov 30", "perspective"),
+        ("-o b.svg --break x:50,350", "between 0 and 300"),
+        ("-o b.svg --break x:250,50", "FROM below TO"),
+        ("-o b.png --break x:50,250", "it is for drawings"),
+        ("-o b.gif --style hidden-line --turntable 3 --break x:50,250", "all sides"),
+    ] {
+        let ended = folder.run(&format!("render bar.obj {options}"));
+        assert!(ended.code == 2 && ended.err.contains(part), "{options}: {}", ended.err);
+    }
+    let told = folder.must("render bar.obj -o b.svg --break x:50,250 --view right").err;
+    assert!(told.contains("no view shows x in its true length"), "{told}");
+    let told = folder.must("render bar.obj -o b.svg --break x:50,250 --view top").err;
+    assert!(!told.contains("no view"), "{told}");
+}
+
+#[test]
+fn objects_of_obj_and_stl_files_are_parts() {
+    let folder = folder();
+    let list = |model: &str| {
+        folder.must(&format!("render {model} -o p.svg --sheet third-angle --page A3 --callouts"));
+        labels(&folder.read("p.svg"))
+    };
+    let found = list("parts.obj");
+    for text in ["nut", "bolt", "ring", "1", "2", "3"] {
+        assert!(found.iter().any(|l| l == text), "{text}: {found:?}");
+    }
+    // Copies are counted.
+    let tetrahedron = |name: &str, x: u32| {
+        let y = x + 3;
+        format!(
+            "o {name}\nv {x} 0 0\nv {y} 0 0\nv {x} 4 0\nv {x} 0 5\nf -4 -2 -3\nf -4 -3 -1\nf -3 -2 -1\nf -2 -4 -1\n"
+        )
+    };
+    folder.write(
+        "pins.obj",
+        tetrahedron("pin.1", 0) + &tetrahedron("lid", 9) + &tetrahedron("pin.2", 20),
+    );
+    let found = list("pins.obj");
+    assert!(
+        found.iter().any(|l| l == "pin") && found.iter().filter(|l| *l == "2").count() >= 2,
+        "{found:?}"
+    );
+    // Groups are parts where there is but one object.
+    let grouped = parts().replace("o nut", "o all\ng nut").replace("\no ", "\ng ");
+    folder.write("groups.obj", &grouped);
+    assert_eq!(list("groups.obj").iter().filter(|l| *l == "bolt").count(), 1);
+    let facet = |z: u32| {
+        format!(
+            "facet normal 0 0 1\nouter loop\nvertex 0 0 {z}\nvertex 9 0 {z}\nvertex 0 9 {z}\nendloop\nendfacet\n"
+        )
+    };
+    let solid = |name: &str, z: u32| format!("solid {name}\n{}endsolid {name}\n", facet(z));
+    folder.write("s.stl", solid("lid", 5) + &solid("", 3) + &solid("lid", 0));
+    let found = list("s.stl");
+    // Two of the three are alike.
+    for text in ["lid", "solid 1", "2"] {
+        assert!(found.iter().any(|l| l == text), "{text}: {found:?}");
+    }
+    let height = |options: &str| {
+        let json = folder
+            .must(&format!("render s.stl -o s.svg --view front --scale 1:1 --json {options}"));
+        json.json()["models"][0]["pictures"][0]["drawing"]["page"][1].as_f64().unwrap()
+    };
+    assert!(height("--explode z:20") > height("") + 30.0);
 }

@@ -552,10 +552,68 @@ fn round_faces_are_few_hatches() {
 }
 
 #[test]
+fn borders_of_areas_are_arcs() {
+    let folder = Folder::with_models();
+    folder.write("plate.obj", plate(90).as_bytes());
+    let read = |name: &str| String::from_utf8(folder.read(name)).unwrap();
+    let shared = "render plate.obj --view front --style regions";
+    folder.must(&format!("{shared} -o a.svg --fill disjoint"));
+    let area = read("a.svg");
+    // Each border in three arcs, as half circles are not exact enough.
+    let path = area.lines().find(|l| l.contains(" d=")).unwrap();
+    let data = path.split(" d=").nth(1).unwrap();
+    assert!(data.matches('a').count() == 6 && data.len() < 400, "{path}");
+    // Six arcs as corners with bulges, in place of 180 corners.
+    folder.must(&format!("{shared} -o a.dxf"));
+    let (kinds, bulges) = entities(&folder.read("a.dxf"), "42");
+    assert_eq!(kinds, ["HATCH"]);
+    assert_eq!(bulges.len(), 6);
+    folder.must(&format!("{shared} -o a.dxf --fit 0"));
+    assert!(entities(&folder.read("a.dxf"), "42").1.is_empty());
+    folder.must(&format!("{shared} -o a.gcode --hatch none --unit mm"));
+    assert_eq!(
+        read("a.gcode").lines().filter(|l| l.starts_with("G2 ") || l.starts_with("G3 ")).count(),
+        6
+    );
+    // Areas that reach under others keep their corners.
+    folder.must(&format!("{shared} -o b.svg"));
+    assert!(read("b.svg").len() > 1500);
+}
+
+#[test]
 fn g_code_tells_its_scale() {
     let folder = folder();
     let told = folder.must("render bracket.stl -o b.gcode").err;
     assert!(told.contains(":1; --scale 1:1 makes it as large as the model"), "{told}");
     let told = folder.must("render bracket.stl -o b.gcode --scale 1:1 --unit mm").err;
     assert!(!told.contains("the drawing is"), "{told}");
+    // What has a unit is as large as it is; what may be larger than the machine is told.
+    let scale = |options: &str| {
+        let ended = folder.must(&format!("render bracket.stl -o b.gcode --json {options}"));
+        let drawing = &ended.json()["models"][0]["pictures"][0]["drawing"];
+        (drawing["scale_text"].as_str().unwrap().to_owned(), ended.err)
+    };
+    let (text, told) = scale("--unit mm");
+    assert!(text == "1:1" && told.is_empty(), "{text} {told}");
+    let (text, told) = scale("--unit m");
+    assert!(text == "1:1" && told.contains("as large as the model"), "{text} {told}");
+    let (text, told) = scale("--unit m --page 300x200");
+    assert!(text.starts_with("1:") && told.contains("the drawing is 1:"), "{text} {told}");
+}
+
+#[test]
+fn g_code_has_arcs_unless_the_machine_knows_none() {
+    let folder = folder();
+    folder.write("plate.obj", plate(90).as_bytes());
+    let count = |options: &str| {
+        folder.must(&format!("render plate.obj -o p.gcode --view front --hatch none {options}"));
+        let text = String::from_utf8(folder.read("p.gcode")).unwrap();
+        let with = |code: &str| text.lines().filter(|l| l.starts_with(code)).count();
+        (with("G2 ") + with("G3 "), with("G1 "))
+    };
+    // Two circles, each of three arcs.
+    assert_eq!(count(""), (6, 0));
+    let (arcs, lines) = count("--gcode-lines");
+    assert!(arcs == 0 && lines > 100, "{lines}");
+    folder.run("render plate.obj -o p.svg --gcode-lines").fails(2, "it is for G-code");
 }

@@ -106,3 +106,14 @@ fn warnings_are_few_unless_all_are_wanted() {
     let (few, all, none) = (lines(""), lines("-v"), lines("-q"));
     assert!((1..=6).contains(&few) && all >= few && none == 0, "{few}, {all}, {none}");
 }
+
+#[test]
+fn bodies_with_divided_edges_are_closed() {
+    let folder = Folder::with_models();
+    // The lower edge of the front is divided on one side only.
+    let divided = CUBE.replace("f 4 3 2 1\n", "v 0 -1 -1\nf 4 3 2 9\nf 4 9 1\n");
+    folder.write("divided.obj", &divided);
+    folder.write("open.obj", divided.replace("f 4 9 1\n", ""));
+    let closed = |name: &str| folder.must(&format!("info {name} --json")).json()["closed"].clone();
+    assert_eq!((closed("divided.obj"), closed("open.obj")), (true.into(), false.into()));
+}

@@ -13,6 +13,7 @@ use super::dxf_dimension::Dimensions;
 use super::number::push;
 use crate::Result;
 use durer::math::DVec2;
+use durer::target::Curve;
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
 use std::io::Write;
@@ -78,7 +79,7 @@ pub fn write(out: &mut impl Write, sheet: &Sheet, strokes: DxfStrokes) -> Result
     objects(&mut body);
     body.tag(0, "EOF");
     let mut head = Tags { text: String::new(), next: 0, owner: MODEL, line_type: CONTINUOUS };
-    header(&mut head, sheet, body.next);
+    header(&mut head, sheet, &dimensions, body.next);
     out.write_all(head.text.as_bytes())?;
     out.write_all(body.text.as_bytes())?;
     Ok(())
@@ -162,7 +163,7 @@ impl Tags {
     }
 }
 
-fn header(tags: &mut Tags, sheet: &Sheet, seed: u32) {
+fn header(tags: &mut Tags, sheet: &Sheet, dimensions: &Dimensions, seed: u32) {
     tags.section("HEADER");
     tags.tag(9, "$ACADVER").tag(1, "AC1018");
     tags.tag(9, "$DWGCODEPAGE").tag(3, "ANSI_1252");
@@ -176,6 +177,7 @@ fn header(tags: &mut Tags, sheet: &Sheet, seed: u32) {
     tags.tag(9, "$LWDISPLAY").int(290, 1);
     tags.tag(9, "$INSUNITS").int(70, 4);
     tags.tag(9, "$MEASUREMENT").int(70, 1);
+    dimensions.variables(tags);
     tags.tag(9, "$HANDSEED").handle(5, seed);
     tags.tag(0, "ENDSEC");
     tags.section("CLASSES").tag(0, "ENDSEC");
@@ -271,7 +273,7 @@ fn layer_pen<'a>(sheet: &'a Sheet, l: &SheetLayer) -> Option<&'a Pen> {
             sheet.pens.get(*pen)
         }
         Mark::Dimension(dimension) => sheet.pens.get(dimension.text.pen),
-        Mark::Fill { .. } => None,
+        Mark::Fill { .. } | Mark::Area { .. } => None,
     })
 }
 
@@ -415,7 +417,15 @@ pub(super) fn entity(
             begin(tags, "HATCH", layer, None);
             tags.int(62, palette(*color));
             true_color(tags, *color);
-            hatch(tags, rings, place);
+            let ring = |r: &Vec<DVec2>| r.iter().map(|p| (place(p), 0.0)).collect();
+            hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
+        }
+        Mark::Area { rings, color } => {
+            begin(tags, "HATCH", layer, None);
+            tags.int(62, palette(*color));
+            true_color(tags, *color);
+            let ring = |r: &Curve| dxf_curve::vertices(&dxf_curve::turned_up(r, sheet.size.y));
+            hatch(tags, &rings.iter().map(ring).collect::<Vec<_>>());
         }
         // These are entities of their own kind, with blocks.
         Mark::Dimension(_) => {}
@@ -442,16 +452,20 @@ pub(super) fn begin(tags: &mut Tags, kind: &str, layer: &str, pen: Option<&Pen>)
     }
 }
 
-/// A solid fill between rings.
-fn hatch(tags: &mut Tags, rings: &[Vec<DVec2>], place: impl Fn(&DVec2) -> DVec2) {
+/// A solid fill between rings, each as its corners with the bulges of the arcs that begin there.
+fn hatch(tags: &mut Tags, rings: &[Vec<(DVec2, f64)>]) {
     tags.class("AcDbHatch").point3(10, DVec2::ZERO).real(210, 0.0).real(220, 0.0).real(230, 1.0);
     // Solid, not bound to other entities; paths are polylines, areas alternate from ring to ring.
     tags.tag(2, "SOLID").int(70, 1).int(71, 0).int(91, rings.len() as i64);
     for ring in rings {
-        tags.int(92, 3).int(72, 0).int(73, 1).int(93, ring.len() as i64);
-        ring.iter().for_each(|p| {
-            tags.point(10, place(p));
-        });
+        let is_round = ring.iter().any(|c| c.1 != 0.0);
+        tags.int(92, 3).int(72, i64::from(is_round)).int(73, 1).int(93, ring.len() as i64);
+        for (p, bulge) in ring {
+            tags.point(10, *p);
+            if is_round {
+                dxf_curve::bulge(tags, *bulge);
+            }
+        }
         tags.int(97, 0);
     }
     tags.int(75, 0).int(76, 1).int(98, 0);
@@ -470,6 +484,8 @@ pub(super) fn string(text: &str) -> String {
             '°' => out += "%%d",
             '±' => out += "%%p",
             'Ø' | '⌀' => out += "%%c",
+            // Stroke fonts lack it.
+            '–' => out.push('-'),
             '^' => out += "^ ",
             c if c.is_control() => out.push(' '),
             c if c.is_ascii() => out.push(c),

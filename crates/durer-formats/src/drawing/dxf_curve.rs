@@ -24,19 +24,28 @@ pub(super) fn write(
     if strokes == DxfStrokes::Pieces {
         return pieces_of(tags, to, curve);
     }
+    polyline(tags, to, &vertices(curve), curve.closed);
+}
+
+/// Writes a bulge.
+pub(super) fn bulge(tags: &mut Tags, bulge: f64) {
+    tags.precise(42, bulge, DIGITS);
+}
+
+/// A curve as points, each with the bulge of the arc that begins there; the first one is not repeated.
+pub(super) fn vertices(curve: &Curve) -> Vec<(DVec2, f64)> {
     let arcs = pieces::arcs(curve, ARCS);
-    // A bulge stands with the point that its arc begins in.
     let starts = std::iter::once(curve.start).chain(arcs.iter().map(|a| a.0));
     let bulges = arcs.iter().map(|a| a.1).chain([0.0]);
     let mut points: Vec<(DVec2, f64)> = starts.zip(bulges).collect();
     if curve.closed {
         points.pop();
     }
-    polyline(tags, to, &points, curve.closed);
+    points
 }
 
 /// A curve seen in a mirror: y counts up from the sheet's lower side.
-fn turned_up(curve: &Curve, height: f64) -> Curve {
+pub(super) fn turned_up(curve: &Curve, height: f64) -> Curve {
     let place = |p: DVec2| DVec2::new(p.x, height - p.y);
     let way = |v: DVec2| DVec2::new(v.x, -v.y);
     let piece = |piece: &Piece| match *piece {
@@ -89,7 +98,7 @@ pub(super) fn polyline(tags: &mut Tags, to: &Target<'_>, points: &[(DVec2, f64)]
     for (p, bulge) in points {
         tags.point(10, *p);
         if *bulge != 0.0 {
-            tags.precise(42, *bulge, DIGITS);
+            self::bulge(tags, *bulge);
         }
     }
 }

@@ -45,6 +45,22 @@ impl<'a> Dimensions<'a> {
         self.all.iter().enumerate().map(|(i, d)| (block_name(i), d.record))
     }
 
+    /// Writes the variables that stand for a style in programs that know none, as LibreCAD: those of the scale that most
+    /// dimensions have.
+    pub(super) fn variables(&self, tags: &mut Tags) {
+        let count = |style: &(f64, f64)| {
+            let own = |d: &Listed| (d.dimension.units_per_millimetre, d.dimension.text.height);
+            self.all.iter().filter(|d| own(d) == *style).count()
+        };
+        // Of equals the first.
+        let Some((factor, height)) = self.styles.iter().rev().max_by_key(|s| count(s)) else {
+            return;
+        };
+        tags.tag(9, "$DIMLFAC").real(40, *factor).tag(9, "$DIMTXT").real(40, *height);
+        tags.tag(9, "$DIMASZ").real(40, height * 6.0 / 7.0);
+        tags.tag(9, "$DIMDEC").int(70, 2).tag(9, "$DIMZIN").int(70, 8);
+    }
+
     /// Writes the table of styles: ISO 129, one for each scale.
     pub(super) fn styles(&self, tags: &mut Tags) {
         tags.table("DIMSTYLE", DIMSTYLES, 1 + self.styles.len()).class("AcDbDimStyleTable");

@@ -1,18 +1,24 @@
 //! Sheets as G-code for pen plotters, engravers and cutters (RS-274: Kramer, Proctor and Messina, *The NIST
 //! RS274NGC Interpreter*, 2000; the part that GRBL, Marlin and LinuxCNC share).
 
-use super::machine::{MachineOptions, Pass, is_plain, passes};
+use super::machine::{MachineOptions, Pass, Way, is_plain, passes, ways};
 use super::number::short;
 use crate::Result;
 use durer::math::DVec2;
 use durer::target::sheet::Sheet;
 use std::io::Write;
 
-/// Digits after the point of a millimetre.
+/// Digits after the point of a millimetre; the middles of arcs have one more, so that arcs end where they should.
 const DIGITS: usize = 3;
+
+/// Arcs that leave their chords by less are lines, millimetres: machines step no finer.
+const FLAT: f64 = 0.003;
 
 /// Writes a sheet in millimetres, absolute, from the lower left corner, y up: pens of one width and colour one
 /// after another, each taken once, layer by layer, and its strokes on a short way.
+///
+/// Circular arcs are G2 and G3 with I and J, which count from where the arc begins, none further than three eighths of a
+/// turn; ellipses and cubic curves are arcs that stay within 0.01 mm. Without [`MachineOptions::arcs`] all are chords.
 ///
 /// Between pens the machine goes to the origin and waits (`M0`). Dashes and text are strokes of their own; fills
 /// are drawn as outlines, last.
@@ -21,7 +27,7 @@ const DIGITS: usize = 3;
 /// What [`MachineOptions::check`] finds; [`crate::Error::Io`] where writing fails.
 pub fn write(out: &mut impl Write, sheet: &Sheet, machine: &MachineOptions) -> Result<()> {
     machine.check()?;
-    let passes = passes(sheet, machine.pens);
+    let passes = passes(sheet, machine.pens, machine.arcs);
     let [width, height] = [sheet.size.x, sheet.size.y].map(|v| short(v, DIGITS));
     if !sheet.title.is_empty() {
         writeln!(out, "; {}", comment(&sheet.title))?;
@@ -53,11 +59,11 @@ fn write_pass(head: &mut Head<impl Write>, index: usize, pass: Pass) -> Result<(
         head.out.write_all(b"M0\n")?;
     }
     let mut at = DVec2::ZERO;
-    for (name, strokes) in pass.layers {
+    for (name, chains) in pass.layers {
         writeln!(head.out, "; layer {}", comment(&name))?;
-        for chain in Pass::order(strokes, at) {
-            head.draw(&chain)?;
-            at = chain.last().copied().unwrap_or(at);
+        for way in ways(chains, at) {
+            head.draw(&way)?;
+            at = way.steps.last().map_or(way.start, |s| s.0);
         }
     }
     Ok(())
@@ -71,16 +77,16 @@ struct Head<'a, W> {
 
 impl<W: Write> Head<'_, W> {
     /// One stroke; a single point is a dot.
-    fn draw(&mut self, chain: &[DVec2]) -> Result<()> {
-        let Some((first, rest)) = chain.split_first() else { return Ok(()) };
-        self.travel(*first)?;
+    fn draw(&mut self, way: &Way) -> Result<()> {
+        self.travel(way.start)?;
         writeln!(self.out, "{}", self.machine.pen_down)?;
         let mut feed = format!(" F{}", short(self.machine.feed, DIGITS));
-        let mut last = place(*first);
-        for next in rest.iter().map(|p| place(*p)) {
+        let mut last = rounded(way.start);
+        for &(end, bulge) in &way.steps {
+            let next = rounded(end);
             if next != last {
                 // Commands of the pen may have changed the speed.
-                writeln!(self.out, "G1 {next}{feed}")?;
+                writeln!(self.out, "{}{feed}", step(last, next, bulge))?;
                 feed.clear();
                 last = next;
             }
@@ -97,6 +103,23 @@ impl<W: Write> Head<'_, W> {
         }
         Ok(())
     }
+}
+
+/// The command that draws a line or an arc between two rounded places.
+fn step(from: DVec2, to: DVec2, bulge: f64) -> String {
+    let (across, way) = (to - from, place(to));
+    if (across.length() * 0.5 * bulge).abs() < FLAT {
+        return format!("G1 {way}");
+    }
+    // So the middle is as far from both rounded ends.
+    let off = across * 0.5 + across.perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
+    let [i, j] = [off.x, off.y].map(|v| short(v, DIGITS + 1));
+    format!("{} {way} I{i} J{j}", if bulge > 0.0 { "G3" } else { "G2" })
+}
+
+/// A place as it is written.
+fn rounded(p: DVec2) -> DVec2 {
+    (p * 1000.0).round() / 1000.0
 }
 
 fn place(p: DVec2) -> String {

@@ -1,10 +1,10 @@
 //! Sheets as HPGL for pen plotters and cutters (Hewlett-Packard, *HP-GL Reference*, 1983; the common
 //! part of HP-GL and HP-GL/2, and the widths of pens, which is of HP-GL/2 and passed over by others).
 
-use super::machine::{MachineOptions, Pass, passes};
+use super::machine::{MachineOptions, Way, passes, ways};
 use crate::Result;
 use durer::math::DVec2;
-use durer::paper::order::Stroke;
+use durer::paper::order::Chain;
 use durer::target::sheet::Sheet;
 use std::io::Write;
 
@@ -14,8 +14,9 @@ const UNITS: f64 = 40.0;
 /// Writes a sheet: pens of one width and colour in their order, numbered from 1, each taken once and drawing its
 /// strokes on a short way. The origin is the lower left corner, y up.
 ///
-/// Curves are drawn as chords, and dashes and text are strokes of their own, as plotters differ in theirs. Fills are drawn as outlines
-/// with the pen after the last: a pen has no areas.
+/// Curves are drawn as chords: ends of arcs, in whole units and degrees, would lie elsewhere. Dashes and text are
+/// strokes of their own, as plotters differ in theirs. Fills are drawn as outlines with the pen after the last: a pen has no
+/// areas.
 ///
 /// # Errors
 /// [`crate::Error::Io`] where writing fails.
@@ -31,7 +32,7 @@ pub(super) fn write_for(
 ) -> Result<()> {
     out.write_all(b"IN;\n")?;
     let mut at = [0, 0];
-    for (pen, pass) in passes(sheet, machine.pens).into_iter().enumerate() {
+    for (pen, pass) in passes(sheet, machine.pens, false).into_iter().enumerate() {
         let number = pen + 1;
         let width = pass.width.map(|w| format!("PW{},{number};", super::number::short(w, 3)));
         writeln!(out, "SP{number};{}", width.unwrap_or_default())?;
@@ -41,11 +42,11 @@ pub(super) fn write_for(
     Ok(())
 }
 
-/// The strokes of one pen, from where it is; where it is afterwards.
-fn draw(out: &mut impl Write, strokes: Vec<Stroke>, start: [i64; 2]) -> Result<[i64; 2]> {
+/// What one pen draws, from where it is; where it is afterwards.
+fn draw(out: &mut impl Write, chains: Vec<Chain>, start: [i64; 2]) -> Result<[i64; 2]> {
     let start_mm = DVec2::new(start[0] as f64, start[1] as f64) / UNITS;
     let mut at = None;
-    for points in Pass::order(strokes, start_mm).iter().map(|chain| steps(chain)) {
+    for points in ways(chains, start_mm).iter().map(steps) {
         let Some(&[x, y]) = points.first() else { continue };
         // A stroke that begins where the last one ended needs no lift.
         if at == Some([x, y]) {
@@ -66,10 +67,11 @@ fn draw(out: &mut impl Write, strokes: Vec<Stroke>, start: [i64; 2]) -> Result<[
 }
 
 /// The points in plotter units, each once; a dot has two, for the pen is put down.
-fn steps(chain: &[DVec2]) -> Vec<[i64; 2]> {
+fn steps(way: &Way) -> Vec<[i64; 2]> {
+    let all = std::iter::once(way.start).chain(way.steps.iter().map(|s| s.0));
     // A cast saturates; nothing on paper is that far away.
     let mut points: Vec<[i64; 2]> =
-        chain.iter().map(|p| [p.x, p.y].map(|v| (v * UNITS).round() as i64)).collect();
+        all.map(|p| [p.x, p.y].map(|v| (v * UNITS).round() as i64)).collect();
     points.dedup();
     if let [only] = points[..] {
         points.push(only);

@@ -1,14 +1,15 @@
 //! What a machine with pens does for a sheet: pen by pen, each of which is taken once, layer by layer.
 
+use super::dxf_curve::turned_up;
 use crate::{Error, Result};
 use durer::curve::pieces;
 use durer::math::DVec2;
-use durer::paper::order::{Stroke, ordered};
+use durer::paper::order::{Chain, Stroke, ordered_chains};
 use durer::paper::{dashes, dimension_strokes, text_strokes};
 use durer::target::sheet::{Mark, Sheet};
 
 /// How near chords are to curves, millimetres: less than half of a step of plotters.
-const CHORDS: f64 = 0.01;
+pub const CHORDS: f64 = 0.01;
 
 /// How machines draw.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +20,8 @@ pub struct MachineOptions {
     pub feed: f64,
     /// How fast it moves in the air, millimetres a minute; `None` for as fast as the machine moves.
     pub travel: Option<f64>,
+    /// Whether the machine knows arcs in G-code, G2 and G3; else they are chords.
+    pub arcs: bool,
     /// The lines of G-code that put the pen down.
     pub pen_down: String,
     /// Those that lift it.
@@ -32,6 +35,7 @@ impl Default for MachineOptions {
             pens: None,
             feed: 1500.0,
             travel: None,
+            arcs: true,
             pen_down: "M3 S1000\nG4 P0.2".to_owned(),
             pen_up: "M5\nG4 P0.2".to_owned(),
         }
@@ -76,24 +80,23 @@ pub struct Pass {
     /// sRGB with straight alpha.
     pub color: [u8; 4],
     /// Names of layers and what the pen draws of them.
-    pub layers: Vec<(String, Vec<Stroke>)>,
+    pub layers: Vec<(String, Vec<Chain>)>,
 }
 
 impl Pass {
-    /// What is to be drawn, in an order with a short way from `start`, and where the pen is then.
-    pub fn order(strokes: Vec<Stroke>, start: DVec2) -> Vec<Vec<DVec2>> {
-        ordered(strokes, start).into_iter().map(chain).collect()
-    }
-
     fn length(&self) -> f64 {
         let all = self.layers.iter().flat_map(|l| &l.1);
-        all.map(|s| dashes::length(&s.points, s.closed)).sum()
+        all.map(|chain| match chain {
+            Chain::Straight(stroke) => dashes::length(&stroke.points, stroke.closed),
+            Chain::Curved(curve) => pieces::length(curve),
+        })
+        .sum()
     }
 
-    fn add(&mut self, layer: &str, strokes: impl IntoIterator<Item = Stroke>) {
+    fn add(&mut self, layer: &str, chains: impl IntoIterator<Item = Chain>) {
         match self.layers.iter_mut().find(|l| l.0 == layer) {
-            Some(found) => found.1.extend(strokes),
-            None => self.layers.push((layer.to_owned(), strokes.into_iter().collect())),
+            Some(found) => found.1.extend(chains),
+            None => self.layers.push((layer.to_owned(), chains.into_iter().collect())),
         }
     }
 
@@ -105,17 +108,34 @@ impl Pass {
     }
 }
 
-/// The way of the pen through a stroke.
-fn chain(stroke: Stroke) -> Vec<DVec2> {
-    let Stroke { mut points, closed } = stroke;
-    let again = points.first().copied().filter(|_| closed);
-    points.extend(again);
-    points
+/// The way of a pen: where it begins, and for each arc or line its end and its bulge, the tangent of a quarter of its turn,
+/// above 0 counter-clockwise, 0 for lines.
+pub struct Way {
+    pub start: DVec2,
+    pub steps: Vec<(DVec2, f64)>,
+}
+
+/// Returns what is to be drawn, in an order with short ways in the air from `start` on.
+pub fn ways(chains: Vec<Chain>, start: DVec2) -> Vec<Way> {
+    ordered_chains(chains, start).into_iter().filter_map(way).collect()
+}
+
+fn way(chain: Chain) -> Option<Way> {
+    match chain {
+        Chain::Straight(Stroke { points, closed }) => {
+            let start = *points.first()?;
+            let rest = points.into_iter().skip(1).chain(closed.then_some(start));
+            Some(Way { start, steps: rest.map(|p| (p, 0.0)).collect() })
+        }
+        Chain::Curved(curve) => {
+            Some(Way { start: curve.start, steps: pieces::arcs(&curve, CHORDS) })
+        }
+    }
 }
 
 /// A sheet by pens of one width and colour, in the order of the sheet's pens; the outlines of areas come last.
-/// Dashes and texts become strokes, as machines differ in theirs.
-pub fn passes(sheet: &Sheet, pens: Option<usize>) -> Vec<Pass> {
+/// Dashes and texts become strokes, as machines differ in theirs, and without `arcs` curves do.
+pub fn passes(sheet: &Sheet, pens: Option<usize>, arcs: bool) -> Vec<Pass> {
     let mut found: Vec<Pass> = Vec::new();
     let mut areas = Pass { width: None, color: [0, 0, 0, 255], layers: Vec::new() };
     let mut pass_of: Vec<usize> = Vec::new();
@@ -130,7 +150,7 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>) -> Vec<Pass> {
     for layer in &sheet.layers {
         for mark in layer.marks.iter().flat_map(with_parts) {
             let pass = match mark {
-                Mark::Fill { .. } => Some(&mut areas),
+                Mark::Fill { .. } | Mark::Area { .. } => Some(&mut areas),
                 Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => {
                     pass_of.get(*pen).and_then(|i| found.get_mut(*i))
                 }
@@ -139,7 +159,7 @@ pub fn passes(sheet: &Sheet, pens: Option<usize>) -> Vec<Pass> {
                 }
             };
             if let Some(pass) = pass {
-                pass.add(&layer.name, strokes_of(mark, sheet));
+                pass.add(&layer.name, chains_of(mark, sheet, arcs));
             }
         }
     }
@@ -170,26 +190,36 @@ fn fold(passes: &mut Vec<Pass>, most: usize) {
             c.cmp(&d).then(w.total_cmp(&v))
         };
         let Some(to) = passes.iter_mut().min_by(order) else { return };
-        given.layers.into_iter().for_each(|(name, strokes)| to.add(&name, strokes));
+        given.layers.into_iter().for_each(|(name, chains)| to.add(&name, chains));
     }
 }
 
-/// A mark as strokes of a pen.
-fn strokes_of(mark: &Mark, sheet: &Sheet) -> Vec<Stroke> {
+/// A mark as what pens draw.
+fn chains_of(mark: &Mark, sheet: &Sheet, arcs: bool) -> Vec<Chain> {
     let height = sheet.size.y;
     let stroke = |points: &[DVec2], closed: bool| {
         let points = points.iter().map(|p| DVec2::new(p.x, height - p.y));
-        Stroke { points: points.collect(), closed }
+        Chain::Straight(Stroke { points: points.collect(), closed })
     };
     let open = |chains: Vec<Vec<DVec2>>| chains.iter().map(|c| stroke(c, false)).collect();
-    let dashed = |points: &[DVec2], closed: bool, pen: usize| match sheet.pens.get(pen) {
-        Some(pen) if !pen.dashes.is_empty() => open(dashes::cut(points, closed, &pen.dashes)),
-        _ => vec![stroke(points, closed)],
+    let dashes = |pen: usize| sheet.pens.get(pen).map(|p| &p.dashes[..]).unwrap_or_default();
+    let dashed = |points: &[DVec2], closed: bool, pen: usize| match dashes(pen) {
+        [] => vec![stroke(points, closed)],
+        dashes => open(dashes::cut(points, closed, dashes)),
     };
     match mark {
         Mark::Stroke { points, closed, pen } => dashed(points, *closed, *pen),
+        Mark::Curve { curve, pen } if arcs && dashes(*pen).is_empty() => {
+            vec![Chain::Curved(turned_up(curve, height))]
+        }
         Mark::Curve { curve, pen } => dashed(&pieces::points(curve, CHORDS), curve.closed, *pen),
         Mark::Fill { rings, .. } => rings.iter().map(|ring| stroke(ring, true)).collect(),
+        Mark::Area { rings, .. } if arcs => {
+            rings.iter().map(|ring| Chain::Curved(turned_up(ring, height))).collect()
+        }
+        Mark::Area { rings, .. } => {
+            rings.iter().map(|ring| stroke(&pieces::points(ring, CHORDS), true)).collect()
+        }
         Mark::Text { at, text, height, anchor, .. } => {
             open(text_strokes(*at, text, *height, *anchor))
         }

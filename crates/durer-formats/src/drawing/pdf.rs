@@ -162,6 +162,13 @@ fn put(
             rings.iter().for_each(|ring| path(text, ring, true));
             *text += "f\n";
         }
+        Mark::Area { rings, color } => {
+            set_fill(text, state, *color, alphas);
+            for ring in rings {
+                pieces::path(ring, CUBICS).elements().iter().for_each(|e| element(text, e));
+            }
+            *text += "f\n";
+        }
         Mark::Stroke { points, closed, pen } => {
             let Some(pen) = sheet.pens.get(*pen) else { return };
             set_pen(text, state, pen, alphas);

@@ -70,7 +70,7 @@ fn write_layer(out: &mut impl Write, sheet: &Sheet, layer: &SheetLayer) -> Resul
 fn pen_of(mark: &Mark) -> Option<usize> {
     match mark {
         Mark::Stroke { pen, .. } | Mark::Curve { pen, .. } | Mark::Text { pen, .. } => Some(*pen),
-        Mark::Fill { .. } => None,
+        Mark::Fill { .. } | Mark::Area { .. } => None,
         Mark::Dimension(d) => d.marks.iter().find_map(pen_of).or(Some(d.text.pen)),
     }
 }
@@ -111,6 +111,12 @@ fn write_mark(text: &mut String, sheet: &Sheet, mark: &Mark, common: Option<usiz
             let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
             *text += &format!("<path{}{no_stroke} d=\"", paint("fill", *color));
             rings.iter().for_each(|ring| path(text, ring, true));
+            *text += "\"/>\n";
+        }
+        Mark::Area { rings, color } => {
+            let no_stroke = if common.is_some() { " stroke=\"none\"" } else { "" };
+            *text += &format!("<path{}{no_stroke} d=\"", paint("fill", *color));
+            rings.iter().for_each(|ring| svg_curve::path(text, ring));
             *text += "\"/>\n";
         }
         Mark::Text { at, text: words, height, anchor, pen } => {

@@ -84,9 +84,9 @@ fn whiten(model: &mut Model) {
     }
 }
 
-fn parts(runs: &[Run], count: usize) -> Vec<Part> {
-    if let [Run { material: None, name, .. }] = runs
-        && name.is_empty()
+fn parts(runs: &[Run], count: usize, has_objects: bool) -> Vec<Part> {
+    if let [run @ Run { material: None, .. }] = runs
+        && run.name(has_objects).is_empty()
     {
         return Vec::new();
     }
@@ -96,7 +96,7 @@ fn parts(runs: &[Run], count: usize) -> Vec<Part> {
         .map(|(run, end)| Part {
             range: run.start as u32..end as u32,
             material: run.material,
-            name: run.name.clone(),
+            name: run.name(has_objects).to_owned(),
         })
         .collect()
 }
@@ -129,16 +129,17 @@ fn loose(
         indices: Some(renumbered.map(|i| i as u32).collect()),
         ..Mesh::default()
     };
-    mesh.parts = parts(runs, mesh.primitive_count());
+    mesh.parts = parts(runs, mesh.primitive_count(), parsed.has_objects());
     Some(mesh)
 }
 
 /// The mesh of triangles; vertices are the file's positions, or triples where corners have more.
 fn triangles(model: &mut Model, parsed: Parsed, origin: DVec3) -> Mesh {
+    let has_objects = parsed.has_objects();
     let Parsed { positions, colors, tex_coords, normals, triangles, faces, .. } = parsed;
     let count = triangles.indices.len() / 3;
     let mut mesh = Mesh {
-        parts: parts(&parsed.triangle_runs, count),
+        parts: parts(&parsed.triangle_runs, count, has_objects),
         faces,
         indices: Some(triangles.indices),
         ..Mesh::default()

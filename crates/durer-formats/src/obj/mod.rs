@@ -2,7 +2,8 @@
 //!
 //! Source: *Wavefront Advanced Visualizer Manual*, appendix B1 (OBJ) and B5 (MTL), 1990s, and what
 //! later writers do. Lines, points and triangles become one mesh each; faces keep the file's order
-//! and are triangulated: fans where these are right, ears where they are not. Names of objects and groups, and materials, become parts.
+//! and are triangulated: fans where these are right, ears where they are not. Names of objects, or of
+//! groups where there is but one object, and materials become parts.
 //!
 //! Choices where the manual is silent or tools differ:
 //! - colours (of materials and of vertices, `v x y z r g b`) are sRGB values, as in viewers without

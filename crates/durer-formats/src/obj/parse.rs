@@ -12,12 +12,25 @@ use durer::math::{DVec3, Vec2, Vec3};
 use element::Part;
 use std::collections::HashMap;
 
-/// Primitives from `start` on have this material and name, until the next run.
+/// Primitives from `start` on have this material and these names, until the next run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Run {
     pub start: usize,
     pub material: Option<usize>,
-    pub name: String,
+    pub object: String,
+    pub group: String,
+}
+
+impl Run {
+    /// What its primitives are a part of, and are called: the object in files of several, else the group; the other of the
+    /// two where there is none.
+    pub fn name(&self, has_objects: bool) -> &str {
+        let (first, second) = match has_objects {
+            true => (&self.object, &self.group),
+            false => (&self.group, &self.object),
+        };
+        if first.is_empty() { second } else { first }
+    }
 }
 
 /// What the statements say.
@@ -43,6 +56,15 @@ pub(super) struct Parsed {
     /// Operands of `mtllib`, with their lines.
     pub libraries: Vec<(u64, String)>,
     pub repairs: Repairs,
+}
+
+impl Parsed {
+    /// Returns whether the file tells several objects apart: of a single one, its groups are the parts.
+    pub fn has_objects(&self) -> bool {
+        let runs = [&self.triangle_runs, &self.line_runs, &self.point_runs];
+        let mut named = runs.into_iter().flatten().map(|r| &r.object).filter(|o| !o.is_empty());
+        named.next().is_some_and(|first| named.any(|o| o != first))
+    }
 }
 
 /// Reads all statements.

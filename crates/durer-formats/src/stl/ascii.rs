@@ -7,6 +7,7 @@ use crate::text::{Cursor, Tally, quote};
 use crate::{Error, Limits, Model, Place, Result, number, place, polygon};
 use durer::math::DVec3;
 use durer::scene::{Mesh, Part};
+use std::collections::BTreeMap;
 
 /// Reads the text.
 ///
@@ -286,7 +287,20 @@ impl<'a> Ascii<'a> {
         }
     }
 
-    /// Each solid is a part, where there are several or the one has a name.
+    /// The names of the solids; those that have none, or that of one before, get a number.
+    fn names<'b>(&'b self) -> Vec<String> {
+        let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+        let several = self.solids.len() > 1;
+        let mut name = |name: &'b str| {
+            let is_made = name.is_empty() && several;
+            let stem = if is_made { "solid" } else { name };
+            let count = seen.entry(stem).and_modify(|n| *n += 1).or_insert(1);
+            if *count > 1 || is_made { format!("{stem} {count}") } else { stem.to_owned() }
+        };
+        self.solids.iter().map(|s| name(&s.1)).collect()
+    }
+
+    /// Each solid is a part, where there are several or the one has a name. Of several, each has a name of its own.
     fn parts(&self) -> Vec<Part> {
         let count = self.points.len() / 3;
         if self.solids.iter().all(|(_, name)| name.is_empty()) && self.solids.len() < 2 {
@@ -296,11 +310,11 @@ impl<'a> Ascii<'a> {
         let ends = self.solids.iter().skip(1).map(|s| s.0).chain([count]);
         starts
             .zip(ends)
-            .zip(&self.solids)
-            .map(|((start, end), (_, name))| Part {
+            .zip(self.names())
+            .map(|((start, end), name)| Part {
                 range: start as u32..end as u32,
                 material: None,
-                name: name.clone(),
+                name,
             })
             .collect()
     }

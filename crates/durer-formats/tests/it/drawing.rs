@@ -251,6 +251,7 @@ fn principal(views: &[(NamedView, Drawing)]) -> Vec<SheetView<'_>> {
         kind: ViewKind::Principal(*side),
         camera: camera(*side),
         drawing,
+        breaks: Default::default(),
     })
     .collect()
 }
@@ -387,7 +388,12 @@ fn sections_get_views_with_titles_and_lines_where_they_cut() {
     let (a, b) = (section("A", DVec3::X, &block[2].1), section("B", DVec3::Y, &block[0].1));
     let askew = section("C", DVec3::new(1.0, 1.0, 1.0), &block[2].1);
     for (kind, camera, drawing) in [&a, &b, &askew] {
-        views.push(SheetView { kind: kind.clone(), camera: *camera, drawing });
+        views.push(SheetView {
+            kind: kind.clone(),
+            camera: *camera,
+            drawing,
+            breaks: Default::default(),
+        });
     }
     let laid = on_sheet(Angle::Third, &views, "auto", "A3").unwrap();
     let names: Vec<&str> = laid.views[4..].iter().map(|v| v.name.as_str()).collect();
@@ -440,7 +446,12 @@ fn details_are_cut_to_their_circles() {
     assert!((cut.regions[0].area() / quarter - 1.0).abs() < 2e-3, "{}", cut.regions[0].area());
     let mut views = principal(&block);
     let kind = ViewKind::Detail(detail);
-    views.push(SheetView { kind, camera: views[0].camera, drawing: &cut });
+    views.push(SheetView {
+        kind,
+        camera: views[0].camera,
+        drawing: &cut,
+        breaks: Default::default(),
+    });
     let laid = on_sheet(Angle::Third, &views, "auto", "A4").unwrap();
     // 10 mm wide at 1:2; at 5:1 it is 50 mm.
     assert_eq!((laid.scale, laid.views[4].factor), (0.5, 5.0));
@@ -459,7 +470,7 @@ fn views_that_have_no_room_are_refused_and_fitted_paper_grows() {
     let block = block();
     let mut views = principal(&block);
     let (kind, camera, drawing) = section("A", DVec3::X, &block[0].1);
-    views.push(SheetView { kind, camera, drawing: &drawing });
+    views.push(SheetView { kind, camera, drawing: &drawing, breaks: Default::default() });
     let error = on_sheet(Angle::Third, &views, "1:1", "A4").unwrap_err().to_string();
     assert!(error.contains("5 views") && error.contains("1:2 has room"), "{error}");
     let laid = on_sheet(Angle::Third, &views, "1:1", "fit").unwrap();

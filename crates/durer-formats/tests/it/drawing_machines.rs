@@ -1,8 +1,10 @@
 //! What machines do with a file: G-code read back as a machine would, and the pens of HPGL.
 
+use durer::curve::pieces;
 use durer::math::DVec2;
 use durer::target::drawing::Anchor;
 use durer::target::sheet::{Mark, Pen, Sheet, SheetLayer};
+use durer::target::{Arc, Curve, Piece};
 use durer_formats::drawing::{MachineOptions, write_gcode, write_hpgl};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
@@ -79,6 +81,18 @@ fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
                 }
                 assert!(!down || number == 1.0, "{line} with the pen down");
             }
+            ('G', 2 | 3) => {
+                assert!(down, "{line} in the air");
+                let word = |name| words.iter().find(|w| w.0 == name).map(|w| w.1);
+                let [to, off] = [['X', 'Y'], ['I', 'J']].map(|names| {
+                    DVec2::from_array(
+                        names.map(|n| word(n).unwrap_or_else(|| panic!("{n} in {line}"))),
+                    )
+                });
+                let chain = pens.last_mut().and_then(|p| p.last_mut()).expect("a chain");
+                chain.extend(arc(at, to, at + off, number == 3.0));
+                at = to;
+            }
             ('G', 21 | 90) => modes.push(number as u32),
             ('G', 4) => {}
             ('M', 3) => {
@@ -96,6 +110,18 @@ fn replay(text: &str) -> Vec<Vec<Vec<DVec2>>> {
     }
     assert!(ended && !down && at == DVec2::ZERO);
     pens
+}
+
+/// Points a degree apart at most on an arc, its end last. Machines refuse arcs whose ends are not as far from the middle.
+fn arc(from: DVec2, to: DVec2, middle: DVec2, is_left: bool) -> Vec<DVec2> {
+    let (a, b) = (from - middle, to - middle);
+    assert!((a.length() - b.length()).abs() < 0.002, "{from} {to} around {middle}");
+    let turn =
+        if is_left { a.angle_to(b) } else { b.angle_to(a) }.rem_euclid(std::f64::consts::TAU);
+    let count = turn.to_degrees().ceil().max(1.0);
+    let sign = if is_left { 1.0 } else { -1.0 };
+    let at = |i: u32| middle + DVec2::from_angle(sign * turn * f64::from(i) / count).rotate(a);
+    (1..count as u32).map(at).chain([to]).collect()
 }
 
 /// Straight pieces, whichever way they run, in thousandths of a millimetre, sorted.
@@ -155,6 +181,7 @@ fn gcode_says_what_it_draws_in_words_that_no_machine_obeys() {
 #[test]
 fn gcode_takes_the_machines_own_commands_and_speeds() {
     let machine = MachineOptions {
+        arcs: true,
         pens: Some(1),
         feed: 900.0,
         travel: Some(4000.0),
@@ -182,4 +209,69 @@ fn hpgl_has_a_pen_for_each_width_and_colour_and_takes_it_once() {
     let text = String::from_utf8(bytes).expect("text");
     let pens: Vec<&str> = text.lines().filter(|l| l.starts_with("SP")).collect();
     assert_eq!(pens, ["SP1;PW.5,1;", "SP2;PW.25,2;", "SP0;"]);
+}
+
+/// A circle, an arc that turns by nearly all of one, an ellipse, and a line that goes on in a cubic curve; y down.
+fn curves() -> Vec<Curve> {
+    let p = DVec2::new;
+    let arc = |center, axis, ratio, start, turn| Arc { center, axis, ratio, start, turn };
+    let alone = |arc: Arc, closed| {
+        let (start, end) = (arc.at(arc.start), arc.at(arc.start + arc.turn));
+        let end = if closed { start } else { end };
+        Curve { start, pieces: vec![Piece::Arc(arc, end)], closed }
+    };
+    let whole = std::f64::consts::TAU;
+    let cubic = Piece::Cubic(p(70.0, 60.0), p(90.0, 30.0), p(95.0, 75.0));
+    vec![
+        alone(arc(p(20.0, 20.0), p(12.345_67, 0.0), 1.0, 0.3, whole), true),
+        alone(arc(p(50.0, 20.0), p(0.0, 8.1), 1.0, 1.0, -6.2), false),
+        alone(arc(p(30.0, 55.0), p(20.0, 7.0), 0.4, 0.0, whole), true),
+        Curve {
+            start: p(60.0, 70.0),
+            pieces: vec![Piece::Line(p(65.0, 66.0)), cubic],
+            closed: false,
+        },
+    ]
+}
+
+#[test]
+fn gcode_draws_curves_with_arcs() {
+    let mut sheet = sheet();
+    sheet.layers.truncate(1);
+    sheet.layers[0].marks =
+        curves().into_iter().map(|curve| Mark::Curve { curve, pen: 0 }).collect();
+    let distance = |p: DVec2, chain: &[DVec2]| {
+        let off = |w: &[DVec2]| {
+            let t = ((p - w[0]).dot(w[1] - w[0]) / (w[1] - w[0]).length_squared()).clamp(0.0, 1.0);
+            p.distance(w[0].lerp(w[1], t))
+        };
+        chain.windows(2).map(off).fold(f64::INFINITY, f64::min)
+    };
+    let up = |p: DVec2| DVec2::new(p.x, 80.0 - p.y);
+    for arcs in [true, false] {
+        let machine = MachineOptions { arcs, ..MachineOptions::default() };
+        let text = gcode(&sheet, &machine);
+        assert_eq!(text.contains("G3 ") && text.contains("G2 "), arcs);
+        let lines = text.lines().filter(|l| l.starts_with('G')).count();
+        assert!(if arcs { lines < 100 } else { lines > 150 }, "{lines}");
+        let drawn = &replay(&text)[0];
+        assert_eq!(drawn.len(), 4);
+        let all: Vec<Vec<DVec2>> = curves()
+            .iter()
+            .map(|c| {
+                let again = c.closed.then_some(c.start);
+                pieces::points(c, 1e-4).into_iter().chain(again).map(up).collect()
+            })
+            .collect();
+        for chain in drawn {
+            // Each is one of the curves, from end to end.
+            let far = |exact: &Vec<DVec2>| {
+                let there = chain.iter().map(|p| distance(*p, exact)).fold(0.0, f64::max);
+                let back = exact.iter().map(|p| distance(*p, chain)).fold(0.0, f64::max);
+                there.max(back)
+            };
+            let nearest = all.iter().map(far).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 0.012, "{nearest} with arcs: {arcs}");
+        }
+    }
 }

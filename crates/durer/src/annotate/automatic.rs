@@ -82,7 +82,7 @@ fn size(
         }
     }
     let ends = [low + way * (from - low.dot(way)), high + way * (to - high.dot(way))];
-    let value = (to - from) / view.factor();
+    let value = view.length(ends, way);
     if !(value > 0.0 && value.is_finite()) {
         return true;
     }

@@ -69,6 +69,8 @@ impl<'a> Board<'a> {
             "title-block" | "parts-list" => {
                 bounds(&l.marks).map(Quad::of_rect).into_iter().collect()
             }
+            "callouts" => l.marks.iter().filter_map(circle_quad).collect(),
+            "cutting-planes" => l.marks.iter().flat_map(thin_quads).collect(),
             _ => l.marks.iter().filter_map(text_quad).collect::<Vec<_>>(),
         });
         let taken: Vec<Quad> = blocks.chain(views.iter().copied().map(Quad::of_rect)).collect();
@@ -125,24 +127,46 @@ impl<'a> Board<'a> {
         self.leaders.extend(draft.leader);
     }
 
-    /// Puts the new layers on the sheet; the texts.
-    pub fn finish(self) -> Vec<Quad> {
+    /// Puts the new layers on the sheet; the texts, and where annotations may be.
+    pub fn finish(self) -> (Vec<Quad>, Rect) {
         for (name, marks) in NAMES.iter().zip(self.layers) {
             if !marks.is_empty() {
                 self.sheet.layers.push(SheetLayer { name: (*name).to_owned(), marks });
             }
         }
-        self.texts
+        (self.texts, self.page)
     }
 }
 
 /// What a text of the sheet takes up.
-fn text_quad(mark: &Mark) -> Option<Quad> {
+pub(super) fn text_quad(mark: &Mark) -> Option<Quad> {
     match mark {
         Mark::Text { at, text, height, anchor, .. } => {
             Some(Quad::of_text(text, (*at, DVec2::X), *height, *anchor, HALO))
         }
         _ => None,
+    }
+}
+
+/// What the circle around a number takes up.
+fn circle_quad(mark: &Mark) -> Option<Quad> {
+    match mark {
+        Mark::Stroke { points, closed: true, .. } => {
+            Rect::around(points.iter().copied()).map(Quad::of_rect)
+        }
+        _ => None,
+    }
+}
+
+/// What a text, a line or an arrow takes up.
+fn thin_quads(mark: &Mark) -> Vec<Quad> {
+    let along = |points: &[DVec2]| {
+        points.windows(2).map(|w| Quad::of_segment(w[0], w[1], HALO)).collect::<Vec<_>>()
+    };
+    match mark {
+        Mark::Stroke { points, .. } => along(points),
+        Mark::Fill { rings, .. } => rings.iter().flat_map(|ring| along(ring)).collect(),
+        mark => text_quad(mark).into_iter().collect(),
     }
 }
 

@@ -2,11 +2,10 @@
 
 use super::board::{Board, Draft, arc_mark, mark, text_mark};
 use super::quad::Quad;
-use super::style::{GAP, HALO, OVER, Style};
+use super::style::{GAP, OVER, Style};
 use crate::curve::stroke_font;
 use crate::math::DVec2;
 use crate::target::dimension::{Dimension, DimensionText, Measure};
-use crate::target::drawing::Anchor;
 use crate::target::sheet::Mark;
 
 /// What a dimension says.
@@ -129,7 +128,7 @@ impl Board<'_> {
         match measure {
             Some(measure) => self.draft(measure, said, lines, text, vec![landing], leader),
             None => {
-                let quad = self.quad(&text);
+                let quad = Quad::of_dimension(&text);
                 let words = text_mark(at, said.text.clone(), style.text, letters);
                 let marks = lines.into_iter().chain([words]).collect();
                 Draft { mark: marks, solid: vec![landing, quad], text: quad, leader }
@@ -181,10 +180,6 @@ impl Board<'_> {
         stroke_font::line(text, self.style.text).advance
     }
 
-    fn quad(&self, text: &DimensionText) -> Quad {
-        Quad::of_text(&text.text, (text.at, text.along), text.height, Anchor::Middle, HALO)
-    }
-
     fn draft(
         &self,
         measure: Measure,
@@ -194,7 +189,7 @@ impl Board<'_> {
         mut solid: Vec<Quad>,
         leader: Option<[DVec2; 2]>,
     ) -> Draft {
-        let quad = self.quad(&text);
+        let quad = Quad::of_dimension(&text);
         solid.push(quad);
         let &Said { value, scale: units_per_millimetre, is_plain, .. } = said;
         let dimension = Dimension { measure, value, units_per_millimetre, is_plain, marks, text };

@@ -11,6 +11,7 @@ mod clear;
 mod draw;
 mod explicit;
 mod feature;
+mod letters;
 mod place;
 mod quad;
 mod request;
@@ -92,7 +93,8 @@ pub fn annotate(sheet: &mut Sheet, wanted: &Annotations, shown: &Shown) -> Resul
             notes.push(format!("the model has no {} to be dimensioned", kind.name()));
         }
     }
-    let texts = board.finish();
+    let (mut texts, page) = board.finish();
+    texts.extend(letters::make_room(sheet, &taken, &page));
     clear::clear(sheet, &texts);
     Ok(notes)
 }

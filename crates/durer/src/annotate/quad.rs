@@ -1,7 +1,9 @@
 //! Places on a sheet that something takes up: convex quadrilaterals.
 
+use super::style::HALO;
 use crate::math::{DVec2, Rect};
 use crate::paper::text_strokes;
+use crate::target::dimension::DimensionText;
 use crate::target::drawing::Anchor;
 
 /// A convex quadrilateral in the sheet's millimetres; may be as flat as a segment.
@@ -47,6 +49,11 @@ impl Quad {
         let (min, max) = (DVec2::new(min.x, min.y.min(-height)), DVec2::new(max.x, max.y.max(0.0)));
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
         Self(Self(corners).wider(space).0.map(|corner| at + along.rotate(corner)))
+    }
+
+    /// What the text of a dimension takes up, with space around it.
+    pub fn of_dimension(text: &DimensionText) -> Self {
+        Self::of_text(&text.text, (text.at, text.along), text.height, Anchor::Middle, HALO)
     }
 
     fn sides(&self) -> impl Iterator<Item = [DVec2; 2]> + '_ {

@@ -3,7 +3,7 @@
 use crate::math::{DVec2, DVec3, Rect};
 use crate::paper::PlacedView;
 use crate::scene::Projection;
-use crate::target::drawing::Drawing;
+use crate::target::drawing::{Drawing, Line, LineClass};
 use crate::visibility::object::Cylinder;
 
 /// Directions are one, or at right angles, up to this sine: 0.2°.
@@ -39,7 +39,9 @@ impl<'a> Seen<'a> {
             return None;
         }
         let [right, up, back] = camera.axes();
-        let lines = drawing.lines.iter().filter(|l| hidden || l.is_visible());
+        // Break lines go on beyond what they cut.
+        let shown = |l: &&Line| (hidden || l.is_visible()) && l.class != LineClass::Break;
+        let lines = drawing.lines.iter().filter(shown);
         let points = lines.flat_map(|l| &l.points).map(|p| placed.sheet_from_plane(*p));
         let mut points: Vec<DVec2> = points.filter(|p| p.is_finite()).collect();
         points.sort_unstable_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
@@ -62,6 +64,13 @@ impl<'a> Seen<'a> {
     /// A point of the world on the sheet.
     pub fn point(&self, p: DVec3) -> DVec2 {
         self.placed.sheet_from_model(p).unwrap_or(DVec2::NAN)
+    }
+
+    /// The length between two places of the sheet along a direction of it, in units of the model: with what breaks leave
+    /// out.
+    pub fn length(&self, ends: [DVec2; 2], way: DVec2) -> f64 {
+        let [from, to] = ends.map(|p| self.placed.plane_from_sheet(p));
+        (to - from).dot(DVec2::new(way.x, -way.y))
     }
 
     /// A direction of the world on the sheet, where it is not of unit length any more.

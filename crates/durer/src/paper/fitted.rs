@@ -31,14 +31,17 @@ pub(super) fn curves(
         let polyline = Polyline { points: &points, closed: line.closed, kept: &kept };
         let options = Options { tolerance, round: is_round(line.class) };
         let fitted = fit::fit(polyline, |a, b| shared.meets(a, b), options)?;
-        let is_as_it_was = fitted.curve.is_straight()
-            && (fitted.curve.pieces.len() >= line.points.len() - 1
-                || fitted.curve.pieces.len() < 3);
-        (!is_as_it_was).then_some(fitted.curve)
+        (!is_as_it_was(&fitted.curve, points.len())).then_some(fitted.curve)
     };
     let mut curves = parallel::map(lines.to_vec(), one);
     unite(&mut curves, tolerance);
     curves
+}
+
+/// Returns whether a curve is no better than the polyline of so many points that it was fitted to.
+pub(super) fn is_as_it_was(curve: &Curve, points: usize) -> bool {
+    let pieces = curve.pieces.len();
+    curve.is_straight() && (pieces + 1 >= points || pieces < 3)
 }
 
 /// Shorter polylines are left as they are.
@@ -46,7 +49,8 @@ const LEAST: usize = 5;
 
 /// Lines of meshes, hatching and axes are straight.
 fn is_fitted(class: LineClass) -> bool {
-    !matches!(class, LineClass::Wire | LineClass::Hatch | LineClass::Stipple | LineClass::Axis)
+    use LineClass::{Axis, Break, Hatch, Stipple, Wire};
+    !matches!(class, Wire | Hatch | Stipple | Axis | Break)
 }
 
 /// Whether the class's lines come from faces, which may stand for something round.
@@ -65,7 +69,7 @@ struct Shared {
 }
 
 /// A point by its bits; zeros are one.
-fn key(p: DVec2) -> [u64; 2] {
+pub(super) fn key(p: DVec2) -> [u64; 2] {
     [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
 }
 

@@ -3,16 +3,20 @@
 //! [`lay_out`] puts one [`Drawing`] onto a [`Sheet`], [`lay_out_views`] several views of a thing with a
 //! title block; [`paint`] makes pixels of a sheet. Writers of files take sheets.
 
+mod areas;
+mod broken;
 pub mod dashes;
 mod fitted;
 mod multiview;
 pub mod order;
 mod page;
 mod paint;
+mod parts;
 mod pens;
 mod placed_view;
 mod title_block;
 
+pub use broken::{Break, Breaks, ViewBreaks};
 pub use multiview::{
     Angle, Callout, Contents, Detail, PartsListRow, SheetView, ViewKind, lay_out_views,
 };
@@ -76,6 +80,9 @@ pub struct Options {
     /// How far curves may lie from the polylines that are fitted by them, millimetres; with 0, lines are drawn as
     /// polylines. See [`crate::curve::fit::Options::tolerance`] and [`crate::curve::fit::Options::round`].
     pub fit: f64,
+    /// Whether the borders of regions are fitted too, where they share them; not for regions that reach under others,
+    /// which would end before those do.
+    pub fit_areas: bool,
     /// What the paper is filled with.
     pub background: Option<[u8; 4]>,
     /// Room around each view for what is written beside it, millimetres, on top of the margin.
@@ -93,6 +100,7 @@ impl Default for Options {
             hidden: Hidden::Drop,
             pens: Pens::default(),
             fit: 0.0,
+            fit_areas: false,
             background: None,
             around: 0.0,
         }
@@ -278,7 +286,7 @@ impl<'a> Placed<'a> {
 
 /// Puts drawings onto a sheet.
 fn put(sheet: &mut Sheet, views: &[Placed], options: &Options) {
-    put_regions(sheet, views);
+    put_regions(sheet, views, if options.fit_areas { options.fit } else { 0.0 });
     let deepest = match options.hidden {
         Hidden::Drop => 0,
         Hidden::Dashed => 1,
@@ -402,13 +410,23 @@ fn corners(curve: &Curve) -> Vec<DVec2> {
     curve.iter().map(|(start, _)| start).chain(last).collect()
 }
 
-fn put_regions(sheet: &mut Sheet, views: &[Placed]) {
+fn put_regions(sheet: &mut Sheet, views: &[Placed], tolerance: f64) {
     let mut marks = Vec::new();
     for view in views {
-        for region in &view.drawing.regions {
+        let regions = &view.drawing.regions;
+        let mut curves = match tolerance > 0.0 {
+            true => areas::borders(regions, view.origin, view.factor, tolerance),
+            false => Vec::new(),
+        }
+        .into_iter();
+        for region in regions {
             let ring = |r: &Vec<DVec2>| -> Vec<DVec2> {
                 r.iter().map(|p| onto_paper(*p, view.origin, view.factor)).collect()
             };
+            if let Some(rings) = curves.next().flatten() {
+                marks.push(Mark::Area { rings, color: region.color });
+                continue;
+            }
             let rings: Vec<Vec<DVec2>> = region.rings.iter().map(ring).collect();
             if rings.iter().flatten().all(|p| p.is_finite()) && !rings.is_empty() {
                 marks.push(Mark::Fill { rings, color: region.color });

@@ -66,6 +66,14 @@ fn put(canvas: &mut Canvas, mark: &Mark, pens: &[Pen]) -> Result<()> {
             canvas.fill(&path, FillRule::NonZero, &Paint::Color(*color), 1.0);
             Ok(())
         }
+        Mark::Area { rings, color } => {
+            let mut path = Path::new();
+            rings.iter().for_each(|r| {
+                path.extend(&pieces::path(r, FINE));
+            });
+            canvas.fill(&path, FillRule::NonZero, &Paint::Color(*color), 1.0);
+            Ok(())
+        }
         Mark::Stroke { points, closed, pen } => match pens.get(*pen) {
             Some(pen) if pen.dashes.is_empty() => line(canvas, points, *closed, pen),
             Some(pen) => {

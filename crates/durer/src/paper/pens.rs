@@ -38,14 +38,14 @@ impl Default for Pens {
             Self { widths: [0.25; LineClass::ALL.len()], hidden: 0.25, color: [0, 0, 0, 255] };
         for &class in LineClass::ALL {
             use LineClass::{
-                Axis, Border, Contour, Crease, Grid, Hatch, Intersection, Mark, Material,
+                Axis, Border, Break, Contour, Crease, Grid, Hatch, Intersection, Mark, Material,
                 NonManifold, Section, Shadow, Silhouette, Stipple, Tangent, Wire,
             };
             let width = match class {
                 Contour => 0.7,
                 Silhouette | Border | Section | Stipple => 0.5,
                 Crease | NonManifold | Intersection | Mark => 0.35,
-                Material | Grid | Axis => 0.25,
+                Material | Grid | Axis | Break => 0.25,
                 Tangent | Wire | Shadow | Hatch => 0.18,
             };
             pens.set(class, width);

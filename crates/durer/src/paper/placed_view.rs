@@ -1,6 +1,6 @@
 //! Where a view lies on its sheet, so that others can draw on it.
 
-use super::onto_paper;
+use super::{ViewBreaks, onto_paper};
 use crate::math::{DVec2, DVec3, Rect};
 use crate::scene::{Camera, Projection};
 use crate::view::picture_plane::PicturePlane;
@@ -18,6 +18,8 @@ pub struct PlacedView {
     pub factor: f64,
     /// What the drawing takes up, in the sheet's millimetres.
     pub bounds: Rect,
+    /// What the drawing leaves out.
+    pub breaks: ViewBreaks,
 }
 
 impl PlacedView {
@@ -31,12 +33,19 @@ impl PlacedView {
     ) -> Self {
         let corners = [bounds.min(), bounds.max()].map(|p| onto_paper(p, origin, factor));
         let bounds = Rect::around(corners).unwrap_or(bounds);
-        Self { name: name.to_owned(), camera, origin, factor, bounds }
+        let breaks = ViewBreaks::default();
+        Self { name: name.to_owned(), camera, origin, factor, bounds, breaks }
     }
 
-    /// A point of the drawing's plane on the sheet, millimetres.
+    /// A point of the drawing's plane, as it is drawn, on the sheet, millimetres.
     pub fn sheet_from_plane(&self, p: DVec2) -> DVec2 {
         onto_paper(p, self.origin, self.factor)
+    }
+
+    /// The point of the plane that is drawn at a place of the sheet, as the view sees it without its breaks.
+    pub fn plane_from_sheet(&self, at: DVec2) -> DVec2 {
+        let off = (at - self.origin) / self.factor;
+        self.breaks.seen_at(DVec2::new(off.x, -off.y))
     }
 
     /// A point of the model on the sheet, millimetres; `None` where it lies before the near plane of a
@@ -48,6 +57,6 @@ impl PlacedView {
             Projection::Orthographic { .. } => Some(plane.plane_from_world(p).at),
             Projection::Perspective { .. } => plane.project(p),
         };
-        seen.map(|at| self.sheet_from_plane(at)).filter(|at| at.is_finite())
+        seen.map(|at| self.sheet_from_plane(self.breaks.drawn_at(at))).filter(|at| at.is_finite())
     }
 }

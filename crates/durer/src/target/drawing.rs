@@ -38,6 +38,8 @@ pub enum LineClass {
     Axis,
     /// A line or a point that the model itself has.
     Mark,
+    /// Where a view is broken: what lies between two of them is left out.
+    Break,
 }
 
 impl LineClass {
@@ -59,6 +61,7 @@ impl LineClass {
         Self::Grid,
         Self::Axis,
         Self::Mark,
+        Self::Break,
     ];
 
     /// The name used on the command line, for layers and in GeoJSON.
@@ -80,6 +83,7 @@ impl LineClass {
             Self::Grid => "grid",
             Self::Axis => "axis",
             Self::Mark => "mark",
+            Self::Break => "break",
         }
     }
 }

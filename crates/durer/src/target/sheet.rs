@@ -45,6 +45,13 @@ pub enum Mark {
         /// sRGB with straight alpha.
         color: [u8; 4],
     },
+    /// A filled area within lines and curves.
+    Area {
+        /// Closed rings, filled by the non-zero rule: outer rings run one way, holes the other.
+        rings: Vec<Curve>,
+        /// sRGB with straight alpha.
+        color: [u8; 4],
+    },
     /// A line of text.
     Text {
         /// Where the base line stands.
@@ -69,6 +76,13 @@ pub struct SheetLayer {
     pub name: String,
     /// The marks, in the order of drawing.
     pub marks: Vec<Mark>,
+}
+
+impl Mark {
+    /// Returns whether it is an area, which covers what is beneath.
+    pub const fn is_area(&self) -> bool {
+        matches!(self, Self::Fill { .. } | Self::Area { .. })
+    }
 }
 
 /// A piece of paper. Coordinates are millimetres from the upper left corner, y down.

@@ -80,7 +80,7 @@ fn common_name(names: &[&str], number: usize) -> String {
 }
 
 /// A name without the number at its end, and what divides the two.
-fn number_off(name: &str) -> &str {
+pub(super) fn number_off(name: &str) -> &str {
     let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
     name.trim_end_matches(['.', '_', '-', ' ', ':', '#'])
 }

@@ -6,6 +6,8 @@ pub mod explode;
 pub mod interior_point;
 pub mod label;
 pub mod layout;
+pub(crate) mod near;
+pub mod objects;
 mod outermost;
 pub mod pick;
 pub mod picture_plane;

@@ -1,11 +1,13 @@
 //! Whether a mesh is the surface of a body, and which way its faces are turned.
 
 use super::cull::triangle_area;
+use super::near::{self, OF_EDGE, Places, STEP};
 use crate::math::{DVec3, Vec3};
 use crate::scene::{Aabb, Mesh};
 
-/// What [`mesh_topology`] finds. Vertices at one place count as one:
-/// where no coordinate differs by more than 2⁻²⁶ of the model's extent.
+/// What [`mesh_topology`] finds. Vertices at one place count as one: where no coordinate differs by more than 2⁻²⁶ of the
+/// model's extent, and where ends of borders lie as near to each other as rounding may have moved them, as in
+/// [`crate::visibility::object::Weld::Auto`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshTopology {
     /// Whether each edge belongs to exactly two triangles: the mesh bounds a body.
@@ -49,7 +51,13 @@ impl MeshTopology {
 /// assert_eq!(found.signed_volume, 1.0 / 6.0);
 /// ```
 pub fn mesh_topology(mesh: &Mesh) -> MeshTopology {
-    let welded = weld(&mesh.positions);
+    written_topology(mesh, 0.0)
+}
+
+/// The same for a mesh of a file whose coordinates have a last digit that is worth `last_digit`, as
+/// [`crate::scene::Scene::last_digit`] tells.
+pub fn written_topology(mesh: &Mesh, last_digit: f64) -> MeshTopology {
+    let welded = weld(mesh, last_digit);
     let mut found = MeshTopology { oriented: true, ..MeshTopology::default() };
     let mut edges = Vec::with_capacity(mesh.triangle_count() * 3);
     let mut origin = None;
@@ -91,8 +99,59 @@ fn finite_corners(mesh: &Mesh, corners: [u32; 3]) -> Option<[DVec3; 3]> {
 /// close real gaps, less would leave models open that are closed.
 const WELD: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// For each vertex the number of one at the same place, the same for all of them.
-pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
+/// For each vertex the number of one at the same place, the same for all of them; the last digit of coordinates is worth
+/// `last_digit`, 0 where that is not known.
+pub(super) fn weld(mesh: &Mesh, last_digit: f64) -> Vec<u32> {
+    let mut welded = weld_places(&mesh.positions);
+    let lone = border_ends(mesh, &welded);
+    let Some(bounds) = Aabb::around(mesh.positions.iter().map(|p| p.as_dvec3())) else {
+        return welded;
+    };
+    if lone.is_empty() {
+        return welded;
+    }
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let reach = near::reach(largest * STEP, last_digit, bounds.size().max_element());
+    let points: Vec<DVec3> =
+        lone.iter().map(|(v, _)| mesh.positions[*v as usize].as_dvec3()).collect();
+    let reaches: Vec<f64> = lone.iter().map(|(_, longest)| reach.min(longest * OF_EDGE)).collect();
+    let places = Places::new(points.iter().copied());
+    let joined = places.joined(&points, &reaches, |_, _| true);
+    let mut moved: Vec<(u32, u32)> =
+        joined.into_iter().map(|(k, i)| (lone[k].0, lone[i].0)).collect();
+    moved.sort_unstable();
+    for place in &mut welded {
+        if let Ok(found) = moved.binary_search_by_key(place, |m| m.0) {
+            *place = moved[found].1;
+        }
+    }
+    welded
+}
+
+/// The vertices at which edges of one triangle end, in order, and the longest of these edges.
+fn border_ends(mesh: &Mesh, welded: &[u32]) -> Vec<(u32, f64)> {
+    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(mesh.triangle_count() * 3);
+    for corners in (0..mesh.triangle_count()).map(|i| mesh.triangle(i)) {
+        if finite_corners(mesh, corners).is_none() {
+            continue;
+        }
+        let [a, b, c] = corners.map(|v| welded[v as usize]);
+        edges.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
+    }
+    edges.sort_unstable();
+    let place = |v: u32| mesh.positions[v as usize].as_dvec3();
+    let borders = edges.chunk_by(|e, f| e == f).filter(|same| same.len() == 1).map(|same| same[0]);
+    let mut ends: Vec<(u32, f64)> = borders
+        .filter(|[a, b]| a != b)
+        .flat_map(|ends| ends.map(|v| (v, place(ends[0]).distance(place(ends[1])))))
+        .collect();
+    ends.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    ends.dedup_by_key(|e| e.0);
+    ends
+}
+
+/// The same for those within [`WELD`].
+fn weld_places(positions: &[Vec3]) -> Vec<u32> {
     let bounds = Aabb::around(positions.iter().map(|p| p.as_dvec3()));
     let tolerance = bounds.map_or(0.0, |b| b.size().max_element() * WELD);
     let axes = [0, 1, 2].map(|axis| classes(positions, axis, tolerance));

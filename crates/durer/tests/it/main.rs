@@ -35,6 +35,7 @@ mod line_oracle;
 mod line_scenes;
 mod marks;
 mod overlay;
+mod paper_break;
 mod paper_fit;
 mod plot;
 mod raster_coverage;

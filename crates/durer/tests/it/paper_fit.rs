@@ -2,7 +2,7 @@
 
 use durer::math::DVec2;
 use durer::paper::{Hidden, Options, lay_out};
-use durer::target::drawing::{Drawing, Line, LineClass};
+use durer::target::drawing::{Drawing, Line, LineClass, Region, RegionKind};
 use durer::target::sheet::{Mark, Sheet};
 use durer::target::{Arc, Curve, Piece};
 use std::f64::consts::TAU;
@@ -103,4 +103,116 @@ fn dashed_circles_stay_whole_and_dashed_slots_are_divided_at_corners() {
     let parts = curves(&dashed);
     assert_eq!(parts.len(), 2);
     assert!(parts.iter().all(|part| !part.closed && part.pieces.len() == 1));
+}
+
+fn region(rings: Vec<Vec<DVec2>>) -> Region {
+    Region { kind: RegionKind::Surface, rings, color: [9, 9, 9, 255], item: None, part: None }
+}
+
+fn areas(regions: Vec<Region>, fit_areas: bool) -> Vec<Mark> {
+    let drawing = Drawing { regions, ..Drawing::default() };
+    let scale = "1:1".parse().expect("a scale");
+    let options = Options { fit: 0.02, fit_areas, scale, ..Options::default() };
+    let sheet = lay_out(&drawing, "", &options).expect("laid out").sheet;
+    sheet.layers.into_iter().flat_map(|l| l.marks).collect()
+}
+
+fn backwards(ring: &[DVec2]) -> Vec<DVec2> {
+    ring.iter().rev().copied().collect()
+}
+
+#[test]
+fn areas_share_the_curves_between_them() {
+    // A ring around a disc, and the disc as two halves; the ring's outer border is a square.
+    let disc = circle(48, 20.0);
+    let square = [(-30.0, -30.0), (30.0, -30.0), (30.0, 30.0), (-30.0, 30.0)];
+    let square: Vec<DVec2> = square.iter().map(|(x, y)| DVec2::new(*x, *y)).collect();
+    let upper: Vec<DVec2> = disc[..=24].to_vec();
+    let lower: Vec<DVec2> = disc[24..].iter().chain(&disc[..1]).copied().collect();
+    let ring = region(vec![square, backwards(&disc)]);
+    let marks = areas(vec![ring, region(vec![upper]), region(vec![lower])], true);
+    let rings: Vec<&Curve> = marks
+        .iter()
+        .flat_map(|mark| match mark {
+            Mark::Area { rings, .. } => rings,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(rings.len(), 4);
+    assert!(rings.iter().all(|r| r.closed && r.start == r.end()));
+    assert_eq!(rings[0].pieces.len(), 4);
+    // Two halves, each of which stands in two rings, once backwards.
+    let arcs_of = |ring: &Curve| -> Vec<(DVec2, Arc, DVec2)> {
+        let arc = |(start, piece): (DVec2, &Piece)| match piece {
+            Piece::Arc(arc, end) => Some((start, *arc, *end)),
+            _ => None,
+        };
+        ring.iter().filter_map(arc).collect()
+    };
+    let around = arcs_of(rings[1]);
+    assert_eq!(around.len(), 2);
+    for half in [arcs_of(rings[2]), arcs_of(rings[3])] {
+        let [(start, arc, end)] = half[..] else { panic!("{half:?}") };
+        assert!((arc.axis.length() - 20.0).abs() < 1e-9 && arc.is_circular());
+        let back = Arc { start: arc.start + arc.turn, turn: -arc.turn, ..arc };
+        let shared = |a: &(DVec2, Arc, DVec2)| a.0 == end && a.2 == start && a.1 == back;
+        let same = |a: &(DVec2, Arc, DVec2)| a.0 == end && a.2 == start && a.1.center == arc.center;
+        assert!(around.iter().any(|a| shared(a) || same(a)), "{around:?} {start} {arc:?}");
+    }
+}
+
+#[test]
+fn a_hole_and_what_fills_it_are_one_circle() {
+    let hole = circle(60, 7.0);
+    let plate: Vec<DVec2> = circle(4, 20.0);
+    let disc: Vec<DVec2> = hole[13..].iter().chain(&hole[..13]).copied().collect();
+    let marks = areas(vec![region(vec![plate, backwards(&hole)]), region(vec![disc])], true);
+    let [Mark::Area { rings: a, .. }, Mark::Area { rings: b, .. }] = &marks[..] else {
+        panic!("{marks:?}")
+    };
+    let (hole, disc) = (a[1].whole().expect("a circle"), b[0].whole().expect("a circle"));
+    assert_eq!((hole.center, hole.axis.length()), (disc.center, disc.axis.length()));
+    assert!(hole.turn == -disc.turn && (hole.axis.length() - 7.0).abs() < 1e-9);
+}
+
+#[test]
+fn areas_that_reach_under_others_stay_as_they_are() {
+    let disc = || vec![region(vec![circle(48, 20.0)])];
+    assert!(matches!(areas(disc(), false)[..], [Mark::Fill { .. }]));
+    // And those without anything round.
+    let square = vec![region(vec![circle(4, 20.0)])];
+    assert!(matches!(areas(square, true)[..], [Mark::Fill { .. }]));
+}
+
+#[test]
+fn a_rim_is_round_whatever_lies_beyond() {
+    // A disc, and around it a ring in as many parts as it has facets.
+    let (inner, outer) = (circle(48, 20.0), circle(48, 25.0));
+    let part = |i: usize| {
+        let k = (i + 1) % 48;
+        region(vec![vec![inner[i], outer[i], outer[k], inner[k]]])
+    };
+    let regions = std::iter::once(region(vec![inner.clone()])).chain((0..48).map(part)).collect();
+    let marks = areas(regions, true);
+    let rings: Vec<&Curve> = marks
+        .iter()
+        .map(|mark| match mark {
+            Mark::Area { rings, .. } => &rings[0],
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    let circles = arcs(&rings[..1]);
+    assert_eq!(circles.len(), 48);
+    assert!(circles.iter().all(|a| (a.axis.length() - 20.0).abs() < 1e-9), "{circles:?}");
+    // Each part has an arc of each rim, in the other direction where the disc has it.
+    for ring in &rings[1..] {
+        let [first, second] = arcs(&[ring])[..] else { panic!("{ring:?}") };
+        let (low, high) = match first.axis.length() < second.axis.length() {
+            true => (first, second),
+            false => (second, first),
+        };
+        assert!((high.axis.length() - 25.0).abs() < 1e-9 && high.turn < 0.0 && low.turn > 0.0);
+        let same = |a: &&Arc| a.center == low.center && a.turn == -low.turn;
+        assert!(circles.iter().any(same), "{low:?}");
+    }
 }

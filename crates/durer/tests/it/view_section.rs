@@ -1,6 +1,7 @@
 //! Sections: what is cut stays closed, and caps have the area that they must have.
 
 use crate::data;
+use crate::line_scenes::{self, Random, soup};
 use crate::scenes::{Numbers, instance};
 use durer::math::{DMat4, DVec3, Plane, Vec3, Vec4};
 use durer::scene::{Mesh, Scene};
@@ -183,6 +184,21 @@ fn section_planes_without_direction_are_refused() {
     ] {
         assert!(cut(&scene(cuboid(1.0, false)), &[bad], &Options::default()).is_err());
     }
+}
+
+#[test]
+fn bodies_whose_corners_rounding_has_moved_are_capped() {
+    let mut random = Random(5);
+    let mut number = || (random.next() - 0.5) * 2e-6;
+    let mut jitter = |p: DVec3| p + DVec3::new(number(), number(), number());
+    let noisy: Vec<_> =
+        line_scenes::cuboid([0.0; 3], [2.0; 3]).into_iter().map(|t| t.map(&mut jitter)).collect();
+    let plane = Plane { normal: DVec3::new(0.1, 0.2, 1.0), distance: -1.3 };
+    let section = cut(&soup(&noisy), &[plane], &Options::default()).expect("cut");
+    let exact = cut(&soup(&line_scenes::cuboid([0.0; 3], [2.0; 3])), &[plane], &Options::default())
+        .expect("cut");
+    assert_eq!((section.open_cuts, exact.open_cuts), (0, 0));
+    assert!((section.cap_area - exact.cap_area).abs() < 1e-4, "{}", section.cap_area);
 }
 
 #[test]

@@ -3,18 +3,18 @@
 pub mod args;
 mod file;
 
-use super::Subject;
 use crate::failure::Failure;
 use args::{AnnotationArgs, Dimensioned};
 use durer::annotate::{self, Annotations, Feature, Shown};
 use durer::math::DVec3;
 use durer::paper::LaidOut;
+use durer::scene::Scene;
 use durer::target::drawing::Drawing;
 use durer::visibility::object::{Faces, Weld};
 use serde::Serialize;
 
 /// The annotations asked for, and the round parts of the model.
-pub struct Wanted {
+pub struct Annotated {
     annotations: Annotations,
     pub features: Vec<Feature>,
 }
@@ -48,18 +48,14 @@ impl From<&Feature> for FeatureReport {
     }
 }
 
-impl Wanted {
-    /// Reads the options; `None` where they ask for nothing.
-    pub fn new(
-        args: &AnnotationArgs,
-        subject: &Subject,
-        weld: Weld,
-    ) -> Result<Option<Self>, Failure> {
+impl Annotated {
+    /// Reads the options, and finds the round parts of a scene once for all its views and frames; `None` where they ask for
+    /// nothing.
+    pub fn new(args: &AnnotationArgs, scene: &Scene, weld: Weld) -> Result<Option<Self>, Failure> {
         let annotations = annotations(args)?;
         if annotations.is_empty() {
             return Ok(None);
         }
-        let scene = subject.scene;
         let faces = Faces::welded(scene, weld).map_err(|e| Failure::Usage(e.to_string()))?;
         let features = annotate::features(scene, &faces);
         Ok(Some(Self { annotations, features }))
@@ -79,6 +75,7 @@ impl Wanted {
     ) -> Result<(), Failure> {
         for (view, own) in laid.views.iter_mut().zip(shown) {
             view.camera.get_or_insert(own.camera);
+            view.breaks = own.breaks.clone();
         }
         let drawings: Vec<&Drawing> = shown.iter().map(|s| &s.drawing).collect();
         let shown = Shown {

@@ -121,7 +121,8 @@ impl Parser<'_> {
         if same_material && runs.len() >= MAX_NAMED_PARTS {
             self.out.repairs.unnamed_parts.add(|| Place::Line(self.cursor.line(), 0));
         } else {
-            runs.push(Run { start, material: part.material, name: part.name() });
+            let [object, group] = [part.object, part.group].map(|n| text::name(n).into_owned());
+            runs.push(Run { start, material: part.material, object, group });
         }
     }
 
@@ -158,15 +159,5 @@ impl Part<'_> {
         self.material == other.material
             && same(self.object, other.object)
             && same(self.group, other.group)
-    }
-
-    /// `object/group`, or the one that there is.
-    fn name(&self) -> String {
-        let (object, group) = (text::name(self.object), text::name(self.group));
-        match (object.is_empty(), group.is_empty()) {
-            (false, false) => format!("{object}/{group}"),
-            (false, true) => object.into_owned(),
-            _ => group.into_owned(),
-        }
     }
 }

@@ -186,6 +186,15 @@ fn joined(arc: Arc, run: &Run<'_>, tolerance: f64) -> Option<Arc> {
     through(&arc, run.first(), run.last()).filter(|moved| run.is_near(moved, tolerance))
 }
 
+/// Returns the part of an arc between two points that lie on it but for rounding.
+pub(crate) fn between(arc: &Arc, start: DVec2, end: DVec2, tolerance: f64) -> Option<Arc> {
+    let begin = measure::angle_of(arc, start);
+    let turn = measure::forwards(measure::angle_of(arc, end) - begin, arc.turn);
+    let part = Arc { start: begin, turn, ..*arc };
+    let off = part.at(begin).distance(start).max(part.at(begin + turn).distance(end));
+    (off <= tolerance * JOINED && turn != 0.0).then_some(part)
+}
+
 /// How much arcs of one circle may differ, as a part of the tolerance.
 const SAME: f64 = 0.25;
 

@@ -6,6 +6,7 @@ use crate::Result;
 use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::{BooleanOp, FillRule, Shapes};
 use crate::math::{DVec2, Rect};
+use crate::paper::parts::parts;
 use crate::paper::{PlacedView, standard_scale};
 use crate::target::drawing::{Drawing, Line, Region};
 use crate::trace::NoTrace;
@@ -73,25 +74,7 @@ impl Detail {
         if line.points.iter().all(within) {
             return vec![line.clone()];
         }
-        let last = line.closed.then(|| line.points.first().copied()).flatten();
-        let points: Vec<DVec2> = line.points.iter().copied().chain(last).collect();
-        let mut chains: Vec<Vec<DVec2>> = Vec::new();
-        for w in points.windows(2) {
-            let Some([a, b]) = self.cut_segment(w[0], w[1]) else { continue };
-            match chains.last_mut() {
-                Some(chain) if chain.last() == Some(&a) => chain.push(b),
-                _ => chains.push(vec![a, b]),
-            }
-        }
-        // A closed line that starts within the circle goes on there.
-        if let (true, [first, .., last]) = (line.closed, &mut chains[..])
-            && first.first() == last.last()
-        {
-            last.extend_from_slice(&first[1..]);
-            chains.swap_remove(0);
-        }
-        let part = |points| Line { points, closed: false, ..line.clone() };
-        chains.into_iter().map(part).collect()
+        parts(line, |a, b| self.cut_segment(a, b))
     }
 
     /// The part of a segment within the circle; ends within it stay as they are.

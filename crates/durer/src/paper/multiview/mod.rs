@@ -15,7 +15,7 @@ pub use detail::Detail;
 pub use parts_list::PartsListRow;
 
 use super::title_block::{self, TitleBlock};
-use super::{Frame, LaidOut, Options, Placed, PlacedView, frame_of, put};
+use super::{Frame, LaidOut, Options, Placed, PlacedView, ViewBreaks, frame_of, put};
 use crate::Result;
 use crate::math::{Plane, Rect};
 use crate::scene::Camera;
@@ -62,6 +62,8 @@ pub struct SheetView<'a> {
     pub camera: Camera,
     /// What is seen.
     pub drawing: &'a Drawing,
+    /// What the drawing leaves out.
+    pub breaks: ViewBreaks,
 }
 
 impl SheetView<'_> {
@@ -128,7 +130,10 @@ pub fn lay_out_views(contents: &Contents, options: &Options) -> Result<LaidOut> 
         .collect();
     put(&mut sheet, &drawings, options);
     let views: Vec<PlacedView> = places
-        .map(|(v, p)| PlacedView::new(&v.name(), Some(v.camera), v.bounds(), p.origin, p.factor))
+        .map(|(v, p)| PlacedView {
+            breaks: v.breaks.clone(),
+            ..PlacedView::new(&v.name(), Some(v.camera), v.bounds(), p.origin, p.factor)
+        })
         .collect();
     let mut notes = Vec::new();
     let mut annotator = Annotator::new(&mut sheet, options);

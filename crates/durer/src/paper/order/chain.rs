@@ -8,9 +8,12 @@ use crate::target::{Arc, Curve, Piece};
 /// Places at which a whole circle or ellipse may be begun.
 const PLACES: usize = 16;
 
-/// A stroke or a curve.
-pub(super) enum Chain {
+/// What a pen draws without being lifted, millimetres.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Chain {
+    /// Straight pieces.
     Straight(Stroke),
+    /// Lines and curves.
     Curved(Curve),
 }
 
@@ -54,7 +57,7 @@ impl Chain {
     }
 
     /// Where the pen is when it is drawn.
-    pub fn end(&self) -> DVec2 {
+    pub(super) fn end(&self) -> DVec2 {
         match self {
             Self::Straight(stroke) => stroke.end().unwrap_or_default(),
             Self::Curved(curve) => curve.end(),
@@ -73,7 +76,7 @@ impl Chain {
         }
     }
 
-    pub fn mark(self, pen: usize) -> Mark {
+    pub(super) fn mark(self, pen: usize) -> Mark {
         match self {
             Self::Straight(Stroke { points, closed }) => Mark::Stroke { points, closed, pen },
             Self::Curved(curve) if curve.is_straight() && !curve.closed => {

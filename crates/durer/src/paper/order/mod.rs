@@ -15,7 +15,7 @@ pub(crate) mod nearest;
 
 use crate::math::DVec2;
 use crate::target::sheet::{Mark, Sheet};
-use chain::Chain;
+pub use chain::Chain;
 use ends::Ends;
 
 /// Strokes of which one ends within this many millimetres of where the next begins are drawn as one: machines
@@ -92,6 +92,12 @@ pub fn ordered(mut strokes: Vec<Stroke>, start: DVec2) -> Vec<Stroke> {
     joined(turns.into_iter().filter_map(&mut take).collect())
 }
 
+/// Orders strokes and curves as [`ordered`] does, and joins those that follow each other without a gap. Curves may be begun
+/// where their pieces meet, circles anywhere on a sixteenth of them.
+pub fn ordered_chains(chains: Vec<Chain>, start: DVec2) -> Vec<Chain> {
+    chain::joined(chain::in_turn(chains, start))
+}
+
 /// Makes one stroke of open ones that follow each other without a gap.
 pub fn joined(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let mut found: Vec<Stroke> = Vec::with_capacity(strokes.len());
@@ -119,7 +125,7 @@ pub fn sheet(sheet: &mut Sheet) {
     let solid: Vec<bool> = sheet.pens.iter().map(|p| p.dashes.is_empty()).collect();
     let mut at = DVec2::ZERO;
     for layer in &mut sheet.layers {
-        if layer.marks.iter().any(|m| matches!(m, Mark::Fill { .. })) {
+        if layer.marks.iter().any(Mark::is_area) {
             continue;
         }
         let mut pens = ByPen::default();
@@ -148,7 +154,7 @@ impl ByPen {
             Mark::Curve { curve, pen } => self.of(pen).1.push(Chain::Curved(curve)),
             Mark::Text { pen, .. } => self.of(pen).2.push(mark),
             Mark::Dimension(ref dimension) => self.of(dimension.text.pen).2.push(mark),
-            Mark::Fill { .. } => {}
+            Mark::Fill { .. } | Mark::Area { .. } => {}
         }
     }
 

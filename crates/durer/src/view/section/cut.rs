@@ -14,8 +14,8 @@ pub struct Cut {
 }
 
 /// The part of a mesh of triangles inside a plane.
-pub fn triangles(mesh: &Mesh, plane: &Plane) -> Cut {
-    let welded = weld(&mesh.positions);
+pub fn triangles(mesh: &Mesh, plane: &Plane, last_digit: f64) -> Cut {
+    let welded = weld(mesh, last_digit);
     let heights = heights(mesh, &welded, plane);
     let mut cutter = Cutter {
         old: mesh,

@@ -126,7 +126,7 @@ impl Section {
                 self.scene.meshes[index] = kept;
                 continue;
             }
-            let mut cut = cut::triangles(mesh, &local);
+            let mut cut = cut::triangles(mesh, &local, self.scene.last_digit);
             let world = |p: Vec3| matrix.transform_point3(p.as_dvec3());
             let segments = cut.segments.iter();
             self.outline.extend(segments.map(|s| s.map(|v| world(cut.mesh.positions[v as usize]))));

@@ -5,6 +5,7 @@ use super::stitch::{Grain, divide, stitch};
 use super::weld::{Weld, Welded, weld};
 use crate::math::{DMat4, DVec3, Vec3, by_coordinates};
 use crate::scene::{Aabb, Instance, Mesh, Scene, Topology};
+use crate::view::near;
 use crate::visibility::surface::setup::runs;
 use crate::{Error, Result};
 use std::ops::Range;
@@ -324,12 +325,9 @@ fn grain(instance: &Instance, bounds: Option<Aabb>, how: Weld) -> Grain {
     let extent = bounds.map_or(0.0, |b| b.size().max_element() * scale);
     let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
     let given = if let Weld::Within(length) = how { Some(length) } else { None };
-    let step = finite(largest * STEP);
+    let step = finite(largest * near::STEP);
     Grain { tree: 0, step, digit: finite(scale), extent: finite(extent), given }
 }
-
-/// The spacing of numbers with 24 bits, as a part of them; or half of it.
-const STEP: f64 = 1.0 / (1u64 << 23) as f64;
 
 fn face_runs(scene: &Scene) -> Result<Vec<FaceRun>> {
     let triangles = runs(scene)?

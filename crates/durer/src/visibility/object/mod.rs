@@ -4,7 +4,6 @@
 pub mod bodies;
 pub mod edges;
 pub mod faces;
-mod near;
 pub mod round;
 mod stitch;
 pub mod weld;

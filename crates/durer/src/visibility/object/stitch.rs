@@ -10,9 +10,9 @@
 //! Computer Graphics, 2001; the pairs come from a k-d tree, and no surface is cut. O(n), and
 //! O(b log² b) for b borders.
 
-use super::near::Places;
 use super::{Edges, Faces};
 use crate::math::DVec3;
+use crate::view::near::{self, OF_EDGE, Places};
 
 /// How far the faces of one instance reach, world units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,21 +29,8 @@ pub(super) struct Grain {
     pub given: Option<f64>,
 }
 
-/// Borders lie on each other within this many spacings of numbers: 2⁻¹⁶ of the largest coordinate. What programs
-/// compute in single precision is hardly off by more, and no drawing shows less.
-const STEPS: f64 = 128.0;
-
 /// Triangles lower than this many spacings have no area.
 const LOW: f64 = 4.0;
-
-/// A coordinate lies within half a unit of the last digit that was written, along each axis.
-const DIGITS: f64 = 2.0;
-
-/// Files whose last digit is more than this part of the extent mean what they say.
-const COARSEST: f64 = 1.0 / 1024.0;
-
-/// A border's end moves by at most this part of the longest border at it: what is small is not lost.
-const OF_EDGE: f64 = 1.0 / 16.0;
 
 /// Borders are divided at no more places than this many times their number, or not at all: some
 /// thousand that lie on each other would be divided by each other.
@@ -52,8 +39,7 @@ const MOST: usize = 8;
 impl Grain {
     /// How far borders may lie apart.
     fn reach(&self) -> f64 {
-        let written = if self.digit <= self.extent * COARSEST { self.digit * DIGITS } else { 0.0 };
-        self.given.unwrap_or((self.step * STEPS).max(written))
+        self.given.unwrap_or_else(|| near::reach(self.step, self.digit, self.extent))
     }
 }
 
@@ -203,32 +189,15 @@ impl Borders {
         &self.kinds[end.kind as usize]
     }
 
-    /// The vertices that become others, with these: each vertex takes those in its reach that no earlier
-    /// one has taken, so what becomes one lies within two reaches, however many lie in a row.
+    /// The vertices that become others, with these.
     fn joined(&self, faces: &Faces) -> Vec<(u32, u32)> {
         let reaches: Vec<f64> =
             self.ends.iter().map(|e| self.kind(e).reach_of(e.longest)).collect();
-        let mut taken = vec![false; self.ends.len()];
-        let mut joined = Vec::new();
-        for (i, end) in self.ends.iter().enumerate() {
-            if std::mem::replace(&mut taken[i], true) {
-                continue;
-            }
-            let p = faces.points()[end.vertex as usize];
-            self.places.along([p, p], reaches[i], |found| {
-                let k = found.number as usize;
-                let other = &self.ends[k];
-                let near = || {
-                    let q = faces.points()[other.vertex as usize];
-                    p.distance_squared(q) <= reaches[k] * reaches[k]
-                };
-                if !taken[k] && self.kind(other).tree == self.kind(end).tree && near() {
-                    taken[k] = true;
-                    joined.push((other.vertex, end.vertex));
-                }
-            });
-        }
-        joined
+        let points: Vec<DVec3> =
+            self.ends.iter().map(|e| faces.points()[e.vertex as usize]).collect();
+        let tree = |i: usize| self.kind(&self.ends[i]).tree;
+        let joined = self.places.joined(&points, &reaches, |k, i| tree(k) == tree(i));
+        joined.into_iter().map(|(k, i)| (self.ends[k].vertex, self.ends[i].vertex)).collect()
     }
 
     /// The triangles at borders that are no higher than a border reaches, and lie along others.

@@ -1,4 +1,4 @@
-//! Points by place.
+//! Points by place, and which of them rounding may have moved apart.
 //!
 //! Jon Bentley, *Multidimensional binary search trees used for associative searching*, Communications of
 //! the ACM, 1975: a k-d tree. Built in O(n log² n), asked in about O(√n + k) for k points near a segment. Each half
@@ -7,7 +7,7 @@
 use crate::math::DVec3;
 
 /// Points of three dimensions, to be asked which of them lie near a segment.
-pub(super) struct Places {
+pub(crate) struct Places {
     /// Each point with its number; the middle of each range divides it.
     points: Vec<(DVec3, u32)>,
     /// The axis along which each point divides its range.
@@ -16,7 +16,7 @@ pub(super) struct Places {
 
 /// A point near a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Found {
+pub(crate) struct Found {
     /// The number of the point.
     pub number: u32,
     /// Where on the segment it comes nearest, 0 … 1.
@@ -68,6 +68,57 @@ impl Places {
                 ranges.push((middle + 1..range.end, a, b));
             }
         }
+    }
+}
+
+/// The spacing of numbers with 24 bits, as a part of them; or half of it.
+pub(crate) const STEP: f64 = 1.0 / (1u64 << 23) as f64;
+
+/// Borders lie on each other within this many spacings of numbers: 2⁻¹⁶ of the largest coordinate. What programs
+/// compute in single precision is hardly off by more, and no drawing shows less.
+const STEPS: f64 = 128.0;
+
+/// A coordinate lies within half a unit of the last digit that was written, along each axis.
+const DIGITS: f64 = 2.0;
+
+/// Files whose last digit is more than this part of the extent mean what they say.
+const COARSEST: f64 = 1.0 / 1024.0;
+
+/// A border's end moves by at most this part of the longest border at it: what is small is not lost.
+pub(crate) const OF_EDGE: f64 = 1.0 / 16.0;
+
+/// Returns how far the ends of borders that were one may lie apart, where numbers as large as the largest coordinate are
+/// `step` apart and the last digit of coordinates is worth `digit`, 0 where that is not known.
+pub(crate) fn reach(step: f64, digit: f64, extent: f64) -> f64 {
+    let written = if digit <= extent * COARSEST { digit * DIGITS } else { 0.0 };
+    (step * STEPS).max(written)
+}
+
+impl Places {
+    /// Returns which of the points become which others: each point, in order, takes those in its reach, in whose reach it
+    /// is, that no earlier one has taken; so what becomes one lies within two reaches, however many lie in a row.
+    pub fn joined(
+        &self,
+        points: &[DVec3],
+        reaches: &[f64],
+        may_join: impl Fn(usize, usize) -> bool,
+    ) -> Vec<(usize, usize)> {
+        let mut taken = vec![false; points.len()];
+        let mut joined = Vec::new();
+        for (i, p) in points.iter().enumerate() {
+            if std::mem::replace(&mut taken[i], true) {
+                continue;
+            }
+            self.along([*p, *p], reaches[i], |found| {
+                let k = found.number as usize;
+                let near = || p.distance_squared(points[k]) <= reaches[k] * reaches[k];
+                if !taken[k] && may_join(k, i) && near() {
+                    taken[k] = true;
+                    joined.push((k, i));
+                }
+            });
+        }
+        joined
     }
 }
 
