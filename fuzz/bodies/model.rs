@@ -17,6 +17,7 @@ fn options() -> ReadOptions {
         decoded_bytes: 1 << 20,
         image_side: 256,
         depth: 64,
+        ..Limits::default()
     };
     let pose = Some(Pose { animation: None, time: 0.5 });
     ReadOptions { limits, pose, ..ReadOptions::default() }

@@ -451,6 +451,19 @@ pub struct RunningArgs {
     /// Work with these SIMD instructions, e.g. sse2 [default: the best of the machine]; the pictures are the same
     #[arg(long, value_name = "LEVEL", value_parser = values::simd_level)]
     pub simd: Option<durer::simd::Level>,
+    /// Take no more memory than this for the work, in bytes; k, M, G are understood [default: half of what the machine or its
+    /// control group allows, at most 4G]
+    ///
+    /// What would need more is refused with an error that says what it is needed for. Other limits of size are parts of
+    /// this one.
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::bytes)]
+    pub max_memory: Option<u64>,
+    /// End with an error after so many seconds [default: never]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive)]
+    pub timeout: Option<f64>,
+    /// The budget, and what stops the work.
+    #[arg(skip)]
+    pub work: durer::work::Work,
     /// No warnings and no progress; errors are still told
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,

@@ -10,9 +10,6 @@ use std::sync::{Mutex, PoisonError};
 /// The files that are being written now, for whoever interrupts the process.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// The exit code of a process that was interrupted: 128 and the number of the signal SIGINT.
-const INTERRUPTED: i32 = 130;
-
 /// A new file in the folder of another one, which it replaces when it is whole. Dropped before that,
 /// it is removed.
 pub struct Beside {
@@ -93,14 +90,12 @@ fn unfinished() -> std::sync::MutexGuard<'static, BTreeSet<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// On Ctrl-C and termination: removes what is unfinished and ends the process.
-pub fn clean_up_when_interrupted() {
-    // Without a handler the process ends all the same, and may leave a file with a leading dot.
-    let _ = ctrlc::set_handler(|| {
-        let unfinished = unfinished();
-        for path in unfinished.iter() {
-            let _ = fs::remove_file(path);
-        }
-        std::process::exit(INTERRUPTED);
-    });
+/// Removes what is unfinished and ends the process with the exit code that `last` gives; nothing is put in its place after
+/// that has begun.
+pub fn end(last: impl FnOnce() -> i32) -> ! {
+    let unfinished = unfinished();
+    for path in unfinished.iter() {
+        let _ = fs::remove_file(path);
+    }
+    std::process::exit(last())
 }

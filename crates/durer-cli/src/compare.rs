@@ -35,7 +35,7 @@ pub fn wireframe(scene: &Scene, options: &RenderOptions) -> durer::Result<Frameb
     options.check()?;
     scene.check()?;
     let view = View::new(options.camera, options.width, options.height)?;
-    let mut framebuffer = Framebuffer::new(options.width, options.height);
+    let mut framebuffer = Framebuffer::within(&options.work, options.width, options.height)?;
     let rows = f32::from(u16::MAX).min(options.height as f32);
     for y in 0..options.height {
         let color = match options.background {
@@ -56,7 +56,7 @@ pub fn sheet(
     options: &RenderOptions,
     report: &mut PictureReport,
 ) -> Result<Framebuffer, Failure> {
-    let usage = |e: durer::Error| Failure::Usage(e.to_string());
+    let usage = |e: durer::Error| Failure::of_library(&e);
     let compared = compare(scene, options).map_err(usage)?;
     for c in &compared {
         report.compared.push(ComparedReport {
@@ -96,7 +96,7 @@ fn lay_out(compared: &[Compared], options: &RenderOptions) -> durer::Result<Fram
             limit: options.max_pixels,
         });
     }
-    let mut sheet = Framebuffer::new(width as u32, height as u32);
+    let mut sheet = Framebuffer::within(&options.work, width as u32, height as u32)?;
     sheet.color.data_mut().fill(PAPER);
     let mut canvas = Canvas::new(width as u32, height as u32, paint::Options::default())?;
     for (i, c) in (0..).zip(compared) {

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::input;
 use durer::pipeline::Surroundings;
 use durer::shade::Panorama;
+use durer::work::Work;
 use durer_formats::{Limits, hdr};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -31,16 +32,16 @@ pub fn environment(text: &str) -> Result<Environment, String> {
 }
 
 /// Reads the panorama if one is asked for, so that pictures find it.
-pub fn read(look: &LookArgs) -> Result<(), Failure> {
+pub fn read(look: &LookArgs, work: &Work) -> Result<(), Failure> {
     let surroundings = match &look.environment {
         Environment::Studio => Surroundings::Studio,
         Environment::None => Surroundings::None,
         Environment::File(path) => {
-            let limits = Limits::default();
+            let limits = Limits { work: work.clone(), ..Limits::default() };
             let failure = |e: durer_formats::Error| {
                 Failure::Data(format!("--environment {}: {e}", path.display()))
             };
-            let bytes = input::bytes(path, limits.decoded_bytes)?;
+            let bytes = input::bytes_within(path, &limits)?;
             let picture = hdr::read(&bytes, &limits).map_err(failure)?;
             let panorama = Panorama::new(picture.width, picture.height, &picture.pixels)
                 .map_err(|e| failure(e.into()))?;

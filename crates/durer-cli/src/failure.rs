@@ -9,6 +9,8 @@ use std::process::ExitCode;
 pub enum Failure {
     /// Data that is wrong, or a file that cannot be read or written.
     Data(String),
+    /// Work that would cost more than is allowed; who knows the file adds its name ([`Self::named`]).
+    Refused(String),
     /// Options that are wrong, or do not go together.
     Usage(String),
     /// Some models failed and were skipped; each has been told.
@@ -22,9 +24,23 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::ClosedPipe => ExitCode::SUCCESS,
-            Self::Data(_) => ExitCode::from(1),
+            Self::Data(_) | Self::Refused(_) => ExitCode::from(1),
             Self::Usage(_) => ExitCode::from(2),
             Self::Partial => ExitCode::from(3),
+        }
+    }
+
+    /// What the library refuses: options that are wrong, or work that costs too much.
+    pub fn of_library(error: &durer::Error) -> Self {
+        let message = error.to_string();
+        if error.is_of_budget() { Self::Refused(message) } else { Self::Usage(message) }
+    }
+
+    /// The failure with the file's name, where that is missing.
+    pub fn named(self, name: &str) -> Self {
+        match self {
+            Self::Refused(message) => Self::Data(format!("{name}: {message}")),
+            other => other,
         }
     }
 
@@ -45,7 +61,9 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Data(message) | Self::Usage(message) => f.write_str(message),
+            Self::Data(message) | Self::Refused(message) | Self::Usage(message) => {
+                f.write_str(message)
+            }
             Self::Partial | Self::ClosedPipe => Ok(()),
         }
     }

@@ -179,12 +179,13 @@ enum Picture {
 impl Picture {
     fn read(args: &FillArgs, name: &str) -> Result<Self, Failure> {
         let fail = |e: durer_formats::Error| Failure::Data(format!("{name}: {e}"));
-        let bytes = input::bytes(&args.image, args.max_bytes)?;
         let limits = Limits {
             decoded_bytes: args.max_bytes,
             image_side: u16::MAX.into(),
+            work: args.running.work.clone(),
             ..Limits::default()
         };
+        let bytes = input::bytes_within(&args.image, &limits)?;
         let orientation = Orientation::of(&bytes);
         if image::bits_per_sample(&bytes) > 8 {
             let image = image::decode_deep(&bytes, name, &limits).map_err(fail)?;

@@ -10,6 +10,7 @@ use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
 use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces};
+use durer::work::Work;
 use durer_formats::{Model, ModelFormat};
 use serde::Serialize;
 use std::fmt::Write;
@@ -89,16 +90,18 @@ struct TextureInfo {
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     let messages = Messages::new(&args.running, args.models.len() as u64);
-    let options = input::read_options(&args.reading);
     let mut infos = Vec::new();
     for path in &args.models {
         let name = input::display_name(path);
         messages.progress.stage(|| format!("reading {name}"));
         if is_layer(path) {
-            let layers = layer::of_layers(path)?;
+            let layers = layer::of_layers(path, &args.running.work)?;
             infos.extend(layers.into_iter().map(|layer| Told::Layer(Box::new(layer))));
         } else {
-            infos.push(Told::Model(Box::new(of_model(name, &input::read(path, &options)?))));
+            // What a model has kept of the budget goes with it.
+            let options = input::read_options(&args.reading, &args.running.work.part());
+            let model = input::read(path, &options)?;
+            infos.push(Told::Model(Box::new(of_model(name, &model, &args.running.work)?)));
         }
         messages.progress.advance();
     }
@@ -128,13 +131,19 @@ fn is_layer(path: &Path) -> bool {
     !is_model && layer::format_of(path, head).is_some()
 }
 
-fn of_model(name: String, model: &Model) -> Info {
+fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
     let scene = &model.scene;
     let count = |wanted| {
         let of = |i: &Instance| scene.meshes.get(i.mesh).filter(|m| m.topology == wanted);
         scene.instances.iter().filter_map(of).map(|m| m.primitive_count() as u64).sum()
     };
-    Info {
+    let mut warnings: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+    let closed = closed(scene, work).unwrap_or_else(|e| {
+        warnings.push(format!("whether it is closed is not looked for: {e}"));
+        None
+    });
+    work.check().map_err(|e| Failure::Data(format!("{name}: {e}")))?;
+    Ok(Info {
         model: name,
         format: model.format.clone(),
         triangles: scene.triangle_count(),
@@ -145,7 +154,7 @@ fn of_model(name: String, model: &Model) -> Info {
         instances: scene.instances.len(),
         bounds: bounds(scene),
         area: area(scene),
-        closed: closed(scene),
+        closed,
         up_axis: scene.up_axis.name(),
         materials: scene.materials.iter().map(material).collect(),
         textures: textures(scene),
@@ -155,8 +164,8 @@ fn of_model(name: String, model: &Model) -> Info {
         variants: model.variants.clone(),
         plates: model.plates.clone(),
         extensions: model.extensions.clone(),
-        warnings: model.warnings.iter().map(ToString::to_string).collect(),
-    }
+        warnings,
+    })
 }
 
 fn bounds(scene: &Scene) -> Option<Bounds> {
@@ -181,22 +190,32 @@ fn area(scene: &Scene) -> Option<f64> {
 }
 
 /// Whether all meshes of triangles that are shown are closed, each or together.
-fn closed(scene: &Scene) -> Option<bool> {
+fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
     let shown = |i: usize| scene.instances.iter().any(|instance| instance.mesh == i);
     let meshes = scene.meshes.iter().enumerate();
     let solid = meshes.filter(|(i, mesh)| mesh.triangle_count() > 0 && shown(*i));
-    let of_mesh = |mesh| written_topology(mesh, scene.last_digit).closed;
-    let each = solid.map(|(_, mesh)| of_mesh(mesh)).reduce(|a, b| a && b)?;
-    Some(each || closed_together(scene))
+    let (mut each, mut count) = (true, 0);
+    for (_, mesh) in solid {
+        let (triangles, vertices) = (mesh.triangle_count() as u64, mesh.positions.len() as u64);
+        let _edges = work.charge("edges of the model", 36 * triangles + 16 * vertices)?;
+        each &= written_topology(mesh, scene.last_digit).closed;
+        count += 1;
+    }
+    match count {
+        0 => Ok(None),
+        1 => Ok(Some(each)),
+        _ => Ok(Some(each || closed_together(scene, work)?)),
+    }
 }
 
 /// Whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that go along each
 /// other are one.
-fn closed_together(scene: &Scene) -> bool {
-    Faces::new(scene).is_ok_and(|faces| {
+fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
+    let _faces = work.charge("edges of the model", 150 * scene.triangle_count())?;
+    Ok(Faces::new(scene).is_ok_and(|faces| {
         let edges = Edges::new(&faces, |_| true);
         edges.iter().all(|(_, sides)| sides.len() == 2)
-    })
+    }))
 }
 
 fn material(material: &Material) -> MaterialInfo {

@@ -3,6 +3,8 @@
 use crate::args::ReadingArgs;
 use crate::failure::{Failure, in_words};
 use crate::resources::Folder;
+use crate::watch;
+use durer::work::Work;
 use durer_formats::{
     Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, gltf, read_model, stl,
 };
@@ -40,7 +42,7 @@ pub struct Reading {
 }
 
 /// How models are read.
-pub fn read_options(args: &ReadingArgs) -> Reading {
+pub fn read_options(args: &ReadingArgs, work: &Work) -> Reading {
     let default = Limits::default();
     let posed = args.animation.is_some() || args.time.is_some();
     let pose = Pose { animation: args.animation.clone(), time: args.time.unwrap_or(0.0) };
@@ -48,6 +50,7 @@ pub fn read_options(args: &ReadingArgs) -> Reading {
         limits: Limits {
             primitives: args.max_triangles.unwrap_or(default.primitives),
             decoded_bytes: args.max_bytes.unwrap_or(default.decoded_bytes),
+            work: work.clone(),
             ..default
         },
         pose: posed.then_some(pose),
@@ -61,6 +64,7 @@ pub fn read_options(args: &ReadingArgs) -> Reading {
 /// Reads a model.
 pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
     let Reading { options, root } = reading;
+    watch::of_file(display_name(path));
     let resources = resources(path, root.as_deref())?;
     let streamed = streamed(path, &*resources, options);
     let mut model = streamed.unwrap_or_else(|| read_whole(path, &*resources, options))?;
@@ -89,7 +93,7 @@ fn read_whole(
     resources: &dyn Resources,
     options: &ReadOptions,
 ) -> Result<Model, Failure> {
-    let bytes = bytes(path, options.limits.decoded_bytes)?;
+    let bytes = bytes_within(path, &options.limits)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     read_model(&bytes, &name, resources, options)
         .map_err(|e| Failure::Data(format!("{}: {e}", display_name(path))))
@@ -142,14 +146,27 @@ fn streamed(
 
 /// All bytes of a file, or of standard input, refused above the limit.
 pub fn bytes(path: &Path, limit: u64) -> Result<Vec<u8>, Failure> {
+    bytes_within(path, &Limits { decoded_bytes: limit, ..Limits::default() })
+}
+
+/// All bytes of a file, or of standard input, refused above the limit; they are charged to its work.
+pub fn bytes_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Failure> {
+    let Limits { decoded_bytes: limit, work, .. } = limits;
+    let limit = *limit;
+    watch::of_file(display_name(path));
+    let charge = |bytes: u64| work.keep("bytes of the file", bytes).map_err(|e| e.to_string());
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     if is_stream(path) {
-        return bounded(std::io::stdin().lock(), 0, limit).map_err(fail);
+        let bytes = bounded(std::io::stdin().lock(), 0, limit).map_err(fail)?;
+        return charge(bytes.capacity() as u64).map(|()| bytes).map_err(fail);
     }
     let file = File::open(path).map_err(|e| fail(in_words(&e)))?;
     let metadata = file.metadata().map_err(|e| fail(in_words(&e)))?;
     if metadata.is_dir() {
         return Err(fail("it is a folder; name the model in it".to_owned()));
+    }
+    if metadata.len() <= limit {
+        charge(metadata.len()).map_err(fail)?;
     }
     bounded(file, metadata.len(), limit).map_err(fail)
 }

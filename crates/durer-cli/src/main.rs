@@ -21,6 +21,7 @@ mod input;
 mod kind;
 mod layer;
 mod lights;
+mod memory;
 mod messages;
 mod output;
 mod panics;
@@ -39,6 +40,7 @@ mod thumbnailer;
 mod tiles;
 mod values;
 mod warp;
+mod watch;
 
 use args::{Cli, Command, RunningArgs};
 use clap::parser::ValueSource;
@@ -51,8 +53,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    beside::clean_up_when_interrupted();
-    match panics::told_at_the_end(parse_and_run) {
+    let result = panics::told_at_the_end(parse_and_run);
+    if let Some(code) = watch::interrupted() {
+        return ExitCode::from(code);
+    }
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let message = failure.to_string();
@@ -97,7 +102,31 @@ fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
     if let Command::Render(args) = &mut cli.command {
         args.given = names;
     }
+    if let Some(running) = running(&mut cli.command) {
+        running.work = watch::work(running);
+    }
     Ok((cli.command, file))
+}
+
+/// How a command runs, where it works on something.
+fn running(command: &mut Command) -> Option<&mut RunningArgs> {
+    Some(match command {
+        Command::Render(args) => &mut args.running,
+        Command::Info(args) => &mut args.running,
+        Command::Clip(args) => &mut args.running,
+        Command::Buffer(args) => &mut args.files.running,
+        Command::Dissolve(args) => &mut args.files.running,
+        Command::Fix(args) => &mut args.files.running,
+        Command::Check(args) => &mut args.running,
+        Command::Tiles(args) => &mut args.running,
+        Command::Simplify(args) => &mut args.files.running,
+        Command::Warp(args) => &mut args.running,
+        Command::Draw(args) => &mut args.running,
+        Command::Fill(args) => &mut args.running,
+        Command::Pick(args) => &mut args.running,
+        Command::Plot(args) => &mut args.running,
+        Command::Thumbnailer(_) | Command::Completions { .. } | Command::Man => return None,
+    })
 }
 
 /// How a command's pictures are put into bytes, where it makes any.
@@ -155,6 +184,7 @@ fn on_threads(
     args: &RunningArgs,
     work: impl FnOnce() -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {
+    watch::start(args);
     if let Some(level) = args.simd {
         durer::simd::set_default_level(level);
     }

@@ -70,13 +70,14 @@ pub fn run(args: &PickArgs) -> Result<(), Failure> {
     camera::check(&args.view)?;
     let name = input::display_name(&args.model);
     let messages = Messages::new(&args.running, 1);
-    let mut model = input::read(&args.model, &input::read_options(&args.reading))?;
+    let mut model =
+        input::read(&args.model, &input::read_options(&args.reading, &args.running.work))?;
     if let Some(axis) = args.view.up_axis {
         model.scene.up_axis = axis.into();
     }
     messages.warnings(&name, &model.warnings);
     drop(messages);
-    let usage = |e: durer::Error| Failure::Usage(e.to_string());
+    let usage = |e: durer::Error| Failure::of_library(&e);
     let natural = match args.size.is_open() {
         true => shape::of_view(&args.view, &model.scene, None)?,
         false => DVec2::ONE,

@@ -1,5 +1,6 @@
 //! Progress on a terminal, for work that takes over half a second.
 
+use crate::watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -51,9 +52,11 @@ impl Progress {
 
     /// Says what is being done.
     pub fn stage(&self, what: impl FnOnce() -> String) {
+        let what = what();
         if let Some(shown) = &self.shown {
-            shown.bar.set_message(what());
+            shown.bar.set_message(what.clone());
         }
+        watch::now(what);
     }
 
     /// One more picture is done.

@@ -18,6 +18,7 @@ use crate::report::{self, Failed, ModelReport, PictureReport, Report};
 use crate::section;
 use crate::staging;
 use crate::values::{Algorithm, Size};
+use crate::watch;
 use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
 use durer::scene::{AlphaMode, Material, Scene};
@@ -40,10 +41,18 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut report = Report { version: env!("CARGO_PKG_VERSION"), ..Report::default() };
     for job in &jobs {
         match render_model(args, job, &messages) {
-            Ok(model) => report.models.push(model),
+            Ok(model) => {
+                report.models.push(model);
+                if args.skip_failures {
+                    watch::done();
+                }
+            }
             Err(Failure::Data(error)) if args.skip_failures => {
                 messages.error(&error);
                 report.failed.push(Failed { model: job.model.display().to_string(), error });
+                if !args.running.work.go_on() {
+                    break;
+                }
             }
             Err(failure) => return Err(failure),
         }
@@ -76,7 +85,7 @@ fn check(args: &RenderArgs) -> Result<(), Failure> {
     drawing::check(args, wanted(args).kind)?;
     args.picture.encoding.check(wanted(args).kind)?;
     check_size(args)?;
-    environment::read(&args.look)?;
+    environment::read(&args.look, &args.running.work)?;
     check_algorithm(args)?;
     shots(args, None).map(|_| ())
 }
@@ -269,7 +278,9 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     let name = input::display_name(job.model);
     messages.progress.stage(|| format!("reading {name}"));
     let start = Instant::now();
-    let mut model = input::read(job.model, &input::read_options(&args.reading))?;
+    // What the model has kept of the budget goes with it.
+    let part = args.running.work.part();
+    let mut model = input::read(job.model, &input::read_options(&args.reading, &part))?;
     let read_seconds = start.elapsed().as_secs_f64();
     if let Some(axis) = args.view.up_axis {
         model.scene.up_axis = axis.into();
@@ -450,7 +461,7 @@ fn with_file(name: &str, failure: Failure) -> Failure {
         Failure::Data(message) if message.starts_with("--") => {
             Failure::Data(format!("{name}: {message}"))
         }
-        other => other,
+        other => other.named(name),
     }
 }
 
@@ -527,7 +538,7 @@ fn render_picture(
         Algorithm::Wireframe => durer::visibility::wireframe::INFO.name.to_owned(),
         Algorithm::All => "all".to_owned(),
     };
-    let framebuffer = assemble(cells, args.picture.size);
+    let framebuffer = assemble(cells, args).map_err(usage)?;
     (report.width, report.height) = (framebuffer.width(), framebuffer.height());
     let start = Instant::now();
     report.files = write_planes(args, picture, &framebuffer)?;
@@ -541,7 +552,7 @@ fn render_picture(
 
 /// Options that the renderer refuses.
 fn usage(e: durer::Error) -> Failure {
-    Failure::Usage(e.to_string())
+    Failure::of_library(&e)
 }
 
 /// The options for the picture of a model, of what the view is fitted to, and of all there is.
@@ -585,6 +596,7 @@ fn render_options(
         normal: picture.normal.is_some(),
         max_pixels: args.picture.max_pixels,
         ambient_occlusion: staging::occlusion(&args.stage, model),
+        work: args.running.work.clone(),
         ..RenderOptions::new(if std::ptr::eq(framed, scene) {
             camera
         } else {
@@ -594,27 +606,22 @@ fn render_options(
 }
 
 /// Puts the viewports into one picture.
-fn assemble(mut cells: Vec<(Cell, Framebuffer)>, size: Size) -> Framebuffer {
+fn assemble(mut cells: Vec<(Cell, Framebuffer)>, args: &RenderArgs) -> durer::Result<Framebuffer> {
     if let [(_, whole)] = &mut cells[..] {
-        return std::mem::replace(whole, Framebuffer::new(0, 0));
+        return Ok(std::mem::replace(whole, Framebuffer::new(0, 0)));
     }
-    let mut all = Framebuffer::new(size.width, size.height);
+    let (Size { width, height }, work) = (args.picture.size, &args.running.work);
+    let mut all = Framebuffer::within(work, width, height)?;
+    let any = |has: fn(&Framebuffer) -> bool| cells.iter().any(|(_, part)| has(part));
+    let (depth, item) = (any(|p| p.depth.is_some()), any(|p| p.item.is_some()));
+    all.add_planes(work, depth, item, any(|p| p.normal.is_some()))?;
     for (Cell { x, y, .. }, part) in &cells {
-        if part.depth.is_some() && all.depth.is_none() {
-            all = all.with_depth();
-        }
-        if part.item.is_some() && all.item.is_none() {
-            all = all.with_items();
-        }
-        if part.normal.is_some() && all.normal.is_none() {
-            all = all.with_normals();
-        }
         all.color.paste(&part.color, *x, *y);
         paste(&mut all.depth, &part.depth, *x, *y);
         paste(&mut all.item, &part.item, *x, *y);
         paste(&mut all.normal, &part.normal, *x, *y);
     }
-    all
+    Ok(all)
 }
 
 fn paste<T: Copy>(

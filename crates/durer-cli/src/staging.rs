@@ -142,7 +142,7 @@ pub fn staged(args: &StageArgs, scene: &Scene) -> Result<Option<Staged>, Failure
     }
     let mut whole = framed.clone();
     if args.has_ground() {
-        let usage = |e: durer::Error| Failure::Usage(e.to_string());
+        let usage = |e: durer::Error| Failure::of_library(&e);
         add_ground(&mut whole, scene, &model).map_err(usage)?;
     }
     Ok(Some(Staged { framed, whole }))
@@ -164,7 +164,7 @@ pub fn draw_edges(
 ) -> Result<(), Failure> {
     let Some(width) = args.edges() else { return Ok(()) };
     let style = EdgeStyle { width, ..EdgeStyle::default() };
-    pipeline::draw_edges(model, options, &style, picture).map_err(|e| Failure::Usage(e.to_string()))
+    pipeline::draw_edges(model, options, &style, picture).map_err(|e| Failure::of_library(&e))
 }
 
 /// Moves near and far plane of a fitted camera, so that what is put around the model is between them.

@@ -133,9 +133,10 @@ pub fn run(args: &WarpArgs) -> Result<(), Failure> {
     let (target_point, up) = (args.to_target.unwrap_or(args.target), args.to_up.unwrap_or(args.up));
     let new = Camera { eye: args.to_eye, target: target_point, up, ..camera };
     check("--to-eye, --to-target, --to-up", &new)?;
-    let first = load(&args.color, &args.depth)?;
+    let limits = Limits { work: args.running.work.clone(), ..Limits::default() };
+    let first = load(&args.color, &args.depth, &limits)?;
     let second = match &args.fill[..] {
-        [color, depth] => Some(load(color, depth)?),
+        [color, depth] => Some(load(color, depth, &limits)?),
         _ => None,
     };
     let (width, height) = (first.color.width(), first.color.height());
@@ -148,7 +149,8 @@ pub fn run(args: &WarpArgs) -> Result<(), Failure> {
         check("--fill-eye, --fill-target", &camera)?;
         sources.push(Source { color: &second.color, depth: &second.depth, camera });
     }
-    let options = warp::Options { hole: encode_rgba8(args.holes) };
+    let work = args.running.work.clone();
+    let options = warp::Options { hole: encode_rgba8(args.holes), work };
     let warped = warp::warp(&sources, &new, [size.width, size.height], &options, &mut NoTrace)
         .map_err(|e| Failure::Data(format!("{}: {e}", args.depth.display())))?;
     if args.file.encoding.deliver(target, wanted.kind.picture(), &warped.framebuffer.color)? {
@@ -185,14 +187,13 @@ fn check(options: &str, camera: &Camera) -> Result<(), Failure> {
     camera.check().map_err(|e| Failure::Usage(format!("{options}: {e}")))
 }
 
-fn load(color: &Path, depth: &Path) -> Result<Loaded, Failure> {
-    let limits = Limits::default();
+fn load(color: &Path, depth: &Path, limits: &Limits) -> Result<Loaded, Failure> {
     let name = color.display().to_string();
-    let image = image::decode(&input::bytes(color, limits.decoded_bytes)?, &name, &limits)
+    let image = image::decode(&input::bytes_within(color, limits)?, &name, limits)
         .map_err(|e| Failure::of_file(color, e))?;
     let colors = Pixels::from_data(image.width, image.height, image.data)
         .map_err(|e| Failure::of_file(color, e))?;
-    let depths = png::read_depth(&input::bytes(depth, limits.decoded_bytes)?, &limits)
+    let depths = png::read_depth(&input::bytes_within(depth, limits)?, limits)
         .map_err(|e| Failure::of_file(depth, e))?;
     if (depths.width(), depths.height()) != (colors.width(), colors.height()) {
         let sizes = [(depths.width(), depths.height()), (colors.width(), colors.height())];

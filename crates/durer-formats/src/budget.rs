@@ -2,6 +2,9 @@
 
 use crate::{Error, Limits, Place, Result};
 
+/// What a model's meshes are called in errors about memory.
+pub(crate) const MODEL: &str = "meshes of the model";
+
 /// What may still be made of a file.
 pub(crate) struct Budget {
     limits: Limits,
@@ -31,7 +34,8 @@ impl Budget {
     /// Takes so many bytes of numbers.
     pub fn bytes(&mut self, count: u64, place: impl FnOnce() -> Place) -> Result<()> {
         self.bytes = self.bytes.saturating_add(count);
-        take("memory for numbers", self.bytes, self.limits.decoded_bytes, place)
+        take("memory for numbers", self.bytes, self.limits.decoded_bytes, place)?;
+        Ok(self.limits.work.keep(MODEL, count)?)
     }
 }
 

@@ -19,6 +19,9 @@ pub(crate) use png::{check_png_holds, is_grey};
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
 
+/// What pictures are called in errors about memory.
+pub(crate) const DECODED: &str = "decoded pictures";
+
 /// Width, height and pixels.
 type Picture = (u32, u32, Vec<[u8; 4]>);
 
@@ -110,6 +113,10 @@ fn check_size(
         let (w, h) = size;
         return Err(broken(name, format!("is too short for its {w} × {h} pixels")));
     }
+    // The picture stays; while it is decoded its samples are there too.
+    limits.work.keep(DECODED, needed)?;
+    limits.work.charge(DECODED, needed)?;
+    limits.work.room_for::<u8>(DECODED, needed)?;
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 use crate::{Place, Warning};
 use durer::math::Vec3;
 use durer::scene::Scene;
+use durer::work::Work;
 
 /// Finds what a file refers to: buffers, images, material libraries.
 ///
@@ -73,7 +74,7 @@ impl Resources for NoResources {
 }
 
 /// What readers refuse to exceed; each refusal is [`crate::Error::Limit`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Limits {
     /// Triangles, lines and points over all meshes, before instancing.
     pub primitives: u64,
@@ -85,6 +86,9 @@ pub struct Limits {
     pub image_side: u32,
     /// Depth of a tree of components.
     pub depth: u32,
+    /// The budget that memory is charged to, which what is read keeps as long as this part of the work is there; and
+    /// what may stop the reading.
+    pub work: Work,
 }
 
 impl Default for Limits {
@@ -96,7 +100,15 @@ impl Default for Limits {
             decoded_bytes: 4 << 30,
             image_side: 16_384,
             depth: 512,
+            work: Work::default(),
         }
+    }
+}
+
+impl Limits {
+    /// Bytes that may still be taken, for libraries that count by themselves.
+    pub fn memory(&self) -> u64 {
+        self.decoded_bytes.min(self.work.budget().saturating_sub(self.work.used()))
     }
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn load(
     for (line, operand) in libraries.iter().filter(|(_, operand)| seen.insert(operand)) {
         read_libraries(model, &mut all, Place::Line(*line, 0), operand, resources, options);
     }
-    let mut images = Images::new(resources, options.limits);
+    let mut images = Images::new(resources, options.limits.clone());
     let mut notes = Notes { tr_is_opacity: all.tr_is_opacity, ..Notes::default() };
     for name in names {
         let material = match all.find(name) {

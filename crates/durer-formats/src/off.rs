@@ -91,7 +91,7 @@ pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> 
     let mut cursor = Cursor::new(&text);
     let mut model = Model { format: "OFF".to_owned(), ..Model::default() };
     let (kind, counts) = header(&mut cursor, &text)?;
-    let mut reader = Reader { kind, counts, limits: options.limits, ..Reader::default() };
+    let mut reader = Reader { kind, counts, limits: options.limits.clone(), ..Reader::default() };
     match reader.body(&mut cursor) {
         Err(why) if reader.has_something() => reader.warn_of_end(&mut model, why)?,
         other => other?,

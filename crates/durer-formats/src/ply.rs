@@ -51,7 +51,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     refuse_packed(&header)?;
     let body = stripped.get(header.length..).unwrap_or_default();
     let offset = (bytes.len() - stripped.len() + header.length) as u64;
-    let mut builder = Builder::new(&header, options.limits);
+    let mut builder = Builder::new(&header, options.limits.clone());
     let warning = match header.encoding {
         Encoding::Ascii => {
             let cursor = text::Cursor::at_line(body, header.lines);

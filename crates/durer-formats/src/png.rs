@@ -3,6 +3,7 @@
 //! All writers take row 0 as the top row, write no time stamp and give the same bytes for the same
 //! pixels. Memory: one row, and what the compressor keeps (some 100 kB); cost: one pass.
 
+use crate::image::DECODED;
 use crate::{Error, Limits, Result};
 use durer::target::{NO_ITEM, Pixels};
 use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, SrgbRenderingIntent};
@@ -155,6 +156,8 @@ pub fn read_depth(bytes: &[u8], limits: &Limits) -> Result<Pixels<f32>> {
         let (what, value, limit) = ("size of a depth picture", needed, limits.decoded_bytes);
         return Err(Error::Limit { place: crate::Place::Whole, what, value, limit });
     }
+    limits.work.keep(DECODED, needed)?;
+    limits.work.charge(DECODED, needed)?;
     let mut reader = decoder.read_info().map_err(wrong)?;
     let length = reader.output_buffer_size().unwrap_or(0);
     let mut samples = vec![0; length];

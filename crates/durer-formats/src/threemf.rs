@@ -38,10 +38,10 @@ use package::Package;
 /// missing or contain themselves, a plate that is not there; [`crate::Error::Unsupported`] where a
 /// part requires an extension that is not read; [`crate::Error::Limit`] for too much of anything.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
-    let mut package = Package::open(bytes, options.limits)?;
+    let mut package = Package::open(bytes, options.limits.clone())?;
     let mut model = Model { format: "3MF".to_owned(), ..Model::default() };
     let root = package.root()?;
-    let mut assembly = Assembly::new(&mut model, &mut package, options.limits);
+    let mut assembly = Assembly::new(&mut model, &mut package, options.limits.clone());
     assembly.build(&root, options.plate)?;
     let plates = assembly.settings.plates;
     model.plates = plates.into_iter().map(|plate| plate.name).collect();

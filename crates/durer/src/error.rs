@@ -54,9 +54,46 @@ pub enum Error {
         /// What to use instead.
         instead: &'static str,
     },
+    /// The work would take more memory than its budget allows ([`crate::work::Work`]).
+    #[error("{stage}: {} of memory are needed, {option} allows {}", in_words(*need), in_words(*budget))]
+    Memory {
+        /// What it is needed for, e.g. `"planes of the picture"`.
+        stage: &'static str,
+        /// Bytes that would be in use together.
+        need: u64,
+        /// Bytes that are allowed.
+        budget: u64,
+        /// What sets the budget, as the caller calls it.
+        option: &'static str,
+    },
+    /// The system has no memory for a large buffer.
+    #[error("{stage}: the system has no {} of memory left", in_words(*need))]
+    OutOfMemory {
+        /// What it is needed for.
+        stage: &'static str,
+        /// Bytes of the buffer.
+        need: u64,
+    },
+    /// The work has taken longer than it may.
+    #[error("it takes longer than the {seconds} s that {option} allows")]
+    TimedOut {
+        /// Seconds that are allowed.
+        seconds: f64,
+        /// What sets the time, as the caller calls it.
+        option: &'static str,
+    },
+    /// The work was ended from outside.
+    #[error("it was cancelled")]
+    Cancelled,
 }
 
 impl Error {
+    /// Whether the work was ended for what it costs, not for what it was given.
+    pub fn is_of_budget(&self) -> bool {
+        use Error::{Cancelled, Memory, OutOfMemory, TimedOut};
+        matches!(self, Memory { .. } | OutOfMemory { .. } | TimedOut { .. } | Cancelled)
+    }
+
     /// A [`Error::Parameter`] from any displayable value.
     pub fn parameter(
         name: &'static str,
@@ -69,3 +106,15 @@ impl Error {
 
 /// The library's result.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Returns a number of bytes as people read it, with at most one digit behind the point: `1.2 MB`, `640 MB`; powers of 1024.
+pub fn in_words(bytes: u64) -> String {
+    let units = ["bytes", "kB", "MB", "GB", "TB", "PB", "EB"];
+    let (mut value, mut unit) = (bytes as f64, 0);
+    while value >= 999.95 {
+        (value, unit) = (value / 1024.0, unit + 1);
+    }
+    let number = format!("{value:.1}");
+    let number = number.strip_suffix(".0").unwrap_or(&number);
+    format!("{number} {}", units.get(unit).copied().unwrap_or("EB"))
+}

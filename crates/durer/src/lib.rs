@@ -155,6 +155,9 @@
 //! **How does an algorithm come to its result?** Those that take a [`trace::Tracer`] as their last
 //! argument tell it every step.
 //!
+//! **What may it cost?** Options hold a [`work::Work`]: a budget of memory that large buffers are charged to, and a way to
+//! stop what takes too long.
+//!
 //! # What holds everywhere
 //!
 //! - The same input gives the same bytes: on every CPU, SIMD level ([`simd`]) and number of threads.
@@ -181,6 +184,7 @@ pub mod math;
 pub mod parallel;
 pub mod simd;
 pub mod trace;
+pub mod work;
 
 pub mod target;
 

@@ -36,6 +36,7 @@ use crate::visibility::surface::method::{self, render_with};
 use crate::visibility::surface::setup::Filter;
 pub use crate::visibility::surface::{Background, Cull, Marks, Samples, SurfaceMethod};
 use crate::visibility::surface::{shadow_map, z_buffer};
+use crate::work::Work;
 use crate::{Error, Result};
 
 /// Where light comes from.
@@ -112,6 +113,8 @@ pub struct RenderOptions {
     pub max_pixels: u64,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
+    /// What it may cost, and whether it goes on.
+    pub work: Work,
 }
 
 impl RenderOptions {
@@ -141,6 +144,7 @@ impl RenderOptions {
             normal: false,
             max_pixels: 16_384 * 16_384,
             level: default_level(),
+            work: Work::default(),
         }
     }
 
@@ -242,16 +246,16 @@ pub fn render_into(
     options.check()?;
     scene.check()?;
     let view = View::new(options.camera, options.width, options.height)?;
-    make_ready(framebuffer, options);
+    make_ready(framebuffer, options)?;
     let (lighting, surroundings) = (&options.lighting, &options.surroundings);
     let mut lights = lights(scene, &options.camera, (lighting, surroundings), options.exposure);
     lights.tone.map = options.tone_map;
-    let smoothed = with_needed_normals(scene, options.shading);
+    let smoothed = with_needed_normals(scene, options)?;
     let scene = smoothed.as_ref().unwrap_or(scene);
     let start = std::time::Instant::now();
     if options.shadows == Shadows::Map {
         let map = shadow_map::Options { side: options.shadow_map_side };
-        shadow_map::cast(scene, &mut lights, &map)?;
+        shadow_map::cast_within(&options.work, scene, &mut lights, &map)?;
     }
     let shadow_seconds = start.elapsed().as_secs_f64();
     let report = match options.algorithm {
@@ -263,14 +267,17 @@ pub fn render_into(
                 shading: options.shading,
                 background: options.background,
                 level: options.level,
+                work: options.work.clone(),
             };
             z_buffer::render(scene, &view, &lights, &z_options, framebuffer)?
         }
         _ => from_screen_triangles(scene, &view, &lights, options, framebuffer)?,
     };
+    options.work.check()?;
     let start = std::time::Instant::now();
     darken(&view, options, framebuffer);
     let darken_seconds = start.elapsed().as_secs_f64();
+    options.work.check()?;
     Ok(Report {
         triangles_in: scene.triangle_count(),
         non_finite: report.counts.non_finite,
@@ -333,25 +340,19 @@ fn lights(
 
 /// Gives a framebuffer the planes that are asked for. Its colours stay where their number is right, for every method
 /// sets all of them; everything else is as new.
-fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) {
+fn make_ready(framebuffer: &mut Framebuffer, options: &RenderOptions) -> Result<()> {
     let Framebuffer { color, .. } = std::mem::replace(framebuffer, Framebuffer::new(0, 0));
     let stays = (color.width(), color.height()) == (options.width, options.height);
     let mut ready = if stays {
         Framebuffer { color, ..Framebuffer::new(0, 0) }
     } else {
-        Framebuffer::new(options.width, options.height)
+        Framebuffer::within(&options.work, options.width, options.height)?
     };
     let occlusion = options.ambient_occlusion.is_some();
-    if options.depth || occlusion {
-        ready = ready.with_depth();
-    }
-    if options.item {
-        ready = ready.with_items();
-    }
-    if options.normal || occlusion {
-        ready = ready.with_normals();
-    }
+    let RenderOptions { work, depth, item, normal, .. } = options;
+    ready.add_planes(work, *depth || occlusion, *item, *normal || occlusion)?;
     *framebuffer = ready;
+    Ok(())
 }
 
 /// One method's picture beside the z-buffer's.
@@ -403,7 +404,7 @@ fn from_screen_triangles(
     let start = std::time::Instant::now();
     let sample_reach = options.algorithm.sample_reach();
     let filter = Filter { cull: options.cull, sample_reach, marks: options.marks };
-    let input = SurfaceInput::new(scene, view, filter)?;
+    let input = SurfaceInput::within(&options.work, scene, view, filter)?;
     let geometry_seconds = start.elapsed().as_secs_f64();
     let start = std::time::Instant::now();
     let method_options = method::Options {
@@ -423,14 +424,15 @@ fn from_screen_triangles(
 
 /// Interpolating shadings need normals at the vertices: the scene with those that are missing, where
 /// such a shading is asked for and some are.
-fn with_needed_normals(scene: &Scene, shading: Option<Shading>) -> Option<Scene> {
-    let interpolates = matches!(shading, Some(Shading::Gouraud | Shading::Phong));
+fn with_needed_normals(scene: &Scene, options: &RenderOptions) -> Result<Option<Scene>> {
+    let interpolates = matches!(options.shading, Some(Shading::Gouraud | Shading::Phong));
     if !interpolates || scene.meshes.iter().all(|m| !m.normals.is_empty()) {
-        return None;
+        return Ok(None);
     }
     let mut scene = scene.clone();
     for mesh in &mut scene.meshes {
+        options.work.check()?;
         *mesh = mesh.with_smooth_normals();
     }
-    Some(scene)
+    Ok(Some(scene))
 }

@@ -46,7 +46,7 @@ pub fn read(
     messages: &Messages,
 ) -> Result<Cells, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let (_, mut reader) = open(path, None, None)?;
+    let (_, mut reader) = open(path, None, None, &args.running.work)?;
     let (mut cells, mut number, mut repaired, mut without) = (Vec::new(), 0u64, 0u64, 0u64);
     while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
         number += 1;

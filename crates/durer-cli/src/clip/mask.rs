@@ -107,7 +107,7 @@ pub fn read(
     messages: &Messages,
 ) -> std::result::Result<Mask, Failure> {
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
-    let (from, mut reader) = open(path, None, None)?;
+    let (from, mut reader) = open(path, None, None, &args.running.work)?;
     let (mut all, mut rings, mut repaired) = (Area::default(), false, false);
     while let Some(feature) = reader.next_feature().map_err(|e| fail(words(&e)))? {
         if let Some(geometry) = &feature.geometry {

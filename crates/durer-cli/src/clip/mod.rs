@@ -59,7 +59,8 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         .as_ref()
         .map(|path| cells::read(path, args, &mut mask_srids, &messages))
         .transpose()?;
-    let (from, mut reader) = crate::layer::open(&args.input, args.from, args.layer.as_deref())?;
+    let (from, mut reader) =
+        crate::layer::open(&args.input, args.from, args.layer.as_deref(), &args.running.work)?;
     let to = output_format(args, from)?;
     let shift = Shift::new(&args.systems, &reader.system());
     let fields = Fields::new(&args.fields);

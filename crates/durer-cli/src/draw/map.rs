@@ -138,6 +138,7 @@ impl Job<'_> {
         let mut reader = reader.map_err(fail)?;
         let mut features = Vec::new();
         while let Some(feature) = reader.next_feature().map_err(fail)? {
+            crate::layer::keep(&feature, &self.args.running.work).map_err(|e| fail(e.into()))?;
             features.push(feature);
         }
         self.warn(&name, reader.warnings());

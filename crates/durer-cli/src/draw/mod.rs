@@ -29,8 +29,8 @@ use durer::math::DVec2;
 use durer::raster::paint::{Canvas, Options};
 use durer::target::Pixels;
 use durer::view::window::{PixelRect, Viewport};
-use durer_formats::Warning;
 use durer_formats::geo::GeoFormat;
+use durer_formats::{Limits, Warning};
 use layers::Layer;
 use report::{LayerReport, Report};
 use std::io::Read;
@@ -129,8 +129,13 @@ impl Job<'_> {
         };
         drop(given);
         self.messages.progress.stage(|| "painting".to_owned());
-        let mut picture = Pixels::new(canvas.width(), canvas.height(), [0; 4]);
-        canvas.render(&mut picture).map_err(|e| Failure::Data(e.to_string()))?;
+        let work = &self.args.running.work;
+        let name = args.layers.0.first().map_or(String::new(), |l| display_name(&l.input));
+        let fail = |e: durer::Error| Failure::of_library(&e).named(&name);
+        let stage = (work, "planes of the picture");
+        let picture = Pixels::within(stage, canvas.width(), canvas.height(), [0; 4]);
+        let mut picture = picture.map_err(fail)?;
+        canvas.render(&mut picture).map_err(fail)?;
         self.report.draw_seconds = start.elapsed().as_secs_f64() - self.report.read_seconds;
         (self.report.width, self.report.height) = (picture.width(), picture.height());
         Ok(picture)
@@ -140,7 +145,8 @@ impl Job<'_> {
         let name = display_name(&layer.input);
         self.messages.progress.stage(|| format!("reading {name}"));
         let start = Instant::now();
-        let bytes = unzipped(input::bytes(&layer.input, self.args.max_bytes)?, self.args.max_bytes);
+        let limits = self.limits();
+        let bytes = unzipped(input::bytes_within(&layer.input, &limits)?, self.args.max_bytes);
         let bytes = bytes.map_err(|e| Failure::Data(format!("{name}: {e}")))?;
         self.report.read_seconds += start.elapsed().as_secs_f64();
         let svg = GeoFormat::of_content(&bytes) == Some(GeoFormat::Svg);
@@ -154,6 +160,12 @@ impl Job<'_> {
         let (input, map) = (name, None);
         self.report.layers.push(LayerReport { input, format: format.name(), map });
         Ok(Given { layer, format, bytes })
+    }
+
+    /// What is read is bounded by.
+    fn limits(&self) -> Limits {
+        let work = self.args.running.work.clone();
+        Limits { decoded_bytes: self.args.max_bytes, work, ..Limits::default() }
     }
 
     /// An empty canvas.
@@ -172,6 +184,7 @@ impl Job<'_> {
         let canvas = Canvas::new(width, height, options);
         let mut canvas =
             canvas.map_err(|e| Failure::Usage(format!("the size {width}x{height}: {e}")))?;
+        canvas.set_work(&self.args.running.work);
         canvas.clear(picture.background.unwrap_or(background));
         Ok(canvas)
     }

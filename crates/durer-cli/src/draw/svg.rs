@@ -9,8 +9,8 @@ use durer::math::{DAffine2, DVec2, Rect};
 use durer::raster::coverage::FillRule;
 use durer::raster::paint::Canvas;
 use durer::view::window::{Aspect, Window, WindowToViewport, YAxis};
+use durer_formats::NoResources;
 use durer_formats::svg::{Drawing, ReadOptions};
-use durer_formats::{Limits, NoResources};
 use std::time::Instant;
 
 impl Job<'_> {
@@ -25,7 +25,7 @@ impl Job<'_> {
         let start = Instant::now();
         let fonts = fonts::load(&self.args.fonts)?;
         let folder = Folder::of(&given.layer.input).ok().filter(|_| has_folder(given.layer));
-        let limits = Limits { decoded_bytes: self.args.max_bytes, ..Limits::default() };
+        let limits = self.limits();
         let mut options = ReadOptions { fonts: &fonts, resources: &NoResources, limits };
         if let Some(folder) = &folder {
             options.resources = folder;

@@ -469,6 +469,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
     let all = geojson || drawing.stubs == Some(0.0);
     let default = hidden_line::Options::default();
     DrawOptions {
+        work: args.running.work.clone(),
         style,
         camera,
         aspect: aspect(args),
@@ -636,7 +637,7 @@ fn told_scale(args: &RenderArgs, kind: Kind, subject: &Subject, laid: &LaidOut) 
 
 /// Options that the library refuses.
 fn usage(e: durer::Error) -> Failure {
-    Failure::Usage(e.to_string())
+    Failure::of_library(&e)
 }
 
 fn paper_options(

@@ -5,6 +5,7 @@ use crate::clip::is_valid;
 use crate::failure::Failure;
 use crate::input::display_name;
 use durer::math::Rect;
+use durer::work::Work;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Dimensions, Feature, FieldKind, GeoFormat, Schema, System};
 use serde::Serialize;
@@ -95,15 +96,15 @@ impl Counts {
 }
 
 /// Reads a file and tells what is in it, of each layer.
-pub fn of_layers(path: &Path) -> Result<Vec<LayerInfo>, Failure> {
-    let (format, reader) = open(path, None, None)?;
+pub fn of_layers(path: &Path, work: &Work) -> Result<Vec<LayerInfo>, Failure> {
+    let (format, reader) = open(path, None, None, work)?;
     let names = reader.layers();
     if names.len() < 2 {
         return Ok(vec![of_layer(path, format, reader, None)?]);
     }
     let mut infos = Vec::new();
     for name in names {
-        let (format, one) = open(path, Some(format), Some(&name))?;
+        let (format, one) = open(path, Some(format), Some(&name), work)?;
         infos.push(of_layer(path, format, one, Some(name))?);
     }
     // What is no layer is told with the first one.

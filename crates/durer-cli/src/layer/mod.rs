@@ -5,6 +5,7 @@ mod info;
 mod out;
 mod sink;
 mod systems;
+mod watched;
 
 pub use fields::{FieldArgs, Fields};
 pub use info::{LayerInfo, of_layers};
@@ -14,10 +15,13 @@ pub use systems::{Shift, SystemArgs};
 
 use crate::failure::{Failure, in_words};
 use crate::input::{self, display_name, is_stream};
-use durer_formats::geo::{Beside, GeoFormat, Reader, unzipped};
+use crate::watch;
+use durer::work::Work;
+use durer_formats::geo::{Beside, Feature, GeoFormat, Points, Reader, unzipped};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
+use watched::Watched;
 
 /// Bytes that are looked at to find the format.
 const PROBE: usize = 64 << 10;
@@ -49,12 +53,14 @@ pub fn format_of(path: &Path, head: &[u8]) -> Option<GeoFormat> {
     })
 }
 
-/// Opens a file, or standard input, and finds its format.
+/// Opens a file, or standard input, and finds its format; it can be read as long as the work goes on.
 pub fn open(
     path: &Path,
     format: Option<GeoFormat>,
     layer: Option<&str>,
+    work: &Work,
 ) -> Result<(GeoFormat, Source), Failure> {
+    watch::of_file(display_name(path));
     let fail = |what: String| Failure::Data(format!("{}: {what}", display_name(path)));
     let mut source = bytes(path)?;
     let head = source.fill_buf().map_err(|e| fail(in_words(&e)))?;
@@ -65,7 +71,8 @@ pub fn open(
     // The layouts of GeoJSON are read alike; the suffix tells the one to write to a stream.
     let named = GeoFormat::of_name(&path.to_string_lossy());
     let named = named.filter(|named| named.is_geojson() && format == GeoFormat::GeoJson);
-    let reader = reader(path, format, source, layer);
+    let source = Box::new(Watched::new(source, work, !format.is_geojson()));
+    let reader = reader(path, format, source as Box<dyn BufRead>, layer);
     Ok((named.unwrap_or(format), reader.map_err(|e| fail(words(&e)))?))
 }
 
@@ -79,6 +86,17 @@ pub fn reader<R: std::io::Read>(
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let folder = input::folder(path);
     Reader::with(format, source, &Beside { name: &name, resources: &*folder, layer })
+}
+
+/// Takes the memory of a feature that stays from the budget.
+pub fn keep(feature: &Feature, work: &Work) -> durer::Result<()> {
+    let mut bytes = size_of::<Feature>() + feature.properties.as_ref().map_or(0, String::len);
+    if let Some(geometry) = &feature.geometry {
+        geometry.for_each(&mut |points| {
+            bytes += size_of::<Points>() + points.len() * (16 + 8 * points.dimensions.count());
+        });
+    }
+    work.keep("features", bytes as u64)
 }
 
 /// What an error says, in the command's words.

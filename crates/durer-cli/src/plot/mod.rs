@@ -224,13 +224,14 @@ impl Surface {
         }
         let default = Limits::default();
         let decoded_bytes = args.surface.max_bytes.unwrap_or(default.decoded_bytes);
-        let limits = Limits { decoded_bytes, ..default };
+        let work = args.running.work.clone();
+        let limits = Limits { decoded_bytes, work, ..default };
+        let bytes = input::bytes_within(path, &limits)?;
         let options = HeightMapOptions {
             limits,
             no_data: args.surface.no_data,
             array: args.surface.array.clone(),
         };
-        let bytes = input::bytes(path, decoded_bytes)?;
         let file_name = path.file_name().unwrap_or_default().to_string_lossy();
         let map = height_map::read(&bytes, &file_name, &options)
             .map_err(|e| Failure::Data(format!("{name}: {e}")))?;

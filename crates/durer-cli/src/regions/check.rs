@@ -92,7 +92,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let messages = Messages::new(&args.running, 1);
     let name = display_name(&args.input);
     let fail = |what: String| Failure::Data(format!("{name}: {what}"));
-    let (_, mut reader) = open(&args.input, args.from, None)?;
+    let (_, mut reader) = open(&args.input, args.from, None, &args.running.work)?;
     let version = env!("CARGO_PKG_VERSION");
     let mut report = Report { version, input: name.clone(), ..Report::default() };
     let (mut layer, mut numbers): (Vec<Shapes>, Vec<u64>) = (Vec::new(), Vec::new());

@@ -3,6 +3,7 @@
 use super::{FilesArgs, Job};
 use crate::clip::{Area, MIXED, Rules, joined};
 use crate::failure::Failure;
+use crate::layer;
 use clap::Args;
 use durer_formats::geo::{Feature, Geometry, Member, Points};
 use rayon::prelude::*;
@@ -61,6 +62,7 @@ pub fn run(args: &DissolveArgs) -> Result<(), Failure> {
         let cleaned: Vec<_> = features.par_iter().map(clean).collect();
         for ((_, feature), made) in features.into_iter().zip(cleaned) {
             let made = made.map_err(|(n, e)| job.fail(format!("feature {n}: {e}")))?;
+            layer::keep(&feature, &args.files.running.work).map_err(|e| job.fail(e))?;
             let own = feature.fields();
             missing.retain(|name| !own.iter().any(|field| field.key() == *name));
             let fields: Vec<Member> = args.by.iter().map(|name| value(&own, name)).collect();

@@ -99,7 +99,7 @@ impl<'a> Job<'a> {
             return Err(Failure::Usage(message.to_owned()));
         }
         let messages = Messages::new(&args.running, 1);
-        let (from, reader) = layer::open(&args.input, args.from, None)?;
+        let (from, reader) = layer::open(&args.input, args.from, None, &args.running.work)?;
         let to = named_format(&args.output, args.to, Some(from))?;
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
@@ -126,6 +126,9 @@ impl<'a> Job<'a> {
             self.report.given.add(feature.geometry.as_ref());
             let number = self.report.given.features;
             if self.fields.apply(&mut feature) {
+                if most > BATCH {
+                    layer::keep(&feature, &self.args.running.work).map_err(|e| self.fail(e))?;
+                }
                 features.push((number, feature));
             }
         }

@@ -4,7 +4,7 @@ use super::args::TilesArgs;
 use crate::clip::TileCoordinates;
 use crate::failure::Failure;
 use crate::input::display_name;
-use crate::layer::{Fields, open, words};
+use crate::layer::{Fields, keep, open, words};
 use crate::messages::Messages;
 use crate::output;
 use durer::clip::polygon::Shapes;
@@ -126,7 +126,7 @@ fn read_file(
 ) -> Result<(), Failure> {
     let shown = display_name(path);
     let fail = |e| Failure::Data(format!("{shown}: {}", words(&e)));
-    let (from, mut reader) = open(path, args.from, None)?;
+    let (from, mut reader) = open(path, args.from, None, &args.running.work)?;
     if from == GeoFormat::Svg {
         return Err(Failure::Data(format!("{shown}: an SVG has no places on the earth")));
     }
@@ -137,6 +137,7 @@ fn read_file(
             let Some(mut feature) = reader.next_feature().map_err(fail)? else { break };
             all.read += 1;
             if fields.apply(&mut feature) {
+                keep(&feature, &args.running.work).map_err(|e| fail(e.into()))?;
                 features.push((all.read - before, feature));
             }
         }

@@ -13,6 +13,7 @@ use crate::input::{check_streams, display_name};
 use crate::messages::Messages;
 use durer::clip::tiles::{Options, Pyramid, Tile, mercator};
 use durer::math::{DVec2, Rect};
+use durer::work::Work;
 use durer_formats::tiles::Metadata;
 use layers::Layers;
 use make::Maker;
@@ -84,7 +85,7 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     let mut levels = Vec::new();
     for zoom in args.zoom.clone() {
         messages.progress.stage(|| format!("level {zoom}"));
-        levels.push(level(zoom, &pyramid, &maker, &mut out)?);
+        levels.push(level(zoom, &pyramid, &maker, (&mut out, &args.running.work))?);
     }
     let (tiles, bytes) = levels.iter().fold((0, 0), |(t, b), l| (t + l.tiles, b + l.bytes));
     out.finish(&metadata(args, &all, bounds))?;
@@ -150,7 +151,7 @@ fn level(
     zoom: u8,
     pyramid: &Pyramid,
     maker: &Maker<'_>,
-    out: &mut Out,
+    (out, work): (&mut Out, &Work),
 ) -> Result<LevelReport, Failure> {
     let mut report = LevelReport { zoom, ..LevelReport::default() };
     let done = pyramid.visit(
@@ -164,6 +165,7 @@ fn level(
             if length > report.largest {
                 (report.largest, report.largest_tile) = (length, tile.to_string());
             }
+            work.check()?;
             out.add(tile, &made.bytes).map_err(Stopped::Written)
         },
     );

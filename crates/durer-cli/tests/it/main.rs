@@ -2,6 +2,7 @@
 
 mod algorithms;
 mod annotations;
+mod budget;
 mod clip;
 mod clip_cells;
 mod clip_formats;

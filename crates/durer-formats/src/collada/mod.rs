@@ -43,12 +43,12 @@ pub(crate) fn sniff(head: &[u8]) -> bool {
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let text = xml::utf8(bytes);
     let text = std::str::from_utf8(&text).map_err(|e| Error::whole(e.to_string()))?;
-    let limits = options.limits;
+    let limits = options.limits.clone();
     let document = Document::parse(text, limits.decoded_bytes)?;
     let root = document.root().filter(|&r| document.name(r) == "COLLADA");
     let root = root.ok_or_else(|| Error::whole("the outermost element is not <COLLADA>"))?;
     let mut model = Model { format: format(&document, root), ..Model::default() };
-    let images = Images::new(resources, limits);
+    let images = Images::new(resources, limits.clone());
     let materials = Materials::new(&document, images, &mut model);
     let mut nodes = Nodes::new(&document, materials, limits);
     let (up_axis, world, unit) = frame(&document, root, &mut model);

@@ -55,7 +55,7 @@ impl<'d, 'a> Nodes<'d, 'a> {
         Self {
             document,
             materials,
-            budget: Budget::new(limits),
+            budget: Budget::new(limits.clone()),
             limits,
             faults: Faults::default(),
             geometries: HashMap::new(),

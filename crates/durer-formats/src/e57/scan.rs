@@ -26,7 +26,7 @@ const VALUES: usize = 64;
 /// [`Error::Limit`] for more points than allowed.
 pub fn read(bytes: &[u8], _resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let mut model = Model { format: "E57".to_owned(), ..Model::default() };
-    let mut scans = Scans { limits: options.limits, ..Scans::default() };
+    let mut scans = Scans { limits: options.limits.clone(), ..Scans::default() };
     scans.cloud.full = 1.0;
     // Of broken data the crate may be of another opinion than its authors.
     let all = catch_unwind(AssertUnwindSafe(|| scans.read(bytes, &mut model)));

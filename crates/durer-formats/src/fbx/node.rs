@@ -39,7 +39,7 @@ impl<'s> Nodes<'s> {
     ) -> Self {
         let (read, made, faults) = Default::default();
         let (hidden, coarse) = Default::default();
-        let budget = Budget::new(limits);
+        let budget = Budget::new(limits.clone());
         Self {
             scene,
             frames,

@@ -14,7 +14,7 @@ use ufbx::{AllocatorOpts, ErrorType, IndexErrorHandling, LoadOpts, Scene, SceneR
 /// [`Error::Decode`] where it is broken, [`Error::Limit`] for too much of anything. What is missing or
 /// left out is a warning.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
-    let limits = options.limits;
+    let limits = options.limits.clone();
     let scene = load(bytes, &limits)?;
     let mut model = Model { format: format(&scene), ..Model::default() };
     if scene.metadata.ascii && ends_inside(bytes) {
@@ -25,7 +25,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     model.scene.up_axis = world.up_axis;
     let frames = Frames::of(&scene, world.matrix);
     let pictures = Pictures::new(&scene, resources);
-    let materials = Materials::new(&scene, &pictures, limits);
+    let materials = Materials::new(&scene, &pictures, limits.clone());
     let mut nodes = Nodes::new(&scene, &frames, materials, limits);
     nodes.place(&mut model)?;
     nodes.warn(&mut model);
@@ -40,7 +40,7 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
 
 /// Lets the library read what is in memory, and nothing else.
 fn load(bytes: &[u8], limits: &Limits) -> Result<SceneRoot> {
-    let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
+    let memory = usize::try_from(limits.memory()).unwrap_or(usize::MAX);
     let allocator = || AllocatorOpts {
         allocator: ufbx::Allocator::Libc,
         memory_limit: memory,
@@ -64,7 +64,7 @@ fn error(e: &ufbx::Error, limits: &Limits) -> Error {
     let limit = |what, limit| Error::Limit { place: Place::Whole, what, value: limit + 1, limit };
     match e.type_ {
         ErrorType::MemoryLimit | ErrorType::OutOfMemory => {
-            limit("memory for elements", limits.decoded_bytes)
+            limit("memory for elements", limits.memory())
         }
         ErrorType::NodeDepthLimit => limit("depth of nodes", u64::from(limits.depth)),
         // The library's own words say no more.

@@ -5,6 +5,7 @@ use super::check::missing;
 use super::container::Container;
 use super::json::{BufferView, Root, Whole};
 use super::meshopt;
+use crate::budget::MODEL;
 use crate::{Error, Found, Limits, Place, Resources, Result, Warning, uri};
 use std::cell::Cell;
 
@@ -26,12 +27,13 @@ impl Budget {
     /// The limits with only what is left of the decoded bytes.
     pub fn rest(&self) -> Limits {
         let decoded_bytes = self.limits.decoded_bytes.saturating_sub(self.bytes.get());
-        Limits { decoded_bytes, ..self.limits }
+        Limits { decoded_bytes, ..self.limits.clone() }
     }
 
     /// Takes bytes; called before the memory is.
     pub fn bytes(&self, count: u64, at: &str) -> Result<()> {
-        take(&self.bytes, count, self.limits.decoded_bytes, "decoded size", at)
+        take(&self.bytes, count, self.limits.decoded_bytes, "decoded size", at)?;
+        Ok(self.limits.work.keep(MODEL, count)?)
     }
 
     /// Takes triangles, lines or points.

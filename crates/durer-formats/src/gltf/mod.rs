@@ -120,7 +120,7 @@ fn read_parts(file: &Bytes<'_>, resources: &dyn Resources, options: &ReadOptions
     extension::check(&root, &mut model)?;
     check::references(&root)?;
     let tree = node::Tree::of(&root, options.limits.instances)?;
-    let budget = Budget::new(options.limits);
+    let budget = Budget::new(options.limits.clone());
     let source = Source::load(&root, &container, resources, &budget, &mut model.warnings)?;
     model.animations = animation::names(&root);
     model.variants = variant::names(&root);

@@ -14,7 +14,7 @@ pub(crate) fn add_pictures(
     resources: &dyn Resources,
     options: &ReadOptions,
 ) -> bool {
-    let mut images = Images::new(resources, options.limits);
+    let mut images = Images::new(resources, options.limits.clone());
     // A picture alone says nothing that would be told.
     let (mut notes, mut any) = (Notes::default(), false);
     for name in names {

@@ -1,5 +1,6 @@
 //! How much an OBJ file holds: counted before anything is allocated for it.
 
+use crate::budget::MODEL;
 use crate::{Error, Limits, Place, Result};
 
 /// Numbers of statements and of what they make.
@@ -71,7 +72,14 @@ impl Counts {
                 return Err(Error::Limit { place: Place::Whole, what, value, limit });
             }
         }
-        Ok(())
+        Ok(limits.work.keep(MODEL, self.bytes())?)
+    }
+
+    /// About what the numbers take, and the meshes that are made of them.
+    fn bytes(&self) -> u64 {
+        let numbers = 3 * (self.positions + self.normals) + 2 * self.tex_coords;
+        let corners = 3 * self.triangles + 2 * self.lines + self.points;
+        16 * numbers as u64 + 16 * corners as u64
     }
 }
 

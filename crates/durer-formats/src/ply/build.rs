@@ -6,6 +6,7 @@ use super::header::{Element, Header, Type};
 use super::names::{Plan, Role, Use};
 use super::row_color::RowColor;
 use super::vertices::Vertices;
+use crate::budget::MODEL;
 use crate::facets::Palette;
 use crate::obj::corners::{Corner, Corners, NONE};
 use crate::text::Tally;
@@ -141,6 +142,7 @@ impl Builder {
             return Err(Error::Limit { place: Place::Whole, what, value: count, limit });
         }
         let rows = count as usize;
+        self.bounds.limits.work.keep(MODEL, count.saturating_mul(plan.bytes()))?;
         match plan.role {
             Role::Vertex => self.vertices.begin(&plan, rows)?,
             Role::Face | Role::Strip => self.faces.begin(&plan, rows),

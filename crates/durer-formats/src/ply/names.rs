@@ -80,6 +80,21 @@ impl Plan {
         Self { role, steps, colored, name: element.name.clone() }
     }
 
+    /// About what a row takes that is kept, bytes.
+    pub fn bytes(&self) -> u64 {
+        // Wide numbers become narrow ones beside them.
+        let of_step = |step: &Step| match step.kind {
+            Type::F64 | Type::I64 | Type::U64 => 12,
+            _ => 4,
+        };
+        match self.role {
+            Role::Vertex => self.steps.iter().map(of_step).sum(),
+            Role::Face | Role::Strip => 16,
+            Role::Edge => 8,
+            Role::Quiet | Role::Other => 0,
+        }
+    }
+
     /// Whether some property is used so.
     pub fn has(&self, usage: Use) -> bool {
         self.steps.iter().any(|s| s.usage == usage)

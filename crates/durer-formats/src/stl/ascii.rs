@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub(super) fn read(text: &[u8], limits: &Limits) -> Result<Model> {
     let mut model = Model { format: "STL, ascii".to_owned(), ..Model::default() };
     let mut cursor = Cursor::new(text);
-    let mut ascii = Ascii { text, limits: *limits, ..Ascii::default() };
+    let mut ascii = Ascii { text, limits: limits.clone(), ..Ascii::default() };
     while !cursor.at_end() {
         ascii.line(&mut cursor)?;
         cursor.next_line();

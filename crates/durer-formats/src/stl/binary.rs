@@ -2,6 +2,7 @@
 
 use super::palette::Palette;
 use super::{HEADER, RECORD, add, check_limit, count_in_header, finished};
+use crate::budget::MODEL;
 use crate::model::count_infinite;
 use crate::{Error, Limits, Model, Place, ReadOptions, Result};
 use durer::math::{DVec3, Vec3};
@@ -25,6 +26,7 @@ pub fn read_binary_stream(
 ) -> Result<Model> {
     let mut left = count_in_header(head).unwrap_or(0) as usize;
     check_limit(left as u64, &options.limits)?;
+    keep(left, &options.limits)?;
     let mut facets = Facets::new(head, left);
     let mut buffer = vec![0; left.min(AT_ONCE) * RECORD];
     while left > 0 {
@@ -35,6 +37,11 @@ pub fn read_binary_stream(
         left -= count;
     }
     facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() })
+}
+
+/// Takes the memory for so many triangles from the budget: their corners, some shared, and numbers of them.
+fn keep(triangles: usize, limits: &Limits) -> Result<()> {
+    Ok(limits.work.keep(MODEL, triangles as u64 * 48)?)
 }
 
 /// Reads all bytes of a file.
@@ -52,6 +59,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Model> {
     };
     let records = records(&mut model, data, count)?;
     check_limit(records.len() as u64, limits)?;
+    keep(records.len(), limits)?;
     let mut facets = Facets::new(bytes, records.len());
     records.chunks(AT_ONCE).for_each(|some| facets.add(some));
     facets.into_model(model)

@@ -210,6 +210,7 @@ impl<'a> Painter<'a> {
     fn pattern(&mut self, pattern: &usvg::Pattern, map: DAffine2) -> Option<Paint> {
         let tile = paint::Tile::new(pattern, map)?;
         let mut canvas = Canvas::new(tile.width, tile.height, *self.canvas.options()).ok()?;
+        canvas.set_work(self.canvas.work());
         let mut painter = Painter::new(&mut canvas, self.limits);
         painter.depth = self.depth;
         painter.bytes_left = self.bytes_left;
@@ -233,7 +234,7 @@ impl<'a> Painter<'a> {
             self.deeper(|this| this.tree(tree, map));
             return self.canvas.pop(1.0);
         }
-        let limits = Limits { decoded_bytes: self.bytes_left, ..*self.limits };
+        let limits = Limits { decoded_bytes: self.bytes_left, ..self.limits.clone() };
         match image::paint(node, map, &limits) {
             Ok((paint, frame, bytes)) => {
                 self.bytes_left = self.bytes_left.saturating_sub(bytes);

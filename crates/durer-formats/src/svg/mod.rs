@@ -72,7 +72,7 @@ const NOT_DRAWN: [&str; 12] = [
 ];
 
 /// How a drawing is read.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct ReadOptions<'a> {
     /// The fonts for text; without any, text is left out.
     pub fonts: &'a Fonts,
@@ -139,7 +139,7 @@ impl Drawing {
         warnings.extend(fonts::missing_letters(&tree, letters).map(warning));
         let at = document.text_pos_at(document.root_element().range().start);
         let place = Place::Line(at.row.into(), at.col.into());
-        Ok(Self { tree, place, limits: options.limits, warnings })
+        Ok(Self { tree, place, limits: options.limits.clone(), warnings })
     }
 
     /// Where in the document the `svg` element stands that gives the drawing its size.

@@ -25,7 +25,7 @@ pub(super) struct Picture {
 
 /// Where pictures come from: the list of those of the drawing.
 pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
-    let options = *options;
+    let options = options.clone();
     ImageHrefResolver {
         resolve_data: Box::new(|_, _, _| None),
         resolve_string: Box::new(move |key, usvg_options| {
@@ -61,7 +61,7 @@ fn kind(
     told: &Told,
 ) -> std::result::Result<ImageKind, String> {
     let bytes = bytes(picture, options, told)?;
-    let limits = Limits { decoded_bytes: told.bytes_left(), ..options.limits };
+    let limits = Limits { decoded_bytes: told.bytes_left(), ..options.limits.clone() };
     match bytes.as_slice() {
         // A text, perhaps with a mark or in two bytes a letter, or compressed.
         [b'<' | b' ' | b'\n' | b'\r' | b'\t', ..]

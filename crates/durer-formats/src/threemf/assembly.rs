@@ -313,7 +313,7 @@ impl<'a, 'b> Assembly<'a, 'b> {
 
     fn decode(&mut self, path: &str) -> std::result::Result<Image, String> {
         let bytes = self.package.read(path).map_err(|e| e.to_string())?;
-        let limits = Limits { decoded_bytes: self.package.left(), ..self.limits };
+        let limits = Limits { decoded_bytes: self.package.left(), ..self.limits.clone() };
         let image = image::decode(&bytes, path, &limits).map_err(|e| e.to_string())?;
         self.package.charge(4 * image.data.len() as u64);
         Ok(image)

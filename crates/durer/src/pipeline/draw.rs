@@ -10,6 +10,7 @@ use crate::view::View;
 use crate::visibility::line::{ClassSet, hidden_line, wireframe};
 use crate::visibility::region::{self, Fill, Merge, hatch};
 use crate::visibility::surface::Cull;
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
 /// What a drawing shows.
@@ -91,6 +92,8 @@ pub struct DrawOptions {
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): their
     /// regions are told apart and get the hatching of sections.
     pub cap_material: Option<usize>,
+    /// What it may cost, and whether it goes on; for its lines this counts, not that of [`Self::lines`].
+    pub work: Work,
 }
 
 impl DrawOptions {
@@ -107,6 +110,7 @@ impl DrawOptions {
             merge: Merge::Shade,
             trapped: false,
             cap_material: None,
+            work: Work::default(),
         }
     }
 }
@@ -129,6 +133,7 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
         return Err(Error::parameter("aspect", options.aspect, "between 1/1000 and 1000"));
     }
     scene.check()?;
+    options.work.check()?;
     let columns = (ROWS * options.aspect).round().max(1.0) as u32;
     let view = View::new(options.camera, columns, ROWS as u32)?;
     let mut drawing = match options.style {
@@ -139,7 +144,8 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
     };
     if options.style != DrawStyle::Regions {
         let cap_material = options.lines.cap_material.or(options.cap_material);
-        let how = hidden_line::Options { cap_material, ..options.lines };
+        let work = options.work.clone();
+        let how = hidden_line::Options { cap_material, work, ..options.lines.clone() };
         let lines = hidden_line::draw(scene, &view, &how, &mut NoTrace)?;
         drawing.window = lines.window;
         drawing.lines.extend(lines.lines);
@@ -149,9 +155,20 @@ pub fn draw(scene: &Scene, options: &DrawOptions) -> Result<Drawing> {
 }
 
 fn all_edges(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
+    let _faces = faces(scene, options)?;
     let hidden_line::Options { tolerance, weld, .. } = options.lines;
     let how = wireframe::Options { tolerance, weld };
-    wireframe::draw(scene, view, &how, &mut NoTrace)
+    let drawing = wireframe::draw(scene, view, &how, &mut NoTrace)?;
+    options.work.check().map(|()| drawing)
+}
+
+/// Bytes that faces and their edges take for each triangle, about.
+const PER_TRIANGLE: u64 = 128;
+
+/// Takes the memory for the faces of a scene from the budget.
+fn faces(scene: &Scene, options: &DrawOptions) -> Result<Charge> {
+    let bytes = scene.triangle_count().saturating_mul(PER_TRIANGLE);
+    options.work.charge("faces of the drawing", bytes)
 }
 
 /// What of a section's caps can be seen, to be filled or hatched among lines.
@@ -161,11 +178,12 @@ fn caps(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
 }
 
 fn regions(scene: &Scene, view: &View, options: &DrawOptions) -> Result<Drawing> {
+    let _faces = faces(scene, options)?;
     let lights = lights(scene, options);
     let mut drawing = region::draw(scene, view, &lights, &region_options(options))?;
     // Fills show where shadows end; their outlines are drawn where they are asked for.
     drawing.lines.retain(|l| options.lines.classes.contains(l.class));
-    Ok(drawing)
+    options.work.check().map(|()| drawing)
 }
 
 fn lights(scene: &Scene, options: &DrawOptions) -> PreparedLights {

@@ -41,7 +41,8 @@ pub fn draw_edges(
     let size = DVec2::new(f64::from(options.width), f64::from(options.height));
     let lines = hidden_line::Options { hidden: false, stubs: STUBS, ..Default::default() };
     let aspect = (size.x / size.y).clamp(1e-3, 1e3);
-    let options = DrawOptions { aspect, lines, ..DrawOptions::new(options.camera) };
+    let work = options.work.clone();
+    let options = DrawOptions { aspect, lines, work, ..DrawOptions::new(options.camera) };
     let drawing = draw(scene, &options)?;
     let Some(window) = drawing.window else { return Ok(()) };
     let to_pixels = |p: DVec2| {

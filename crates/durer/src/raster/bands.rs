@@ -66,6 +66,14 @@ impl<E> Edges<E> {
         Self::from_list(list, first, rows)
     }
 
+    /// What those take that are in no list, bytes.
+    pub fn bytes(&self) -> u64 {
+        let Self::Many(chunks) = self else { return 0 };
+        let index = |index: &BandIndex| 8 * index.stretches.len() + 4 * index.starts.len();
+        let of = |c: &Chunk<E>| c.edges.capacity() * size_of::<E>() + index(&c.index);
+        chunks.iter().map(of).sum::<usize>() as u64
+    }
+
     /// The edges of the band at row `top` in the order of the path, perhaps with others too.
     #[inline(always)]
     pub fn of_band<'a>(&'a self, list: &'a [E], top: i32) -> impl Iterator<Item = &'a [E]> {

@@ -1,5 +1,6 @@
 //! Planes of pixels: colour, depth, item, normal, stencil, colour index.
 
+use crate::work::{Charge, Work};
 use crate::{Error, Result};
 
 /// Which row of a picture comes first in memory.
@@ -21,12 +22,31 @@ pub struct Pixels<T> {
     width: u32,
     height: u32,
     data: Vec<T>,
+    /// What the values take of a budget.
+    charge: Charge,
 }
 
 impl<T: Copy> Pixels<T> {
     /// A plane filled with one value. Zero-size planes are allowed and empty.
     pub fn new(width: u32, height: u32, value: T) -> Self {
-        Self { width, height, data: vec![value; width as usize * height as usize] }
+        let data = vec![value; width as usize * height as usize];
+        Self { width, height, data, charge: Charge::default() }
+    }
+
+    /// A plane filled with one value, which takes its memory from a budget and gives it back when it is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] where the budget has not so much left, [`Error::OutOfMemory`] where the system has not.
+    pub fn within(
+        (work, stage): (&Work, &'static str),
+        width: u32,
+        height: u32,
+        value: T,
+    ) -> Result<Self> {
+        let count = u64::from(width) * u64::from(height);
+        let charge = work.charge_for::<T>(stage, count)?;
+        work.room_for::<T>(stage, count)?;
+        Ok(Self { charge, ..Self::new(width, height, value) })
     }
 
     /// A plane from rows laid one after the other.
@@ -35,7 +55,7 @@ impl<T: Copy> Pixels<T> {
     /// [`Error::Parameter`] unless `data.len() == width · height`.
     pub fn from_data(width: u32, height: u32, data: Vec<T>) -> Result<Self> {
         if data.len() as u64 == u64::from(width) * u64::from(height) {
-            Ok(Self { width, height, data })
+            Ok(Self { width, height, data, charge: Charge::default() })
         } else {
             Err(Error::parameter("data length", data.len(), "width × height"))
         }
@@ -126,6 +146,9 @@ pub struct Framebuffer {
     pub index: Option<Pixels<u8>>,
 }
 
+/// What planes are called in errors about memory.
+const PLANES: &str = "planes of the picture";
+
 impl Framebuffer {
     /// A framebuffer with a colour plane only, transparent black.
     pub fn new(width: u32, height: u32) -> Self {
@@ -138,6 +161,33 @@ impl Framebuffer {
             stencil: None,
             index: None,
         }
+    }
+
+    /// A framebuffer as [`Self::new`] makes it, within a budget.
+    ///
+    /// # Errors
+    /// As [`Pixels::within`].
+    pub fn within(work: &Work, width: u32, height: u32) -> Result<Self> {
+        let color = Pixels::within((work, PLANES), width, height, [0; 4])?;
+        Ok(Self { color, ..Self::new(0, 0) })
+    }
+
+    /// Gives the framebuffer the planes that are asked for, cleared as new, within a budget.
+    ///
+    /// # Errors
+    /// As [`Pixels::within`].
+    pub fn add_planes(&mut self, work: &Work, depth: bool, item: bool, normal: bool) -> Result<()> {
+        let (of, width, height) = ((work, PLANES), self.width(), self.height());
+        if depth {
+            self.depth = Some(Pixels::within(of, width, height, 1.0)?);
+        }
+        if item {
+            self.item = Some(Pixels::within(of, width, height, NO_ITEM)?);
+        }
+        if normal {
+            self.normal = Some(Pixels::within(of, width, height, [0.0; 3])?);
+        }
+        Ok(())
     }
 
     /// Width in pixels.

@@ -20,6 +20,7 @@ use crate::scene::Camera;
 use crate::target::{Framebuffer, Pixels};
 use crate::trace::Tracer;
 use crate::view::View;
+use crate::work::Work;
 use crate::{Error, Result};
 
 /// The facts.
@@ -54,16 +55,18 @@ pub struct Source<'a> {
 }
 
 /// How holes look.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     /// The colour of pixels that no picture shows.
     pub hole: [u8; 4],
+    /// What it may cost, and whether it goes on.
+    pub work: Work,
 }
 
 impl Default for Options {
     /// Magenta, which marks them.
     fn default() -> Self {
-        Self { hole: [255, 0, 255, 255] }
+        Self { hole: [255, 0, 255, 255], work: Work::default() }
     }
 }
 
@@ -119,12 +122,18 @@ pub fn warp(
     t: &mut impl Tracer<Step>,
 ) -> Result<Warped> {
     let view = View::new(*camera, width, height)?;
-    let mut framebuffer = Framebuffer::new(width, height).with_depth();
+    let work = &options.work;
+    let mut framebuffer = Framebuffer::within(work, width, height)?;
+    framebuffer.add_planes(work, true, false, false)?;
     framebuffer.color.data_mut().fill(options.hole);
-    let mut chosen = Pixels::new(width, height, HOLE);
+    let mut chosen = Pixels::within((work, STAGE), width, height, HOLE)?;
+    let pixels = u64::from(width) * u64::from(height);
+    let layer = pixels.saturating_mul(2 * size_of::<Option<(f64, [u8; 4])>>() as u64);
+    let _layers = work.charge(STAGE, layer.saturating_mul(sources.len() as u64))?;
+    work.room_for::<u8>(STAGE, layer)?;
     let layers: Vec<Layer> = (0..)
         .zip(sources)
-        .map(|(index, source)| Layer::of(index, source, &view, t))
+        .map(|(index, source)| Layer::of(index, source, (&view, work), t))
         .collect::<Result<_>>()?;
     let surfaces = layers.iter().map(|layer| &layer.nearest);
     let nothing = layers.iter().map(|layer| &layer.nothing);
@@ -142,6 +151,9 @@ pub fn warp(
     Ok(Warped { framebuffer, source: chosen, holes })
 }
 
+/// What the buffers are called in errors about memory.
+const STAGE: &str = "places of moved pixels";
+
 /// What one picture shows in the new view.
 struct Layer {
     width: u32,
@@ -154,7 +166,12 @@ struct Layer {
 
 impl Layer {
     /// Moves all pixels of one source into the new view.
-    fn of(index: u32, source: &Source<'_>, view: &View, t: &mut impl Tracer<Step>) -> Result<Self> {
+    fn of(
+        index: u32,
+        source: &Source<'_>,
+        (view, work): (&View, &Work),
+        t: &mut impl Tracer<Step>,
+    ) -> Result<Self> {
         let (width, height) = (view.width(), view.height());
         let none = vec![None; width as usize * height as usize];
         let mut layer = Self { width, height, nearest: none.clone(), nothing: none };
@@ -170,7 +187,8 @@ impl Layer {
         }
         let endless = endless(&old, view);
         let colors = unmixed::unmixed(source);
-        for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+        let rows = (0..h).take_while(|_| !work.is_stopped());
+        for (x, y) in rows.flat_map(|y| (0..w).map(move |x| (x, y))) {
             let depth = f64::from(source.depth.get(x, y).unwrap_or(1.0));
             let Some(color) = colors.get(x, y).filter(|_| (0.0..=1.0).contains(&depth)) else {
                 continue;
@@ -191,7 +209,7 @@ impl Layer {
                 layer.splat(&corners, color, is_nothing, t);
             }
         }
-        Ok(layer)
+        work.check().map(|()| layer)
     }
 
     /// Lights the pixels whose centres lie in a square, where it is nearer than what is there.

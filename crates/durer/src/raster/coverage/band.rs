@@ -46,6 +46,11 @@ impl PathEdges {
         Self { edges, rows, columns, convex, whole }
     }
 
+    /// What the edges take that are in no list, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.edges.bytes()
+    }
+
     /// Whether the path touches no row of the band that starts at row `top`.
     pub fn misses(&self, top: i32) -> bool {
         self.rows.0 >= top + BAND_ROWS || self.rows.1 <= top

@@ -30,6 +30,9 @@ pub(super) fn render<'a, P: Space>(
     let by_band = sort_into_bands(commands, &canvas.lines, target.height(), BAND_ROWS);
     let rows_per_band = width * BAND_ROWS as usize;
     let paint = |painter: &mut Option<Painter<'a, P>>, (band, rows): (usize, &mut [Color])| {
+        if canvas.work.is_stopped() {
+            return;
+        }
         let painter = painter.get_or_insert_with(|| Painter::new(canvas));
         let todo = Todo { items: &by_band[band], commands, lines: &canvas.lines };
         painter.band(level, &todo, band as i32 * BAND_ROWS, rows);

@@ -25,6 +25,7 @@ use crate::math::{DAffine2, DVec2};
 use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::trace::NoTrace;
+use crate::work::Work;
 use crate::{Error, Result};
 use color::{Linear, Space, Srgb};
 use command::{Brush, Command, Line, Open, Prepared};
@@ -113,7 +114,19 @@ pub struct Canvas {
     lists: Lists,
     /// Buffers that threads have painted with, for the next picture.
     fillers: Mutex<Vec<Filler>>,
+    /// What holds the memory of what is noted, and may stop it.
+    work: Work,
+    /// Bytes of edges that commands have for themselves.
+    own_edges: u64,
+    /// Bytes that are charged.
+    charged: u64,
 }
+
+/// So many bytes are noted between two charges.
+const CHARGE: u64 = 1 << 18;
+
+/// What is noted is called so in errors about memory.
+const NOTED: &str = "outlines of what is painted";
 
 impl Canvas {
     /// An empty list for targets of `width` × `height` pixels.
@@ -138,7 +151,23 @@ impl Canvas {
             anti_alias,
             lists,
             fillers,
+            work: Work::default(),
+            own_edges: 0,
+            charged: 0,
         })
+    }
+
+    /// Takes the memory for what is noted from a budget. Where that has too little left, nothing more is noted and
+    /// [`Self::render`] says so, and likewise where the work is stopped.
+    pub fn set_work(&mut self, work: &Work) {
+        self.work = work.part();
+        self.work.enter(NOTED);
+        self.charged = 0;
+    }
+
+    /// The work that it is a part of.
+    pub fn work(&self) -> &Work {
+        &self.work
     }
 
     /// Width of the target in pixels.
@@ -174,6 +203,19 @@ impl Canvas {
         self.lines.clear();
         self.open.clear();
         self.lists.clear();
+        self.own_edges = 0;
+        let work = self.work.part();
+        self.set_work(&work);
+    }
+
+    /// Charges what has been noted since the last time, where it is much.
+    fn charge(&mut self) {
+        let commands = self.commands.capacity() * size_of::<Command>();
+        let lines = self.lines.capacity() * size_of::<Line>();
+        let bytes = (commands + lines) as u64 + self.lists.bytes() + self.own_edges;
+        if bytes >= self.charged + CHARGE && self.work.keep_or_stop(NOTED, bytes - self.charged) {
+            self.charged = bytes;
+        }
     }
 
     /// Sets the map from the space of paths and paints to pixels, for what follows.
@@ -203,6 +245,7 @@ impl Canvas {
         opacity: f64,
     ) -> Result<()> {
         wide::check(stroke)?;
+        self.work.check()?;
         if let Some(line) = self.line(path, stroke, paint, opacity) {
             self.push_line(line);
             return Ok(());
@@ -234,7 +277,11 @@ impl Canvas {
             Some(Command::Lines { last, .. }) => *last = at + 1,
             _ => self.commands.push(Command::Lines { first: at, last: at + 1 }),
         }
+        let grows = self.lines.len() == self.lines.capacity();
         self.lines.push(line);
+        if grows {
+            self.charge();
+        }
     }
 
     /// Fills contours that are already straight and in pixels; the paint still follows the transform.
@@ -256,6 +303,9 @@ impl Canvas {
         paint: &Paint,
         opacity: f64,
     ) {
+        if self.work.is_stopped() {
+            return;
+        }
         let outline = self.outline(contours);
         if outline.rows().0 < outline.rows().1 {
             let brush = Brush::new(paint, self.transform, opacity);
@@ -264,7 +314,11 @@ impl Canvas {
     }
 
     fn outline(&mut self, contours: &Contours) -> Outline {
-        Outline::new(contours, (self.width, self.height), self.anti_alias, &mut self.lists)
+        let size = (self.width, self.height);
+        let outline = Outline::new(contours, size, self.anti_alias, &mut self.lists);
+        self.own_edges += outline.bytes();
+        self.charge();
+        outline
     }
 
     /// Restricts what follows to the inside of a path, within the clip paths already in force.
@@ -339,7 +393,8 @@ impl Canvas {
     /// fully opaque.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where the target has another size than the canvas.
+    /// [`Error::Parameter`] where the target has another size than the canvas; what stopped its work, where something
+    /// did: the target is of no use then.
     pub fn render(&self, target: &mut Pixels<Color>) -> Result<()> {
         self.render_at(default_level(), target)
     }
@@ -349,11 +404,13 @@ impl Canvas {
             let size = format!("{}x{}", target.width(), target.height());
             return Err(Error::parameter("target size", size, "the size of the canvas"));
         }
+        self.work.check()?;
+        self.work.enter("painting");
         match self.options.blending {
             Blending::Srgb => bands::render::<Srgb>(level, self, &self.prepared(), target),
             Blending::Linear => bands::render::<Linear>(level, self, &self.prepared(), target),
         }
-        Ok(())
+        self.work.check()
     }
 
     /// Buffers used before, or new ones.

@@ -23,6 +23,12 @@ impl Lists {
         self.smooth.clear();
         self.hard.clear();
     }
+
+    /// What they take, bytes.
+    pub fn bytes(&self) -> u64 {
+        let smooth = self.smooth.capacity() * size_of::<Edge>();
+        (smooth + self.hard.capacity() * size_of::<crossings::Edge>()) as u64
+    }
 }
 
 /// The edges of something filled.
@@ -46,6 +52,14 @@ impl Outline {
             Self::Smooth(PathEdges::new(contours, width, height, &mut lists.smooth))
         } else {
             Self::Hard(CrossingEdges::new(contours, width, height, &mut lists.hard))
+        }
+    }
+
+    /// What it takes besides what is in the lists, bytes.
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::Smooth(path) => path.bytes(),
+            Self::Hard(path) => path.bytes(),
         }
     }
 

@@ -110,6 +110,11 @@ fn add(contours: &Contours, range: Range<usize>, height: i32, list: &mut Vec<Edg
 }
 
 impl CrossingEdges {
+    /// What the edges take that are in no list, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.edges.bytes()
+    }
+
     /// The edges of contours within a target of the given size, at most 32,767 each way; a few are added to the list.
     pub fn new(contours: &Contours, width: u32, height: u32, list: &mut Vec<Edge>) -> Self {
         let (width, height) = (width as i32, height as i32);

@@ -6,6 +6,7 @@ use crate::view::View;
 use crate::visibility::surface::setup::{
     Assembler, Counts, Coverage, Filter, Run, ScreenTriangle, runs,
 };
+use crate::work::Work;
 
 /// The triangles of a scene on the screen, in item order; what each algorithm takes.
 ///
@@ -25,7 +26,12 @@ pub struct SurfaceInput<'a> {
     pub triangles: Vec<ScreenTriangle>,
     /// What became of the scene's triangles.
     pub counts: Counts,
+    /// What holds the memory of the triangles, and may stop whoever works on them.
+    pub work: Work,
 }
+
+/// Primitives that are set up between two looks at what they take.
+const STEP: usize = 1 << 18;
 
 impl<'a> SurfaceInput<'a> {
     /// Transforms, clips and snaps the scene's triangles.
@@ -33,14 +39,35 @@ impl<'a> SurfaceInput<'a> {
     /// # Errors
     /// [`crate::Error::Limit`] where the scene has too many primitives to number.
     pub fn new(scene: &'a Scene, view: &'a View, filter: Filter) -> crate::Result<Self> {
+        Self::within(&Work::default(), scene, view, filter)
+    }
+
+    /// As [`Self::new`], within a budget; methods that work on the triangles stop where it is stopped.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and [`crate::Error::Memory`] where the budget has no room for the triangles.
+    pub fn within(
+        work: &Work,
+        scene: &'a Scene,
+        view: &'a View,
+        filter: Filter,
+    ) -> crate::Result<Self> {
+        let work = work.part();
+        let mut kept = 0;
         let runs = runs(scene)?;
         let mut assembler = Assembler::new(scene, view, filter, default_level());
         let mut triangles = Vec::new();
         for run in &runs {
-            assembler.primitives(run, run.range.clone(), &mut triangles);
+            for start in run.range.clone().step_by(STEP) {
+                let end = start.saturating_add(STEP as u32).min(run.range.end);
+                assembler.primitives(run, start..end, &mut triangles);
+                let bytes = (triangles.capacity() * size_of::<ScreenTriangle>()) as u64;
+                work.keep("triangles on the screen", bytes - kept)?;
+                kept = bytes;
+            }
         }
         let counts = assembler.counts;
-        Ok(Self { scene, view, filter, runs, triangles, counts })
+        Ok(Self { scene, view, filter, runs, triangles, counts, work })
     }
 
     /// The run that a triangle of [`Self::triangles`] belongs to.

@@ -120,10 +120,11 @@ impl Options {
         a_buffer::Options { mask, shading, background, level, ..Default::default() }
     }
 
-    fn z_buffer(&self, filter: Filter) -> z_buffer::Options {
+    fn z_buffer(&self, input: &SurfaceInput<'_>) -> z_buffer::Options {
         let Self { samples, shading, background, level, .. } = *self;
-        let Filter { cull, marks, .. } = filter;
-        z_buffer::Options { samples, cull, marks, shading, background, level }
+        let Filter { cull, marks, .. } = input.filter;
+        let work = input.work.clone();
+        z_buffer::Options { samples, cull, marks, shading, background, level, work }
     }
 }
 
@@ -161,7 +162,7 @@ impl<S, T: Tracer<Step>, F: Fn(S) -> Step> Tracer<S> for Wrapped<'_, T, F> {
 /// The production z-buffer works in parallel and takes no steps.
 ///
 /// # Errors
-/// What the method's own function finds.
+/// What the method's own function finds, and what stopped the input's work.
 pub fn render_with(
     method: SurfaceMethod,
     input: &SurfaceInput<'_>,
@@ -172,7 +173,7 @@ pub fn render_with(
 ) -> crate::Result<()> {
     match method {
         SurfaceMethod::ZBuffer => {
-            let z_options = options.z_buffer(input.filter);
+            let z_options = options.z_buffer(input);
             z_buffer::render(input.scene, input.view, lights, &z_options, framebuffer)?;
         }
         SurfaceMethod::ScanLineZ => {
@@ -201,5 +202,5 @@ pub fn render_with(
             a_buffer::render(input, lights, &options.a_buffer(), framebuffer, t);
         }
     }
-    Ok(())
+    input.work.check()
 }

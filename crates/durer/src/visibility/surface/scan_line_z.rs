@@ -82,7 +82,7 @@ pub fn render(
     let mut list = ActiveList::new(&input.triangles, width, height);
     let mut row = DepthRow::new(width);
     let mut layers = Layers::of(input);
-    for y in 0..height as i32 {
+    for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
         row.clear();
         let item = |triangle: u32| input.triangles[triangle as usize].item;

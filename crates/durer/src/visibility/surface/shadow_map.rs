@@ -19,6 +19,7 @@ use crate::visibility::surface::nearest::{DepthRow, Masked};
 use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::{Coverage, Filter};
 use crate::visibility::surface::visible::with_lighting;
+use crate::work::Work;
 use crate::{Error, Result};
 
 /// How maps are made.
@@ -56,6 +57,19 @@ const NEAR: f64 = 1e-3;
 /// [`Error::Parameter`] for a side of 0, [`Error::Limit`] above [`MAX_SIDE`], and what
 /// [`SurfaceInput::new`] finds.
 pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Result<()> {
+    cast_within(&Work::default(), scene, lights, options)
+}
+
+/// As [`cast`], within a budget.
+///
+/// # Errors
+/// As [`cast`], and [`Error::Memory`] where the budget has no room for the maps.
+pub fn cast_within(
+    work: &Work,
+    scene: &Scene,
+    lights: &mut PreparedLights,
+    options: &Options,
+) -> Result<()> {
     if options.side == 0 {
         return Err(Error::parameter("shadow map's side", 0, "at least 1 texel"));
     }
@@ -68,14 +82,14 @@ pub fn cast(scene: &Scene, lights: &mut PreparedLights, options: &Options) -> Re
     let points = lights.points.clone();
     for to_light in directions {
         let cameras = parallel_camera(&sphere, to_light).into_iter();
-        let maps = maps(scene, lights, cameras, options.side)?;
+        let maps = maps((work, scene), lights, cameras, options.side)?;
         lights.shadows.directional.push(maps);
     }
     for light in &points {
         let place = lights.origin + light.position.as_dvec3();
         let cameras = cameras_of_point(light, place, &sphere);
         let side = if cameras.len() > 1 { options.side.div_ceil(2) } else { options.side };
-        let maps = maps(scene, lights, cameras.into_iter(), side)?;
+        let maps = maps((work, scene), lights, cameras.into_iter(), side)?;
         lights.shadows.points.push(maps);
     }
     Ok(())
@@ -136,7 +150,7 @@ fn across(axis: DVec3) -> DVec3 {
 }
 
 fn maps(
-    scene: &Scene,
+    of: (&Work, &Scene),
     lights: &PreparedLights,
     cameras: impl Iterator<Item = Camera>,
     side: u32,
@@ -144,7 +158,7 @@ fn maps(
     let mut maps = Vec::new();
     for camera in cameras {
         let view = View::new(camera, side, side)?;
-        let depths = depths(scene, &view, lights)?;
+        let depths = depths(of, &view, lights)?;
         let world_from_position = DMat4::from_translation(lights.origin);
         let map_from_position = view.screen_from_world() * world_from_position;
         let (perspective, height) = match camera.projection {
@@ -158,19 +172,24 @@ fn maps(
 }
 
 /// The depth of what throws shadows: triangles that are opaque, or masked and there.
-fn depths(scene: &Scene, view: &View, lights: &PreparedLights) -> Result<Pixels<f32>> {
+fn depths(
+    (work, scene): (&Work, &Scene),
+    view: &View,
+    lights: &PreparedLights,
+) -> Result<Pixels<f32>> {
     let filter = Filter::new(Cull::None, 0);
-    let mut input = SurfaceInput::new(scene, view, filter)?;
+    let mut input = SurfaceInput::within(work, scene, view, filter)?;
     let count = scene.triangle_count() as u32;
     let throws = |item: u32| item < count && input.run_of(item).coverage != Coverage::Blended;
     let kept: Vec<_> = input.triangles.iter().copied().filter(|t| throws(t.item)).collect();
     input.triangles = kept;
-    let mut depths = Pixels::new(view.width(), view.height(), 1.0);
+    let stage = (work, "shadow maps");
+    let mut depths = Pixels::within(stage, view.width(), view.height(), 1.0)?;
     with_lighting(&input, lights, &picture::Options::default(), |lighting| {
         let (masked, mut lit) = (Masked::new(&input), Lit::new(lighting));
         let mut list = ActiveList::new(&input.triangles, view.width(), view.height());
         let mut row = DepthRow::new(view.width());
-        for y in 0..view.height() {
+        for y in (0..view.height()).take_while(|_| !work.is_stopped()) {
             row.clear();
             for a in list.advance(y as i32, |_| ()) {
                 masked.enter(&mut row, a.triangle, [a.x0, a.x1], y as i32, &mut lit, |_, _| ());
@@ -178,5 +197,6 @@ fn depths(scene: &Scene, view: &View, lights: &PreparedLights) -> Result<Pixels<
             depths.row_mut(y).copy_from_slice(&row.depth);
         }
     });
+    work.check()?;
     Ok(depths)
 }

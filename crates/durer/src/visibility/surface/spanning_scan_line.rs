@@ -121,7 +121,7 @@ pub fn render(
         parts: Vec::new(),
     };
     let mut layers = Layers::of(input);
-    for y in 0..height as i32 {
+    for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
         line.y = y;
         line.row.clear();

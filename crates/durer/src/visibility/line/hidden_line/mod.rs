@@ -44,6 +44,7 @@ use crate::trace::Tracer;
 use crate::view::View;
 use crate::view::picture_plane::PicturePlane;
 use crate::visibility::object::{Bodies, Edges, Faces, Weld};
+use crate::work::Work;
 use crate::{Error, Result, parallel};
 use std::ops::Range;
 
@@ -61,7 +62,7 @@ pub const INFO: Info = Info {
 };
 
 /// What is drawn, and how.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// Which classes of lines.
     pub classes: ClassSet,
@@ -101,7 +102,12 @@ pub struct Options {
     pub beneath: f64,
     /// Which vertices are one, so that faces find their neighbours.
     pub weld: Weld,
+    /// What it may cost, and whether it goes on.
+    pub work: Work,
 }
+
+/// Bytes that faces, edges and cells take for each triangle, about.
+const PER_TRIANGLE: u64 = 96;
 
 impl Default for Options {
     /// A technical drawing: creases from 40°, visible and hidden lines, 0.05 pixels in a picture of
@@ -119,6 +125,7 @@ impl Default for Options {
             stubs: 0.0,
             beneath: 0.0,
             weld: Weld::Auto,
+            work: Work::default(),
         }
     }
 }
@@ -222,6 +229,9 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) -> Result<Drawing> {
     options.check()?;
+    let work = options.work.part();
+    let stage = "faces for hidden lines";
+    work.keep(stage, scene.triangle_count().saturating_mul(PER_TRIANGLE))?;
     let (mut faces, plane) = (Faces::welded(scene, options.weld)?, PicturePlane::new(view));
     let window = plane.window();
     let mut edges = faces.take_edges();
@@ -242,6 +252,7 @@ pub fn draw(
         let whole = (Whole(None), tangents);
         on_page(&faces, plane, |p| pieces(&faces, edges, whole, p, options, t))
     };
+    options.work.check()?;
     let lines = arranged(found, options.how());
     Ok(Drawing { window, lines, edges: count, ..Drawing::default() })
 }
@@ -381,12 +392,18 @@ fn hide(
     let covers_of = |line: &FeatureLine, covers: &mut Vec<Cover>| {
         covers_of(line, occluders, whole, page.touching, !options.hidden, covers);
     };
+    let work = options.work.part();
     let hide = |range: Range<usize>| {
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
         for line in lines.some(range) {
+            if work.is_stopped() {
+                break;
+            }
             covers_of(&line, &mut covers);
             cut(line.piece(), &covers, line.fold, options.hidden, &mut spans, &mut pieces);
         }
+        // There for a while in parts and as a whole.
+        work.keep_or_stop("hidden lines", 2 * (pieces.len() * size_of::<Piece>()) as u64);
         pieces
     };
     let pieces = joined(parallel::map(jobs, hide));

@@ -174,7 +174,7 @@ pub fn render(
         mixed: Mixed::new(width as usize),
         pixel: Pixel::default(),
     };
-    for y in 0..height as i32 {
+    for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         rows.faces.advance(y);
         rows.row(y, &mut picture, t);
         if let Some(centers) = &mut centers {

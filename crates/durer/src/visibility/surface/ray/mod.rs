@@ -150,7 +150,9 @@ pub fn render(
             write(&visible, lighting, &options.look, framebuffer);
         } else {
             write_planes(&visible, lighting, &options.look, framebuffer);
-            framebuffer.color.data_mut().copy_from_slice(&colors);
+            // Fewer where the work was stopped.
+            let pixels = framebuffer.color.data_mut();
+            pixels.iter_mut().zip(colors).for_each(|(to, color)| *to = color);
         }
     });
 }
@@ -227,6 +229,9 @@ impl Caster<'_> {
         let mut eye = Eye::new(self);
         let mut whitted = Whitted::new(self.world.as_ref(), self.lighting, self.options);
         let columns = self.input.view.width() as i32;
+        if self.input.work.is_stopped() {
+            return band;
+        }
         for at in (top..bottom).flat_map(|y| (0..columns).map(move |x| [x, y])) {
             let center = eye.cast(at, [0; 2], &mut band.steps);
             band.hits.extend(eye.nearest(center).map(|hit| (at, hit)));

@@ -162,7 +162,7 @@ fn anti_aliased(
     let grid = SampleGrid::below_pixel(options.sub_levels);
     let (n, Window { x1, y1, .. }) = (grid.per_pixel(), pixels_of(input.view));
     let mut lit = Lit::new(lighting);
-    for top in (0..y1).step_by(BAND as usize) {
+    for top in (0..y1).step_by(BAND as usize).take_while(|_| !input.work.is_stopped()) {
         let bottom = y1.min(top + BAND);
         let window = Window { x0: 0, y0: top * n, x1: x1 * n, y1: bottom * n };
         let visible = solve(input, lighting, options.division, grid, window, t);

@@ -3,6 +3,7 @@
 
 use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
 use super::tile::TILE;
+use crate::Result;
 use crate::raster::fixed::SUBPIXEL_BITS;
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
@@ -10,6 +11,7 @@ use crate::visibility::surface::setup::{
     Assembler, Counts, Coverage, Filter, Run, Sampled, ScreenTriangle, ScreenVertex, Sink,
 };
 use crate::visibility::surface::triangles::RunNormals;
+use crate::work::{Charge, Work};
 use fearless_simd::Simd;
 use std::ops::Range;
 
@@ -77,13 +79,34 @@ pub struct Scratch {
     vertices: Vec<ScreenVertex>,
     /// Of triangles that are not among those in the bins.
     pub fragments: Fragments,
+    /// What the fragments take of the budget.
+    charge: Option<Charge>,
+}
+
+/// What triangles and fragments are called in errors about memory.
+pub const STAGE: &str = "triangles on the screen";
+
+impl Scratch {
+    /// Takes what the fragments have grown by from a budget.
+    pub fn charge(&mut self, work: &Work) -> Result<()> {
+        let charge = match &mut self.charge {
+            Some(charge) => charge,
+            none => none.insert(work.charge(STAGE, 0)?),
+        };
+        charge.grow_to(self.fragments.bytes())
+    }
+
+    /// The charge, for as long as the fragments stay.
+    pub fn take_charge(&mut self) -> Charge {
+        self.charge.take().unwrap_or_default()
+    }
 }
 
 impl Bins {
     /// Sets up the triangles of a job and sorts them into tiles.
     pub fn new(job: &Job, lighting: &Lighting<'_>, filter: Filter, scratch: &mut Scratch) -> Self {
         let Lighting { scene, view, runs, level, .. } = *lighting;
-        let Scratch { touched, fragments, vertices } = scratch;
+        let Scratch { touched, fragments, vertices, .. } = scratch;
         touched.clear();
         let mut assembler = Assembler::new(scene, view, filter, level);
         assembler = assembler.with_memory(std::mem::take(vertices));
@@ -107,11 +130,22 @@ impl Bins {
             assembler.primitives(&runs[*run], range.clone(), &mut sorter);
             sorter.micropolygons.finish(level, sorter.normals.as_ref());
         }
-        let Sorter { triangles, wide, .. } = sorter;
+        let Sorter { mut triangles, wide, .. } = sorter;
+        if triangles.len() < most / 2 {
+            // Most were sampled or left out, and what was reserved for them would stay.
+            triangles.shrink_to_fit();
+        }
         let (coverage, counts) = (job.coverage, assembler.counts);
         *vertices = assembler.into_memory();
         let touching = sort_by_tile(touched, screen.count());
         Self { coverage, counts, triangles, wide, touching }
+    }
+
+    /// What they take, bytes.
+    pub fn bytes(&self) -> u64 {
+        let ByTile { starts, entries } = &self.touching;
+        let triangles = self.triangles.capacity() * size_of::<ScreenTriangle>();
+        (triangles + starts.capacity() * 8 + entries.capacity() * 4) as u64
     }
 
     /// The triangles that touch a tile, in item order.

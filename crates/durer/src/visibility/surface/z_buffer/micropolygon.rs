@@ -103,6 +103,8 @@ impl Fragment {
 /// Things by the tiles that they are in, in blocks that stay where they are.
 struct Tiles<T> {
     by_tile: Vec<Blocks<T>>,
+    /// Things that the blocks have room for.
+    room: usize,
 }
 
 /// What is in one tile.
@@ -120,7 +122,7 @@ const BLOCK: [usize; 2] = [32, 2048];
 
 impl<T> Default for Tiles<T> {
     fn default() -> Self {
-        Self { by_tile: Vec::new() }
+        Self { by_tile: Vec::new(), room: 0 }
     }
 }
 
@@ -130,9 +132,14 @@ impl<T> Tiles<T> {
         let tile = &mut self.by_tile[(place >> PIXEL_BITS) as usize];
         let upper = item & !LOW_BITS;
         if tile.open.len() == tile.open.capacity() || tile.upper != upper {
-            tile.open_next(upper);
+            self.room += tile.open_next(upper);
         }
         tile.open.push(thing);
+    }
+
+    /// What all blocks take, bytes.
+    fn bytes(&self) -> u64 {
+        (self.room * size_of::<T>() + self.by_tile.capacity() * size_of::<Blocks<T>>()) as u64
     }
 
     /// What is in a tile, block by block, with the upper bits of its items.
@@ -156,8 +163,9 @@ impl<T> Default for Blocks<T> {
 }
 
 impl<T> Blocks<T> {
+    /// Opens a block, and returns how much room it has.
     #[cold]
-    fn open_next(&mut self, upper: u32) {
+    fn open_next(&mut self, upper: u32) -> usize {
         let [least, most] = BLOCK;
         let size = (4 * self.open.len()).clamp(least, most);
         let full = std::mem::replace(&mut self.open, Vec::with_capacity(size));
@@ -165,6 +173,7 @@ impl<T> Blocks<T> {
         if !full.is_empty() {
             self.full.push((of_full, full));
         }
+        size
     }
 }
 
@@ -188,6 +197,11 @@ impl Fragments {
         for (upper, block) in self.samples.of(tile) {
             block.iter().for_each(|sample| sample.draw(plane, upper));
         }
+    }
+
+    /// What they take, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.with_normals.bytes() + self.samples.bytes()
     }
 
     /// Whether there are none in a tile.

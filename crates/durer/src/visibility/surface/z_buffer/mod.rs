@@ -31,6 +31,7 @@ use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit};
 use crate::visibility::surface::mixed::{Mixed, encode};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Marks, Samples};
+use crate::work::{Charge, Work};
 use bins::{Bins, TileGrid, jobs};
 use blended::{Blended, light_blended};
 use fearless_simd::dispatch;
@@ -54,7 +55,7 @@ pub const INFO: Info = Info {
 };
 
 /// What the picture is to have.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// Samples per pixel of the colour plane.
     pub samples: Samples,
@@ -68,6 +69,8 @@ pub struct Options {
     pub background: Background,
     /// The SIMD level to work at; all give the same bytes.
     pub level: Level,
+    /// What it may cost, and whether it goes on.
+    pub work: Work,
 }
 
 impl Default for Options {
@@ -80,6 +83,7 @@ impl Default for Options {
             shading: None,
             background: Background::Color(Vec4::ONE),
             level: default_level(),
+            work: Work::default(),
         }
     }
 }
@@ -98,7 +102,8 @@ pub struct Report {
 /// Renders a scene that has passed [`Scene::check`] into the planes that the framebuffer has.
 ///
 /// # Errors
-/// [`crate::Error::Limit`] where the scene has too many primitives to number.
+/// [`crate::Error::Limit`] where the scene has too many primitives to number, [`crate::Error::Memory`] where the budget has no
+/// room for its triangles on the screen, and what stops the work.
 pub fn render(
     scene: &Scene,
     view: &View,
@@ -123,9 +128,17 @@ pub fn render(
     };
     let prepared = start.elapsed().as_secs_f64();
     let make = bins::Scratch::default;
-    let (bins, scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
-        Bins::new(&job, &lighting, filter, scratch)
+    let work = &options.work;
+    let (bins, mut scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
+        work.check()?;
+        let bins = Bins::new(&job, &lighting, filter, scratch);
+        scratch.charge(work)?;
+        let charge = work.charge(bins::STAGE, bins.bytes())?;
+        Ok((bins, charge))
     });
+    let bins = bins.into_iter().collect::<crate::Result<Vec<(Bins, Charge)>>>()?;
+    let (bins, _charges): (Vec<Bins>, Vec<Charge>) = bins.into_iter().unzip();
+    let _of_scratch: Vec<Charge> = scratch.iter_mut().map(bins::Scratch::take_charge).collect();
     let fragments: Vec<Fragments> = scratch.into_iter().map(|of| of.fragments).collect();
     let mut report = Report::default();
     for bin in &bins {
@@ -139,8 +152,11 @@ pub fn render(
     let frame = Frame { view, options, lighting, bins, fragments, occupied, triangle_count };
     let scratch = || Scratch::new(&frame);
     crate::parallel::map_with(bands(framebuffer), scratch, |scratch, band| {
-        frame.render_band(band, scratch);
+        if !work.is_stopped() {
+            frame.render_band(band, scratch);
+        }
     });
+    work.check()?;
     report.raster_seconds = start.elapsed().as_secs_f64() - report.geometry_seconds;
     Ok(report)
 }

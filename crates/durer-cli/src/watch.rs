@@ -1,0 +1,176 @@
+//! Ends the command where it takes too long or too much memory, and on Ctrl-C and termination.
+//!
+//! A thread looks at the clock, at the memory that the process holds, and for signals. It stops the work ([`Work`]), which
+//! then ends with an error at its next check. Work that does not check, as in a library, is ended after a while: the files
+//! that are not whole are removed, and the process exits.
+
+use crate::args::RunningArgs;
+use crate::{beside, memory};
+use durer::Error;
+use durer::work::Work;
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// So long work has to end by itself when it is stopped, and when it is interrupted.
+const GRACE: Duration = Duration::from_secs(1);
+const GRACE_OF_SIGNALS: Duration = Duration::from_millis(100);
+
+/// How often is looked, and how often where there is much room left.
+const OFTEN: Duration = Duration::from_millis(4);
+const SELDOM: Duration = Duration::from_millis(20);
+
+/// Memory that is held besides what is charged: the program itself, stacks, and what is small.
+const BESIDES: u64 = 16 << 20;
+
+/// So much more, and an eighth of the budget, is held before the work is not waited for.
+const SLACK: u64 = 8 << 20;
+
+/// What the command is at, for whoever is ended in the middle of it.
+static NOW: Mutex<String> = Mutex::new(String::new());
+
+/// The file that it works on.
+static FILE: Mutex<String> = Mutex::new(String::new());
+
+/// Whether a model is done, so that an end leaves something.
+static DONE: AtomicBool = AtomicBool::new(false);
+
+/// The number of the signal that came.
+static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
+
+/// Says what the command is at.
+pub fn now(what: String) {
+    *NOW.lock().unwrap_or_else(PoisonError::into_inner) = what;
+}
+
+/// Says which file the command works on.
+pub fn of_file(name: String) {
+    *FILE.lock().unwrap_or_else(PoisonError::into_inner) = name;
+}
+
+/// Says that something is done that stays, whatever comes after it.
+pub fn done() {
+    DONE.store(true, Ordering::Relaxed);
+}
+
+/// The exit code of a process that a signal has ended, where one has.
+pub fn interrupted() -> Option<u8> {
+    let signal = SIGNAL.get().map_or(0, |signal| signal.load(Ordering::Relaxed));
+    u8::try_from(signal).ok().filter(|signal| *signal > 0).map(|signal| 128 + signal)
+}
+
+/// The work of a command, within its budget.
+pub fn work(args: &RunningArgs) -> Work {
+    let budget = args.max_memory.unwrap_or_else(memory::usual_budget);
+    Work::with_budget(budget, "--max-memory")
+}
+
+/// Watches the command from now on. Where there is no thread to be had, signals end it as they do without.
+pub fn start(args: &RunningArgs) {
+    let watch = Watch {
+        work: args.work.clone(),
+        timeout: args.timeout,
+        start: Instant::now(),
+        stopped: None,
+    };
+    // It ends with the process.
+    let _ = thread::Builder::new().name("watch".to_owned()).spawn(move || {
+        watch_signals();
+        watch.run();
+    });
+}
+
+/// Takes note of signals from now on, in place of their ending the process.
+fn watch_signals() {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let signal = SIGNAL.get_or_init(Arc::default);
+    #[cfg(unix)]
+    let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+    #[cfg(not(unix))]
+    let signals = [SIGINT, SIGTERM];
+    for number in signals {
+        // One that cannot be noted ends the process at once.
+        let _ = signal_hook::flag::register_usize(number, signal.clone(), number as usize);
+    }
+}
+
+struct Watch {
+    work: Work,
+    timeout: Option<f64>,
+    start: Instant,
+    /// When the work was stopped for what it holds.
+    stopped: Option<Instant>,
+}
+
+impl Watch {
+    fn run(mut self) {
+        let mut end_at = None;
+        loop {
+            if let Some(code) = interrupted() {
+                self.work.stop(Error::Cancelled);
+                let end = *end_at.get_or_insert_with(|| Instant::now() + GRACE_OF_SIGNALS);
+                if Instant::now() >= end {
+                    end_with(None, code.into());
+                }
+            }
+            self.look_at_clock();
+            let wait = self.look_at_memory();
+            thread::sleep(wait);
+        }
+    }
+
+    fn look_at_clock(&self) {
+        let Some(seconds) = self.timeout else { return };
+        let (allowed, taken) = (Duration::try_from_secs_f64(seconds), self.start.elapsed());
+        let allowed = allowed.unwrap_or(Duration::MAX);
+        if taken >= allowed {
+            let error = Error::TimedOut { seconds, option: "--timeout" };
+            self.work.stop(error.clone());
+            if taken >= allowed.saturating_add(GRACE) {
+                end(&error);
+            }
+        }
+    }
+
+    /// Returns how long nothing can happen.
+    fn look_at_memory(&mut self) -> Duration {
+        let (budget, Some(held)) = (self.work.budget(), memory::held()) else { return SELDOM };
+        let above = held.saturating_sub(BESIDES);
+        if above > budget {
+            self.work.stop_at(above);
+            let since = *self.stopped.get_or_insert_with(Instant::now);
+            if above > budget.saturating_add(budget / 8 + SLACK) || since.elapsed() >= GRACE {
+                let stage = self.work.stage();
+                end(&Error::Memory { stage, need: above, budget, option: "--max-memory" });
+            }
+        } else {
+            self.stopped = None;
+        }
+        if above > budget / 2 || budget < 512 << 20 { OFTEN } else { SELDOM }
+    }
+}
+
+/// Ends the process with an error.
+fn end(error: &Error) -> ! {
+    let [now, file] =
+        [&NOW, &FILE].map(|s| s.lock().unwrap_or_else(PoisonError::into_inner).clone());
+    let file = Some(file).filter(|file| !now.contains(file.as_str()));
+    let now = Some(now).filter(|now| !now.is_empty());
+    let parts = [file, now, Some(error.to_string())].into_iter().flatten();
+    let message = parts.collect::<Vec<_>>().join(": ");
+    end_with(Some(message), if DONE.load(Ordering::Relaxed) { 3 } else { 1 })
+}
+
+fn end_with(message: Option<String>, code: i32) -> ! {
+    beside::end(|| {
+        let mut out = std::io::stderr().lock();
+        if let Some(message) = message {
+            // Over what shows progress. A closed standard error leaves nobody to tell.
+            let clear = if out.is_terminal() { "\r\x1b[2K" } else { "" };
+            let _ = writeln!(out, "{clear}durer: {message}");
+        }
+        code
+    })
+}

@@ -1,0 +1,186 @@
+//! `--max-memory` and `--timeout`: what would cost more ends with an error that says what it is needed for, and leaves
+//! no file.
+
+use crate::harness::{CUBE, Folder};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+/// A binary STL file of triangles that stand side by side.
+fn stl(count: u32) -> Vec<u8> {
+    let mut file = vec![b' '; 80];
+    file.extend(count.to_le_bytes());
+    for i in 0..count {
+        let x = (i % 300) as f32;
+        let y = (i / 300) as f32;
+        file.extend([0; 12]);
+        for v in [[x, y, 0.0], [x + 0.9, y, 0.0], [x, y + 0.9, 0.5]] {
+            file.extend(v.iter().flat_map(|v| v.to_le_bytes()));
+        }
+        file.extend([0; 2]);
+    }
+    file
+}
+
+/// An OBJ file of as many triangles.
+fn obj(count: u32) -> String {
+    let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    (0..count).for_each(|_| text.push_str("f 1 2 3\n"));
+    text
+}
+
+/// A drawing of many curves with wide strokes.
+fn svg(curves: u32) -> String {
+    let mut text =
+        String::from(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">"#);
+    text.push_str(
+        r#"<path fill="none" stroke="red" stroke-width="9" stroke-linejoin="round" d="M50 50"#,
+    );
+    for i in 0..curves {
+        let [a, b, c] = [37, 53, 71].map(|k| i * k % 100);
+        let _ = write!(text, "C{a} {b} {c} {a} {b} {c}");
+    }
+    text.push_str(r#""/></svg>"#);
+    text
+}
+
+#[test]
+fn what_needs_more_is_refused_with_its_stage_and_the_option() {
+    let folder = Folder::with_models();
+    folder.write("many.stl", stl(60_000));
+    folder.write("many.obj", obj(100_000));
+    folder.write("curves.svg", svg(5000));
+    folder.write("few.svg", svg(5));
+    folder.must("render cube.obj -o a.png --depth d.png --size 600x600 --near 1 --far 20");
+    folder.write("heights.xyz", "0 0 0\n".repeat(400_000));
+    let before = folder.names();
+    for (command, budget, stage) in [
+        ("render cube.obj -o o.png --size 2000x2000", "8M", "planes of the picture"),
+        ("render cube.obj -o o.png --size 9x9 --shadows map", "8M", "shadow maps"),
+        ("render many.stl -o o.png --size 64x64", "1M", "meshes of the model"),
+        ("render many.obj -o o.png --size 64x64", "4M", "meshes of the model"),
+        ("render many.obj -o o.png --size 64x64", "500k", "bytes of the file"),
+        ("render many.stl -o o.png --size 64x64 --aa 4", "3500k", "triangles on the screen"),
+        ("render many.stl -o o.png --size 64x64 --algorithm ray", "5M", "triangles on the screen"),
+        ("render many.stl -o o.svg", "6M", "faces for hidden lines"),
+        ("render many.stl -o o.svg --style regions", "6M", "faces of the drawing"),
+        ("info many.stl", "1M", "meshes of the model"),
+        ("pick many.stl --at 9,9", "1M", "meshes of the model"),
+        ("draw curves.svg -o o.png --size 100x100", "1M", "outlines of what is painted"),
+        ("draw few.svg -o o.png --size 3000x3000", "34M", "planes of the picture"),
+        ("fill a.png -o o.png --at 0,0 --color red", "1M", "decoded pictures"),
+        ("plot heights.xyz -o o.png", "1M", "bytes of the file"),
+        (
+            "warp a.png d.png -o o.png --eye 9,9,9 --target 0,0,0 --near 1 --far 20 --to-eye 9,9,8 \
+             --size 1500x1500",
+            "40M",
+            "places of moved pixels",
+        ),
+    ] {
+        let ended = folder.run(&format!("{command} --max-memory {budget}"));
+        let file = command.split(' ').nth(1).unwrap();
+        ended.fails(1, stage).fails(1, "--max-memory allows");
+        if !command.starts_with("warp") {
+            ended.fails(1, file);
+        }
+        assert_eq!(folder.names(), before, "{command}");
+    }
+}
+
+#[test]
+fn map_data_that_are_held_are_charged() {
+    let folder = Folder::new();
+    folder.write("many.wkt", "POINT (1 2)\n".repeat(200_000));
+    let rest = "many.wkt --max-memory 1M";
+    for command in ["clip --window 0,0,1,1 -o o.wkt", "check", "info", "fix -o o.wkt"] {
+        let (name, options) = command.split_once(' ').unwrap_or((command, ""));
+        folder.run(&format!("{name} {rest} {options}")).fails(1, "map data: ").fails(1, "many.wkt");
+        assert_eq!(folder.names(), ["many.wkt"], "{command}");
+    }
+    let feature = r#"{"type":"Feature","properties":{"a":1},"geometry":{"type":"Point","coordinates":[1,2]}}"#;
+    folder.write("many.geojsonl", format!("{feature}\n").repeat(20_000));
+    let rest = "many.geojsonl --max-memory 1M";
+    for command in
+        ["tiles -o o.pmtiles", "simplify --tolerance 1 -o o.geojson", "dissolve -o o.geojson"]
+    {
+        let (name, options) = command.split_once(' ').unwrap_or((command, ""));
+        folder
+            .run(&format!("{name} {rest} {options}"))
+            .fails(1, "features: ")
+            .fails(1, "many.geojsonl");
+        assert_eq!(folder.names(), ["many.geojsonl", "many.wkt"], "{command}");
+    }
+    // Features that pass one by one are not held.
+    folder.must(&format!("clip {rest} --window 0,0,9,9 -o o.geojsonl"));
+}
+
+#[test]
+fn whether_a_large_model_is_closed_may_stay_open() {
+    let folder = Folder::new();
+    folder.write("many.stl", stl(60_000));
+    let info = folder.must("info many.stl --max-memory 4M");
+    let text = String::from_utf8(info.out).unwrap();
+    assert!(text.contains("whether it is closed is not looked for: edges of the model"), "{text}");
+}
+
+#[test]
+fn a_model_that_costs_too_much_is_skipped() {
+    let folder = Folder::with_models();
+    folder.write("many.stl", stl(60_000));
+    let command =
+        "render many.stl cube.obj -o out/ --size 64x64 --skip-failures --max-memory 1M --json";
+    let ended = folder.run(command);
+    ended.fails(3, "many.stl: meshes of the model");
+    assert_eq!(ended.json()["models"].as_array().unwrap().len(), 1);
+    assert!(folder.path("out/cube.png").exists() && !folder.path("out/many.png").exists());
+}
+
+/// What one model has taken is there again for the next.
+#[test]
+fn models_one_after_another_share_a_budget() {
+    let folder = Folder::new();
+    let names: Vec<String> = (0..6).map(|i| format!("{i}.stl")).collect();
+    names.iter().for_each(|name| folder.write(name, stl(20_000)));
+    let models = names.join(" ");
+    folder.must(&format!("render {models} -o out/ --size 64x64 --max-memory 6M"));
+    folder.must(&format!("info {models} --max-memory 4M"));
+}
+
+#[test]
+fn time_ends_what_looks_at_it() {
+    let folder = Folder::with_models();
+    let told = "cube.obj: it takes longer than the 0.05 s that --timeout allows";
+    let command = "render cube.obj -o o.png --size 9000x9000 --aa 16 --timeout 0.05";
+    folder.run(command).fails(1, told);
+    assert_eq!(folder.names(), ["broken.obj", "cube.obj"]);
+    folder.must("render cube.obj -o o.png --size 20x20 --timeout 600");
+}
+
+/// A source that gives nothing keeps the command from looking at anything.
+#[test]
+fn time_ends_what_waits() {
+    let folder = Folder::new();
+    let start = Instant::now();
+    let command = "clip - --from geojsonl --to geojsonl --window 0,0,9,9 -o o.json --timeout 0.1";
+    let mut child = folder.command(command);
+    let mut child = child.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(b"{\"type\":").unwrap();
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("standard input") && told.contains("--timeout allows"), "{told}");
+    assert!(start.elapsed() > Duration::from_secs(1) && folder.names().is_empty());
+    drop(input);
+}
+
+#[test]
+fn sizes_and_seconds_are_checked() {
+    let folder = Folder::new();
+    folder.write("a.obj", CUBE);
+    folder.run("info a.obj --max-memory 0").fails(2, "--max-memory");
+    folder.run("info a.obj --max-memory 3X").fails(2, "--max-memory");
+    folder.run("info a.obj --timeout 0").fails(2, "--timeout");
+    folder.must("info a.obj --max-memory 64M --timeout 9");
+}

@@ -1,0 +1,85 @@
+//! Budgets and stops by themselves.
+
+use durer::Error;
+use durer::error::in_words;
+use durer::work::Work;
+
+#[test]
+fn charges_are_given_back() {
+    let work = Work::with_budget(100, "--max-memory");
+    let mut first = work.charge("a", 60).unwrap();
+    assert!(work.charge("b", 41).is_err());
+    let second = work.clone().charge("b", 40).unwrap();
+    assert_eq!(work.used(), 100);
+    assert!(first.grow(1).is_err());
+    drop(second);
+    first.grow_to(70).unwrap();
+    first.grow_to(50).unwrap();
+    assert_eq!(work.used(), 70);
+    drop(first);
+    assert_eq!(work.used(), 0);
+}
+
+#[test]
+fn what_is_kept_goes_with_its_part() {
+    let work = Work::with_budget(100, "--max-memory");
+    let part = work.part();
+    part.clone().keep("model", 90).unwrap();
+    assert!(work.charge("b", 20).is_err());
+    drop(part);
+    assert!(work.charge("b", 20).is_ok());
+}
+
+#[test]
+fn errors_name_stage_need_and_option() {
+    let work = Work::with_budget(64 << 20, "--max-memory");
+    let error = work.charge_for::<u64>("planes", 1 << 60).unwrap_err();
+    let (stage, need) = ("planes", 1 << 63);
+    assert_eq!(error, Error::Memory { stage, need, budget: 64 << 20, option: "--max-memory" });
+    let message = "planes: 8 EB of memory are needed, --max-memory allows 64 MB";
+    assert_eq!(error.to_string(), message);
+    assert!(work.charge("planes", u64::MAX).is_err());
+    assert!(work.keep("planes", u64::MAX).is_err());
+    assert_eq!((work.stage(), work.used()), ("planes", 0));
+}
+
+#[test]
+fn what_is_stopped_says_why() {
+    let work = Work::with_budget(100, "--max-memory");
+    let other = work.part();
+    assert!(other.check().is_ok());
+    work.enter("hidden lines");
+    work.stop_at(200);
+    work.stop(Error::Cancelled);
+    let (stage, option) = ("hidden lines", "--max-memory");
+    let memory = Error::Memory { stage, need: 200, budget: 100, option };
+    assert_eq!(other.check(), Err(memory.clone()));
+    assert_eq!(other.charge("a", 0).map(drop), Err(memory));
+    assert!(other.is_stopped() && other.go_on() && other.check().is_ok());
+    work.stop(Error::Cancelled);
+    assert!(!work.go_on());
+    assert_eq!(other.check(), Err(Error::Cancelled));
+}
+
+#[test]
+fn the_default_has_no_bound() {
+    let work = Work::default();
+    work.stop(Error::Cancelled);
+    assert!(work.check().is_ok() && work.keep("a", u64::MAX).is_ok());
+    assert!(work.charge("a", u64::MAX).is_ok() && work == work.part());
+    assert_ne!(work, Work::stoppable());
+}
+
+#[test]
+fn buffers_that_cannot_be_had_are_errors() {
+    let error = Work::default().room_for::<[u8; 4]>("planes", u64::MAX >> 3).unwrap_err();
+    assert!(error.to_string().starts_with("planes: the system has no "), "{error}");
+    assert!(Work::default().room_for::<u8>("planes", 32 << 20).is_ok());
+}
+
+#[test]
+fn bytes_are_told_shortly() {
+    let told = [0, 999, 1000, 1536, 64 << 20, 67_500_000, 1 << 30, u64::MAX].map(in_words);
+    let expected = ["0 bytes", "999 bytes", "1 kB", "1.5 kB", "64 MB", "64.4 MB", "1 GB", "16 EB"];
+    assert_eq!(told, expected);
+}
