@@ -191,11 +191,16 @@ fn area(scene: &Scene) -> Option<f64> {
 
 /// Whether all meshes of triangles that are shown are closed, each or together.
 fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
-    let shown = |i: usize| scene.instances.iter().any(|instance| instance.mesh == i);
-    let meshes = scene.meshes.iter().enumerate();
-    let solid = meshes.filter(|(i, mesh)| mesh.triangle_count() > 0 && shown(*i));
+    let mut shown = vec![false; scene.meshes.len()];
+    for instance in &scene.instances {
+        if let Some(shown) = shown.get_mut(instance.mesh) {
+            *shown = true;
+        }
+    }
+    let meshes = scene.meshes.iter().zip(shown);
+    let solid = meshes.filter(|(mesh, shown)| mesh.triangle_count() > 0 && *shown);
     let (mut each, mut count) = (true, 0);
-    for (_, mesh) in solid {
+    for (mesh, _) in solid {
         let (triangles, vertices) = (mesh.triangle_count() as u64, mesh.positions.len() as u64);
         let _edges = work.charge("edges of the model", 36 * triangles + 16 * vertices)?;
         each &= written_topology(mesh, scene.last_digit).closed;

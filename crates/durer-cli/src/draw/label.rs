@@ -229,7 +229,11 @@ pub fn draw(
     // The sort is stable: what is equal stays in the order of the file.
     planned.sort_by(Planned::order);
     let mut placer = Placer::new(*ground.seen);
-    ground.markers.iter().for_each(|marker| placer.reserve(*marker));
+    // Of many markers at one place one is enough; each label would be held against all of them.
+    let mut reserved = BTreeSet::new();
+    let bits = |marker: &Rect| [marker.min(), marker.max()].map(|p| [p.x, p.y].map(f64::to_bits));
+    let markers = ground.markers.iter().filter(|marker| reserved.insert(bits(marker)));
+    markers.for_each(|marker| placer.reserve(*marker));
     let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
     for layer in planned.chunk_by(|a, b| a.label.layer == b.label.layer) {
         let style = styles[layer[0].label.layer];

@@ -208,6 +208,9 @@ fn check_sparse(root: &Root, accessor: &Accessor, whole: &Layout, at: &str) -> R
     sparse_layouts(root, accessor, whole, at).map(|_| ())
 }
 
+/// So many elements without data may have no reason.
+const MOST_BARE: usize = 1 << 20;
+
 impl Source<'_> {
     /// The layout of an accessor.
     fn layout(&self, index: Whole, at: &str) -> Result<Layout> {
@@ -239,13 +242,29 @@ impl Source<'_> {
         }
     }
 
+    /// Refuses more elements without data than any accessor with data has: deformations say of some vertices that they
+    /// move, and nothing of the others, but nothing else needs zeros.
+    fn check_bare(&self, count: usize, at: &str) -> Result<()> {
+        let with_data = self.root.accessors.iter().filter(|a| a.buffer_view.is_some());
+        let has_reason = count <= MOST_BARE
+            || with_data.filter_map(|a| a.count).any(|of_data| of_data.index() >= count);
+        if has_reason {
+            return Ok(());
+        }
+        let message = format!(
+            "an accessor of {count} elements has no `bufferView`, and so no data; \
+             accessors with data have fewer"
+        );
+        Err(Error::path(at, message))
+    }
+
     /// Elements without gaps, sparse values put in.
     fn packed(&self, index: Whole, layout: &Layout, at: &str) -> Result<Vec<u8>> {
         let accessor = &self.root.accessors[index.index()];
         let mut bytes = match accessor.buffer_view {
             Some(view) => gather(&self.view(view, at)?, layout, at)?,
             None => {
-                // No data stand behind this count, so the limit alone bounds it.
+                self.check_bare(layout.count, at)?;
                 let size = (layout.count as u64).saturating_mul(layout.element() as u64);
                 self.budget.bytes(size, at)?;
                 vec![0; layout.count * layout.element()]

@@ -1,12 +1,15 @@
 //! The tree of a drawing, node by node.
 
+use super::painted::{ImageKey, Painted, TileKey};
 use super::{image, paint};
 use crate::Limits;
+use durer::curve::Path;
 use durer::math::DAffine2;
 use durer::raster::coverage::FillRule;
 use durer::raster::line::wide::{Cap, Join, Stroke, has_too_many_dashes};
 use durer::raster::paint::{Blend, Canvas, MaskKind, Paint};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 use usvg::{Group, Node};
 
 /// Groups, clip paths, masks, patterns and drawings within images may be nested so deep, all together.
@@ -20,13 +23,16 @@ pub(super) struct Painter<'a> {
     depth: u32,
     /// Bytes of images that are still allowed.
     bytes_left: u64,
+    /// What need not be made again.
+    painted: Painted,
     warnings: BTreeSet<String>,
 }
 
 impl<'a> Painter<'a> {
     pub fn new(canvas: &'a mut Canvas, limits: &'a Limits) -> Self {
         let bytes_left = limits.decoded_bytes;
-        Self { canvas, limits, depth: 0, bytes_left, warnings: BTreeSet::new() }
+        let (painted, warnings) = (Painted::default(), BTreeSet::new());
+        Self { canvas, limits, depth: 0, bytes_left, painted, warnings }
     }
 
     /// What could not be drawn.
@@ -207,15 +213,27 @@ impl<'a> Painter<'a> {
     }
 
     /// A pattern's tile, painted at the size at which it will be seen.
-    fn pattern(&mut self, pattern: &usvg::Pattern, map: DAffine2) -> Option<Paint> {
+    fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, map: DAffine2) -> Option<Paint> {
         let tile = paint::Tile::new(pattern, map)?;
+        let key = TileKey::new(pattern, &tile);
+        if let Some(painted) = self.painted.tiles.get(&key) {
+            return Some(painted.clone());
+        }
+        let painted = self.painted_tile(pattern, &tile)?;
+        self.painted.tiles.insert(key, painted.clone());
+        Some(painted)
+    }
+
+    fn painted_tile(&mut self, pattern: &usvg::Pattern, tile: &paint::Tile) -> Option<Paint> {
         let mut canvas = Canvas::new(tile.width, tile.height, *self.canvas.options()).ok()?;
         canvas.set_work(self.canvas.work());
         let mut painter = Painter::new(&mut canvas, self.limits);
         painter.depth = self.depth;
         painter.bytes_left = self.bytes_left;
+        painter.painted = std::mem::take(&mut self.painted);
         painter.deeper(|this| this.group(pattern.root(), tile.pixel_from_content));
         self.bytes_left = painter.bytes_left;
+        self.painted = std::mem::take(&mut painter.painted);
         let warnings = painter.warnings();
         self.warnings.extend(warnings);
         tile.paint(&canvas)
@@ -229,20 +247,36 @@ impl<'a> Painter<'a> {
         if let usvg::ImageKind::SVG(tree) = node.kind() {
             self.set(map, true);
             let (width, height) = (f64::from(size.width()), f64::from(size.height()));
-            let frame = durer::curve::Path::rectangle(0.0, 0.0, width, height);
+            let frame = Path::rectangle(0.0, 0.0, width, height);
             self.canvas.push_clip(&frame, FillRule::NonZero);
             self.deeper(|this| this.tree(tree, map));
             return self.canvas.pop(1.0);
         }
-        let limits = Limits { decoded_bytes: self.bytes_left, ..self.limits.clone() };
-        match image::paint(node, map, &limits) {
-            Ok((paint, frame, bytes)) => {
-                self.bytes_left = self.bytes_left.saturating_sub(bytes);
+        match self.pixels(node, map) {
+            Ok((paint, frame)) => {
                 self.set(map, self.canvas.options().anti_alias);
                 self.canvas.fill(&frame, FillRule::NonZero, &paint, 1.0);
             }
-            Err(error) => self.warn(format!("an image is left out: {error}")),
+            Err(why) => self.warn(format!("an image is left out: {why}")),
         }
+    }
+
+    /// An image as a paint and its frame; the reason where it cannot be shown.
+    fn pixels(&mut self, node: &usvg::Image, map: DAffine2) -> Result<(Paint, Path), String> {
+        let key = ImageKey::new(node, map);
+        if let Some(found) = key.as_ref().and_then(|key| self.painted.images.get(key)) {
+            return found.clone();
+        }
+        let limits = Limits { decoded_bytes: self.bytes_left, ..self.limits.clone() };
+        let found = image::paint(node, map, &limits).map_err(|error| error.to_string());
+        let found = found.map(|(paint, frame, bytes)| {
+            self.bytes_left = self.bytes_left.saturating_sub(bytes);
+            (paint, frame)
+        });
+        if let Some(key) = key {
+            self.painted.images.insert(key, found.clone());
+        }
+        found
     }
 }
 
@@ -266,4 +300,45 @@ fn single_path(group: &Group) -> Option<&usvg::Path> {
 /// Whether a group does nothing but map its content.
 fn plain(group: &Group) -> bool {
     !group.should_isolate()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::svg::{Drawing, ReadOptions};
+
+    /// How many tiles and images are painted for a drawing.
+    fn painted(content: &str) -> [usize; 2] {
+        let text = format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60">{content}</svg>"#
+        );
+        let (options, limits) = (ReadOptions::default(), Limits::default());
+        let drawing = Drawing::read(text.as_bytes(), &options).unwrap();
+        let mut canvas = Canvas::new(60, 60, Default::default()).unwrap();
+        let mut painter = Painter::new(&mut canvas, &limits);
+        painter.tree(&drawing.tree, DAffine2::IDENTITY);
+        [painter.painted.tiles.len(), painter.painted.images.len()]
+    }
+
+    #[test]
+    fn a_tile_is_painted_once_for_each_size_that_it_is_seen_at() {
+        let pattern = r##"<pattern id="p" width="8" height="8" patternUnits="userSpaceOnUse">
+            <circle cx="4" cy="4" r="3"/></pattern>
+            <rect id="r" width="9" height="9" fill="url(#p)"/>"##;
+        let moved = r##"<use href="#r" x="16"/><use href="#r" y="24"/>"##;
+        assert_eq!(painted(&format!("{pattern}{moved}")), [1, 0]);
+        let larger = r##"<use href="#r" transform="scale(2)"/>"##;
+        assert_eq!(painted(&format!("{pattern}{moved}{larger}{larger}")), [2, 0]);
+    }
+
+    #[test]
+    fn an_image_is_decoded_once_wherever_it_stands() {
+        let png = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
+        let image = format!(r#"<image id="i" width="9" height="9" href="{png}"/>"#);
+        let moved = r##"<use href="#i" x="16"/><use href="#i" y="24"/>"##;
+        assert_eq!(painted(&format!("{image}{moved}")), [0, 1]);
+        let other = image.replace(r#"id="i""#, r#"x="30""#);
+        assert_eq!(painted(&format!("{image}{moved}{other}")), [0, 1]);
+        assert_eq!(painted(&format!("{image}{}", image.replace("\"9\"", "\"5\""))), [0, 2]);
+    }
 }

@@ -32,14 +32,17 @@ mod finish;
 mod fonts;
 mod image;
 mod letters;
+mod lines;
 mod markers;
 mod outline;
 mod paint;
+mod painted;
 mod pictures;
 mod references;
 mod shapes;
 mod source;
 mod style;
+mod texts;
 mod transform;
 mod values;
 mod write;
@@ -192,8 +195,12 @@ struct Told {
 #[derive(Debug, Default)]
 struct Heard {
     messages: Vec<Warning>,
+    /// What the messages say.
+    said: BTreeSet<String>,
     letters: BTreeSet<char>,
     pictures: Vec<pictures::Picture>,
+    /// Pictures that have been read, by address and by how deep they stand.
+    read: pictures::Read,
 }
 
 impl Told {
@@ -209,7 +216,7 @@ impl Told {
 
     fn tell(&self, place: Place, message: String) {
         let mut heard = self.heard();
-        if heard.messages.iter().all(|told| told.message != message) {
+        if heard.said.insert(message.clone()) {
             heard.messages.push(Warning { place, message });
         }
     }
@@ -217,6 +224,14 @@ impl Told {
     /// Notes that no font has a letter.
     fn miss(&self, letter: char) {
         self.heard().letters.insert(letter);
+    }
+
+    fn read_before(&self, key: &pictures::Key) -> Option<usvg::ImageKind> {
+        self.heard().read.get(key).cloned()
+    }
+
+    fn keep_read(&self, key: pictures::Key, kind: usvg::ImageKind) {
+        self.heard().read.insert(key, kind);
     }
 
     fn picture(&self, number: usize) -> Option<pictures::Picture> {
@@ -269,18 +284,20 @@ fn prepared(
     is_within: bool,
 ) -> Result<Prepared> {
     check_arcs(document)?;
+    texts::check(document)?;
     let mut warnings = passed_over(document);
-    let at = |offset: usize| {
-        let at = document.text_pos_at(offset);
-        (u64::from(at.row), u64::from(at.col))
-    };
+    let lines = lines::Lines::new(document.input_text());
+    let at = |offset: usize| lines.at(offset);
     let pictures = told.heard().pictures.len();
     let amended = amend::amended(document, pictures)?;
     warnings.extend(amended.warnings);
-    told.heard().pictures.extend(amended.pictures.into_iter().map(|(href, offset)| {
-        let (line, column) = at(offset);
-        pictures::Picture { href, place: Place::Line(line, column), is_within }
-    }));
+    told.heard().pictures.extend(
+        amended.pictures.into_iter().map(|(href, offset)| pictures::Picture {
+            href,
+            place: lines.place(offset),
+            is_within,
+        }),
+    );
     let prepared = Prepared { written: amended.written, warnings };
     let levels = match (&prepared.written, prepared.document()?) {
         (Some(written), Some(new)) => references::check(&new, above, &|node| {

@@ -13,7 +13,7 @@ const MAX_TILE: f64 = 4096.0;
 /// Tiles that do not lie on whole pixels have so many times as many a side.
 const FINER: f64 = 8.0;
 
-/// Tiles are not made finer beyond so many pixels: each path that a pattern fills has its tile painted.
+/// Tiles are not made finer beyond so many pixels: a tile is painted for each size that it is seen at.
 const FINER_PIXELS: f64 = 1_048_576.0;
 
 /// Sides of tiles that are so near to whole pixels are whole.
@@ -150,6 +150,11 @@ impl Tile {
             path_from_pixel,
             filter,
         })
+    }
+
+    /// How the colours between the tile's pixels are found.
+    pub fn filter(&self) -> Filter {
+        self.filter
     }
 
     /// The pattern, once its tile is painted.

@@ -5,6 +5,7 @@ use crate::image::Orientation;
 use crate::{Error, Found, Limits, Place, Result, png, uri};
 use durer::target::Pixels;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use usvg::{ImageHrefResolver, ImageKind};
 
@@ -23,6 +24,13 @@ pub(super) struct Picture {
     pub is_within: bool,
 }
 
+/// An address, whether it stands in a drawing that is a picture itself, and how many levels of elements are around: a
+/// drawing that is a picture there may be too deep.
+pub(super) type Key = (String, bool, usize);
+
+/// Pictures that have been read.
+pub(super) type Read = BTreeMap<Key, ImageKind>;
+
 /// Where pictures come from: the list of those of the drawing.
 pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHrefResolver<'a> {
     let options = options.clone();
@@ -31,8 +39,13 @@ pub(super) fn resolver<'a>(options: &ReadOptions<'a>, told: &'a Told) -> ImageHr
         resolve_string: Box::new(move |key, usvg_options| {
             let number = key.strip_prefix(LISTED)?.parse().ok()?;
             let picture = told.picture(number)?;
+            let key = (picture.href.clone(), picture.is_within, told.levels());
+            if let Some(found) = told.read_before(&key) {
+                return Some(found);
+            }
             let found = kind(&picture, &options, usvg_options, told);
             found
+                .inspect(|kind| told.keep_read(key, kind.clone()))
                 .map_err(|why| {
                     told.tell(
                         picture.place.clone(),

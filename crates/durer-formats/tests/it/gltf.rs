@@ -170,6 +170,23 @@ fn trees_may_be_deep() {
 }
 
 #[test]
+fn accessors_without_data_are_no_larger_than_those_with_data() {
+    let of = |count: u32| {
+        let accessor = ACCESSOR.replace(r#""bufferView": 0, "#, "");
+        let accessor = accessor.replace(r#""count": 3"#, &format!(r#""count": {count}"#));
+        let mesh = r#"{"primitives": [{"attributes": {"POSITION": 0}}]}"#;
+        let members = format!(
+            r#""accessors": [{accessor}], "meshes": [{mesh}], "nodes": [{{"mesh": 0}}],
+            "scenes": [{{"nodes": [0]}}]"#
+        );
+        read(&file(&triangle_bytes(), &members))
+    };
+    assert_eq!(of(3).unwrap().scene.triangle_count(), 1);
+    let told = of(100_000_000).unwrap_err().to_string();
+    assert!(told.contains("an accessor of 100000000 elements has no `bufferView`"), "{told}");
+}
+
+#[test]
 fn accessors_may_be_interleaved_sparse_and_normalized() {
     // Three vertices of 16 bytes: a float x, padding, RGB in bytes, padding; then sparse parts.
     let mut data = Vec::new();

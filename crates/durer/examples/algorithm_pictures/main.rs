@@ -24,7 +24,7 @@ fn picture(method: SurfaceMethod, input: &SurfaceInput<'_>) -> durer::Result<Fra
     render_with(method, input, &lights, &Options::default(), &mut picture, &mut steps)?;
     steps.steps().iter().for_each(|step| overlay::draw(step, &mut row, &mut picture.color));
     if method == SurfaceMethod::DepthSort {
-        for polygon in depth_sort::order(input, &mut NoTrace) {
+        for polygon in depth_sort::order(input, &mut NoTrace)? {
             overlay::outline(&polygon.outline(input), &mut picture.color);
         }
     }

@@ -35,7 +35,7 @@ fn places(scene: &Scene, degrees: f64) -> Vec<usize> {
     let view = turned(scene, degrees);
     let input = input(scene, &view);
     let mut places = vec![usize::MAX; scene.triangle_count() as usize];
-    for (place, polygon) in order(&input, &mut NoTrace).iter().enumerate() {
+    for (place, polygon) in order(&input, &mut NoTrace).unwrap().iter().enumerate() {
         places[polygon.item as usize] = place;
     }
     places
@@ -97,8 +97,8 @@ fn the_order_of_the_frame_before_saves_moves() {
             let view = turned(&scene, degrees * f64::from(frame));
             let input = input(&scene, &view);
             let (mut fresh, mut reused) = (Recorder::default(), Recorder::default());
-            let expected = painted(&input, &order(&input, &mut fresh));
-            let polygons = order_after(&input, &previous, &mut reused);
+            let expected = painted(&input, &order(&input, &mut fresh).unwrap());
+            let polygons = order_after(&input, &previous, &mut reused).unwrap();
             assert_eq!(painted(&input, &polygons), expected, "{degrees} {frame}");
             previous = polygons.iter().map(|p| p.item).collect();
             if frame > 0 {
@@ -125,12 +125,12 @@ fn orders_that_are_wrong_are_put_right() {
         let scene = crate::surface_scenes::random(seed);
         let view = turned(&scene, 10.0);
         let input = input(&scene, &view);
-        let expected = painted(&input, &order(&input, &mut NoTrace));
+        let expected = painted(&input, &order(&input, &mut NoTrace).unwrap());
         let count = scene.triangle_count() as u32;
         let turned_over: Vec<u32> = (0..count).collect();
         let scattered: Vec<u32> = (0..2 * count).map(|i| i * 7 % (count + 3)).collect();
         for previous in [turned_over, scattered] {
-            let found = painted(&input, &order_after(&input, &previous, &mut NoTrace));
+            let found = painted(&input, &order_after(&input, &previous, &mut NoTrace).unwrap());
             assert_eq!(found, expected, "seed {seed}");
         }
     }

@@ -8,7 +8,7 @@ use durer::math::{DMat4, DVec3};
 use durer::target::drawing::{Drawing, LineClass};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::line::hidden_line::{Options, draw, replay};
+use durer::visibility::line::hidden_line::{Options, Step, draw, replay};
 use durer::visibility::line::{ClassSet, Intersections, wireframe};
 
 const ISO: DVec3 = DVec3::new(1.0, -1.7, 0.9);
@@ -186,6 +186,34 @@ fn visible_lines_are_the_same_without_the_hidden_ones() {
     let without = draw(&scene, &v, &only, &mut NoTrace).expect("drawing");
     let visible: Vec<_> = with.lines.into_iter().filter(|l| l.is_visible()).collect();
     assert_eq!(visible, without.lines);
+}
+
+/// The drawing of faces that penetrate each other, and how many faces were found in front of its lines, per line.
+fn penetrating(count: usize, hidden: bool) -> (Drawing, f64) {
+    let mut random = Random(5);
+    let mut point = || DVec3::from(std::array::from_fn(|_| random.next()));
+    let triangles: Vec<Triangle> = (0..count).map(|_| [(); 3].map(|_| point())).collect();
+    let v = view(DVec3::splat(0.5), ISO, 2.0, false);
+    let options = Options { hidden, ..Options::default() };
+    let mut recorder = Recorder::default();
+    let found = draw(&soup(&triangles), &v, &options, &mut recorder).expect("drawing");
+    assert_eq!(replay(recorder.steps(), &options), found.lines);
+    let covers = recorder.steps().iter().filter_map(|step| match step {
+        Step::Line { covers, .. } => Some(covers.len()),
+        Step::Page(_) => None,
+    });
+    let (lines, sum) = covers.fold((0, 0), |(lines, sum), covers| (lines + 1, sum + covers));
+    (found, sum as f64 / f64::from(lines))
+}
+
+#[test]
+fn where_all_is_known_to_be_hidden_no_more_faces_are_looked_for() {
+    let (all, of_all) = penetrating(120, true);
+    let [(_, of_half), (seen, of_seen)] = [60, 120].map(|count| penetrating(count, false));
+    let visible: Vec<_> = all.lines.into_iter().filter(|l| l.is_visible()).collect();
+    assert_eq!(visible, seen.lines);
+    println!("faces found in front of a line: {of_half} and {of_seen} of {of_all}");
+    assert!(of_seen * 2.0 < of_all && of_seen < of_half * 1.5);
 }
 
 #[test]

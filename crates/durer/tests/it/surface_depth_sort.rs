@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 fn depth_sort_agrees_with_the_z_buffer() {
     each(320, |name, p| {
         let mut found = p.framebuffer();
-        render(&p.input(), &p.lights, &Options::default(), &mut found, &mut NoTrace);
+        render(&p.input(), &p.lights, &Options::default(), &mut found, &mut NoTrace).unwrap();
         assert_same_planes(name, &found, &p.by_z_buffer());
     });
 }
@@ -24,7 +24,7 @@ fn depth_sort_agrees_with_the_z_buffer() {
 fn steps(scene: &Scene) -> Vec<Step> {
     let p = Prepared::new(scene, 100, 100);
     let mut recorder = Recorder::default();
-    order(&p.input(), &mut recorder);
+    order(&p.input(), &mut recorder).unwrap();
     recorder.into_steps()
 }
 
@@ -85,8 +85,8 @@ fn depth_sort_can_be_replayed() {
         let p = Prepared::new(&scene, 60, 60);
         let input = p.input();
         let mut recorder = Recorder::default();
-        let polygons = order(&input, &mut recorder);
-        assert!(polygons == order(&input, &mut NoTrace), "tracing changes the order");
+        let polygons = order(&input, &mut recorder).unwrap();
+        assert!(polygons == order(&input, &mut NoTrace).unwrap(), "tracing changes the order");
         let pixels = |i: usize| {
             let polygon = durer::visibility::surface::depth_sort::ScreenPolygon {
                 triangle: i as u32,
@@ -134,7 +134,7 @@ fn outlines_of_pieces_share_out_the_triangle() {
     let scene = three_beams();
     let p = Prepared::new(&scene, 120, 120);
     let input = p.input();
-    let polygons = order(&input, &mut NoTrace);
+    let polygons = order(&input, &mut NoTrace).unwrap();
     assert!(polygons.len() > input.triangles.len());
     for (i, t) in input.triangles.iter().enumerate() {
         let corners = [0, 1, 2].map(|k| DVec2::new(t.x[k].into(), t.y[k].into()) / 256.0);
@@ -158,7 +158,7 @@ fn the_order_of_triangles_does_not_matter_without_ties() {
             let scene = of_triangles(triangles);
             let p = Prepared::new(&scene, 80, 80);
             let mut found = p.framebuffer();
-            render(&p.input(), &p.lights, &Options::default(), &mut found, &mut NoTrace);
+            render(&p.input(), &p.lights, &Options::default(), &mut found, &mut NoTrace).unwrap();
             (found.color, found.depth)
         };
         assert!(depth(&forward) == depth(&backward), "{seed}");

@@ -9,11 +9,12 @@ mod scope;
 use super::filters;
 use super::finish::{Later, Pending};
 use super::letters::SHARE;
+use super::lines::Lines;
 use super::references::MAX_DEPTH;
 use super::style::{Styles, initial, not_drawn, shown, takes};
 use super::values::{Fate, Kind, can_be_drawn, is_elsewhere};
 use super::write::{self, Changes, Written, attributes, is_of_svg};
-use crate::{Place, Result, Warning};
+use crate::{Result, Warning};
 use scope::Scope;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -324,15 +325,12 @@ impl<'a, 'i> Walk<'a, 'i> {
         for pending in std::mem::take(&mut self.pending).into_iter().rev() {
             pending.finish(&mut self.changes, &self.ids, &mut self.told);
         }
-        let place = |at: usize| {
-            let at = self.document.text_pos_at(at);
-            Place::Line(at.row.into(), at.col.into())
-        };
+        let lines = Lines::new(self.document.input_text());
         let mut seen = BTreeSet::new();
         self.told.sort_by_key(|(at, _)| *at);
         let told = self.told.iter().filter(|(_, message)| seen.insert(message.as_str()));
         let warnings = told
-            .map(|(at, message)| Warning { place: place(*at), message: message.clone() })
+            .map(|(at, message)| Warning { place: lines.place(*at), message: message.clone() })
             .collect();
         let is_new = self.styles.has_sheets || !self.changes.is_empty();
         let written = is_new.then(|| write::document(self.document, &self.changes));

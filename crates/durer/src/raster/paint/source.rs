@@ -1,5 +1,6 @@
 //! What is painted: one colour, gradients, images. All of it evaluated at pixel centres.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::color::{Space, premultiply};
@@ -198,9 +199,7 @@ impl<P: Space> Source<P> {
         let Some(last) = g.stops.last() else { return Self::Solid(P::CLEAR) };
         let flat = match g.shape {
             Shape::Linear { start, end } => start == end,
-            Shape::Radial { radius, .. } => {
-                radius.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater)
-            }
+            Shape::Radial { radius, .. } => radius.partial_cmp(&0.0) != Some(Ordering::Greater),
         };
         let inverse = inverse(pixel_from_paint);
         let (false, Some(paint_from_pixel)) = (flat || g.stops.len() == 1, inverse) else {
@@ -255,7 +254,8 @@ fn inverse(map: DAffine2) -> Option<DAffine2> {
 
 /// Straight colour in 0 … 255 at a parameter of the stops.
 fn stop_color(stops: &[(f64, Color)], t: f64) -> [f64; 4] {
-    let after = stops.iter().position(|s| s.0 > t).unwrap_or(stops.len());
+    // By bisection: drawings may have thousands.
+    let after = stops.partition_point(|s| s.0.partial_cmp(&t) != Some(Ordering::Greater));
     let (before, after) = (after.saturating_sub(1), after.min(stops.len().saturating_sub(1)));
     let ((t0, c0), (t1, c1)) = (stops[before], stops[after]);
     let share = if t1 > t0 { ((t - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 0.0 };
@@ -415,4 +415,27 @@ impl Mixture {
 
 fn premultiply_f<P: Space>(color: [f64; 4], opacity: f64) -> P {
     P::from_srgb(color.map(|c| (c / 255.0) as f32), opacity as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_are_found_among_many_and_among_those_at_one_place() {
+        // Two stops at each of 0, 0.01, …: the colour jumps there, and is even between.
+        let level = |i: u32| [(i * 37 % 256) as u8, (i * 91 % 256) as u8, 0, 255];
+        let pair = |i: u32| [level(i), level(i + 1)].map(|color| (f64::from(i) / 100.0, color));
+        let stops: Vec<(f64, Color)> = (0..=100).flat_map(pair).collect();
+        for i in 0..100 {
+            let expected = level(i + 1).map(f64::from);
+            for within in [0.0, 0.3, 0.999] {
+                let t = (f64::from(i) / 100.0) * (1.0 - within) + f64::from(i + 1) / 100.0 * within;
+                assert_eq!(stop_color(&stops, t), expected, "{t}");
+            }
+        }
+        assert_eq!(stop_color(&stops, -1.0), level(0).map(f64::from));
+        assert_eq!(stop_color(&stops, 2.0), level(101).map(f64::from));
+        assert_eq!(stop_color(&stops, f64::NAN), level(101).map(f64::from));
+    }
 }

@@ -183,7 +183,7 @@ pub fn render_with(
         SurfaceMethod::DepthSort => {
             let t = &mut Wrapped(t, Step::DepthSort);
             let options = depth_sort::Options { look: options.picture() };
-            depth_sort::render(input, lights, &options, framebuffer, t);
+            depth_sort::render(input, lights, &options, framebuffer, t)?;
         }
         SurfaceMethod::Warnock => {
             let t = &mut Wrapped(t, Step::Warnock);

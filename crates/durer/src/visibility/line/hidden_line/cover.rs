@@ -6,6 +6,7 @@
 //! as hidden where both of its sides are.
 
 use super::super::page::{Vertex, orient};
+use super::absorb::absorb;
 use super::occluders::Occluder;
 
 /// The part of a line that one face hides.
@@ -137,28 +138,6 @@ pub(super) fn spans(
         right += r;
     }
     absorb(sliver, found);
-}
-
-/// Gives slivers, the shortest first, to the longer neighbour.
-fn absorb(sliver: f64, spans: &mut Vec<Span>) {
-    let length = |s: &Span| s.to - s.from;
-    while spans.len() > 1 {
-        let shortest =
-            (0..spans.len()).min_by(|&a, &b| length(&spans[a]).total_cmp(&length(&spans[b])));
-        let Some(i) = shortest.filter(|&i| length(&spans[i]) < sliver) else { return };
-        let gone = spans.remove(i);
-        let before = i.checked_sub(1).map(|k| length(&spans[k]));
-        let after = spans.get(i).map(length);
-        if before >= after {
-            spans[i - 1].to = gone.to;
-        } else {
-            spans[i].from = gone.from;
-        }
-        if i > 0 && i < spans.len() && spans[i - 1].invisibility == spans[i].invisibility {
-            spans[i - 1].to = spans[i].to;
-            spans.remove(i);
-        }
-    }
 }
 
 #[cfg(test)]

@@ -17,11 +17,15 @@
 //! that side only, and counts as hidden where both sides are; what touches is visible; lines that lie
 //! on each other are drawn once, the visible one first.
 
+mod absorb;
+mod cells;
 mod cover;
+mod met;
 mod occluders;
 
 pub use cover::Cover;
 
+use self::met::Met;
 use self::occluders::Occluders;
 use super::arrange::{How, Pieces, SLIVER, arrange, corners};
 use super::crease_chain::connected;
@@ -389,17 +393,19 @@ fn hide(
     let count = lines.len();
     let jobs: Vec<_> = (0..count).step_by(JOB).map(|i| i..(i + JOB).min(count)).collect();
     let page = occluders.page();
-    let covers_of = |line: &FeatureLine, covers: &mut Vec<Cover>| {
-        covers_of(line, occluders, whole, page.touching, !options.hidden, covers);
+    let new_met = || Met::new(occluders.count());
+    let covers_of = |line: &FeatureLine, met: &mut Met, covers: &mut Vec<Cover>| {
+        covers_of(line, occluders, whole, page.touching, !options.hidden, met, covers);
     };
     let work = options.work.part();
     let hide = |range: Range<usize>| {
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
+        let mut met = new_met();
         for line in lines.some(range) {
             if work.is_stopped() {
                 break;
             }
-            covers_of(&line, &mut covers);
+            covers_of(&line, &mut met, &mut covers);
             cut(line.piece(), &covers, line.fold, options.hidden, &mut spans, &mut pieces);
         }
         // There for a while in parts and as a whole.
@@ -407,10 +413,11 @@ fn hide(
         pieces
     };
     let pieces = joined(parallel::map(jobs, hide));
+    let mut met = None;
     for line in lines.some(0..count) {
         t.step(|| {
             let mut covers = Vec::new();
-            covers_of(&line, &mut covers);
+            covers_of(&line, met.get_or_insert_with(new_met), &mut covers);
             covers.iter_mut().for_each(|c| c.item = whole.item(c.item));
             let ends = line.ends.map(|v| page.plane_from_grid(v.at));
             let FeatureLine { class, smooth, fold, .. } = line;
@@ -491,38 +498,41 @@ fn meeting_lines(
     intersections(faces, bodies, which).into_iter().filter_map(line).collect()
 }
 
-/// What hides a line, by face. `enough` ends the search where the whole line is known to be hidden.
+/// What hides a line, by face. `enough` ends the search in places where the line is known to be hidden.
 fn covers_of(
     line: &FeatureLine,
     occluders: &Occluders<'_>,
     whole: Whole<'_>,
     touching: f64,
     enough: bool,
+    met: &mut Met,
     covers: &mut Vec<Cover>,
 ) {
     let mut found: Vec<(u32, Cover)> = Vec::new();
-    occluders.along(&line.ends, |id, face| {
+    occluders.along(&line.ends, met, |id, face, met| {
         if line.items.contains(&id) && id != NO_ITEM {
-            return true;
+            return;
         }
-        let Some(face) = face() else { return true };
+        let Some(face) = face() else { return };
         if line.items.contains(&face.item) {
-            return true;
+            return;
         }
         let outline = line.class == LineClass::Silhouette || whole.at_outline(face.item);
         if line.vertices[0] != NO_ITEM && outline && occluders.is_beside(face.item, line.vertices) {
-            return true;
+            return;
         }
         if line.smooth && line.fold == [0.0; 2] && whole.is_beside(face.item, line.items) {
-            return true;
+            return;
         }
         let own = line.reach > touching && occluders.same_body(line.items[0], face.item);
         let touching = if own { line.reach } else { touching };
-        let Some(cover) = cover::cover(&line.ends, &face, touching) else { return true };
+        let Some(cover) = cover::cover(&line.ends, &face, touching) else { return };
         found.push((id, cover));
-        !(enough && occluders.hides_for_certain(&cover))
+        if enough && occluders.hides_for_certain(&cover) {
+            met.hide(cover.from, cover.to);
+        }
     });
-    // A face in several cells was met several times.
+    // A face may have been met several times.
     found.sort_unstable_by_key(|(id, _)| *id);
     found.dedup_by_key(|(id, _)| *id);
     covers.clear();

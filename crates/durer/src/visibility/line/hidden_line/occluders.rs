@@ -1,13 +1,18 @@
 //! The faces that can hide something, found by place.
 //!
-//! A uniform grid of about as many cells as there are faces, but only those cells have lists that a
-//! line runs through; each list is in the order of the nearest depth, so that a line stops where
-//! nothing nearer comes.
+//! Only those cells of a grid have lists that a line runs through; each list is in the order of the nearest
+//! depth, so that a line stops where nothing nearer comes.
 
 use super::super::facing::{Facing, turned_on_grid};
-use super::super::page::{GridPoint, Page, Projected, Vertex};
+use super::super::page::{Page, Projected, Vertex};
 use super::Cover;
+use super::cells::Lists;
+use super::met::Met;
 use crate::visibility::object::{Bodies, Faces};
+
+/// So many entries there are at most for each face: where large faces lie above one another all over the page, the
+/// cells are larger.
+const MOST_PER_FACE: usize = 256;
 
 /// A face in a cell's list.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,88 +33,11 @@ pub(super) struct Occluder {
     pub weight: i8,
 }
 
-/// The cells of the page.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Cells {
-    /// Log₂ of steps per cell.
-    shift: u32,
-    low: GridPoint,
-    columns: i32,
-    rows: i32,
-}
-
-impl Cells {
-    /// About `count` square cells over what the points span.
-    fn new(bounds: [GridPoint; 2], count: usize) -> Self {
-        let [low, high] = bounds;
-        let [w, h] = high.minus(low).map(|d| d.max(1) as f64);
-        let side = (w * h / count.max(1) as f64).sqrt().max(w.max(h) / 4096.0).max(16.0);
-        // The next power of two that is not much larger than the side asked for.
-        let shift = (libm::frexp(side).1 - 1).clamp(4, 30) as u32;
-        let cells = |d: f64| (d as i64 >> shift) as i32 + 1;
-        Self { shift, low, columns: cells(w), rows: cells(h) }
-    }
-
-    fn count(&self) -> usize {
-        self.columns as usize * self.rows as usize
-    }
-
-    fn column(&self, x: i64) -> i32 {
-        ((x - i64::from(self.low.x)) >> self.shift).clamp(0, i64::from(self.columns) - 1) as i32
-    }
-
-    fn row(&self, y: i64) -> i32 {
-        ((y - i64::from(self.low.y)) >> self.shift).clamp(0, i64::from(self.rows) - 1) as i32
-    }
-
-    /// Calls `f` with each row that the polygon of the points touches, and its first and last column
-    /// there; a step of margin makes up for rounding.
-    fn rows_of(&self, points: &[GridPoint], mut f: impl FnMut(i32, i32, i32)) {
-        let (mut lo, mut hi) = (points[0], points[0]);
-        for p in points {
-            lo = GridPoint { x: lo.x.min(p.x), y: lo.y.min(p.y) };
-            hi = GridPoint { x: hi.x.max(p.x), y: hi.y.max(p.y) };
-        }
-        let [x0, x1] = [i64::from(lo.x) - 1, i64::from(hi.x) + 1].map(|x| self.column(x));
-        let [y0, y1] = [i64::from(lo.y) - 1, i64::from(hi.y) + 1].map(|y| self.row(y));
-        if x1 - x0 < 2 || y0 == y1 {
-            (y0..=y1).for_each(|y| f(y, x0, x1));
-            return;
-        }
-        for row in y0..=y1 {
-            let bottom = (i64::from(self.low.y) + (i64::from(row) << self.shift)) as f64 - 2.0;
-            let top = bottom + f64::from(1u32 << self.shift) + 4.0;
-            let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-            let mut reach = |x: f64| {
-                from = from.min(x);
-                to = to.max(x);
-            };
-            for (i, p) in points.iter().enumerate() {
-                let q = points[(i + 1) % points.len()];
-                let (px, py) = (f64::from(p.x), f64::from(p.y));
-                let (dx, dy) = (f64::from(q.x) - px, f64::from(q.y) - py);
-                if py >= bottom && py <= top {
-                    reach(px);
-                }
-                for y in [bottom, top] {
-                    let t = (y - py) / dy;
-                    if t > 0.0 && t < 1.0 {
-                        reach(px + t * dx);
-                    }
-                }
-            }
-            if from <= to {
-                f(row, self.column(from as i64 - 2).max(x0), self.column(to as i64 + 2).min(x1));
-            }
-        }
-    }
-}
-
 /// The faces that hide, by cell.
 pub(super) struct Occluders<'a> {
     faces: &'a Faces,
     projected: &'a Projected,
-    pub cells: Cells,
+    lists: Lists,
     starts: Vec<u32>,
     entries: Vec<Entry>,
     /// Ids from here on are cut faces.
@@ -133,21 +61,14 @@ impl<'a> Occluders<'a> {
     ) -> Self {
         let hides = hiding(faces, bodies, facing, projected);
         let count = hides.iter().filter(|h| **h).count();
-        let cells = Cells::new(bounds(lines.clone()), count);
-        let mut marked = vec![false; cells.count()];
-        for [p, q] in lines {
-            cells.rows_of(&[p.at, q.at], |row, from, to| {
-                let start = (row * cells.columns) as usize;
-                marked[start + from as usize..=start + to as usize].fill(true);
-            });
-        }
+        let lists = Lists::new(count, lines.clone());
         let cut_base = faces.len() as u32;
         let smooth = if facing.any_smooth() { cut_base } else { 0 };
         let mut found = Self {
             faces,
             projected,
-            cells,
-            starts: vec![0; cells.count() + 1],
+            starts: Vec::new(),
+            lists,
             entries: Vec::new(),
             cut_base,
             bodies: (0..smooth).map(|item| bodies.of(item).unwrap_or(u32::MAX)).collect(),
@@ -159,18 +80,16 @@ impl<'a> Occluders<'a> {
             let cut = projected.cuts.iter().zip(cut_base..);
             whole.chain(cut.filter(|(c, _)| hides[c.item as usize]).map(|(_, id)| id))
         };
-        let mut starts = std::mem::take(&mut found.starts);
-        for id in ids() {
-            found.each_cell(id, &marked, |cell, _| starts[cell] += 1);
-        }
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
+        let most = (found.count() * MOST_PER_FACE).min(u32::MAX as usize);
+        let (mut starts, sum) = loop {
+            if let Some(counted) = found.ends(ids(), most) {
+                break counted;
+            }
+            found.lists = found.lists.coarser(lines.clone());
+        };
         let mut entries = vec![Entry { nearest: 0.0, id: 0 }; sum as usize];
         for id in ids() {
-            found.each_cell(id, &marked, |cell, nearest| {
+            found.each_cell(id, |cell, nearest| {
                 starts[cell] -= 1;
                 entries[starts[cell] as usize] = Entry { nearest, id };
             });
@@ -183,15 +102,33 @@ impl<'a> Occluders<'a> {
         found
     }
 
+    /// Where the list of each cell ends, and of all together; `None` where it takes more entries than `most`.
+    fn ends(&self, ids: impl Iterator<Item = u32>, most: usize) -> Option<(Vec<u32>, u32)> {
+        let mut ends = vec![0u32; self.lists.count() + 1];
+        let mut left = if self.lists.is_one() { u32::MAX as usize } else { most };
+        for id in ids {
+            let mut met = 0;
+            self.each_cell(id, |cell, _| {
+                ends[cell] += 1;
+                met += 1;
+            });
+            left = left.checked_sub(met)?;
+        }
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += *end;
+            *end = sum;
+        }
+        Some((ends, sum))
+    }
+
     /// Calls `f` with the marked cells of a face and its nearest depth.
-    fn each_cell(&self, id: u32, marked: &[bool], mut f: impl FnMut(usize, f32)) {
+    fn each_cell(&self, id: u32, mut f: impl FnMut(usize, f32)) {
         let Some(occluder) = self.get(id) else { return };
         let depth = occluder.corners.map(|c| c.depth);
         let nearest = (depth[0].min(depth[1]).min(depth[2]) as f32).next_down();
-        self.cells.rows_of(&occluder.corners.map(|c| c.at), |row, from, to| {
-            let start = (row * self.cells.columns) as usize;
-            let cells = start + from as usize..=start + to as usize;
-            cells.filter(|&cell| marked[cell]).for_each(|cell| f(cell, nearest));
+        self.lists.each_of(&occluder.corners.map(|c| c.at), |_, cells| {
+            cells.filter(|&cell| self.lists.is_marked(cell)).for_each(|cell| f(cell, nearest));
         });
     }
 
@@ -236,8 +173,12 @@ impl<'a> Occluders<'a> {
 
     /// Whether what lies behind a face is hidden whatever else lies there.
     pub fn hides_for_certain(&self, cover: &Cover) -> bool {
-        let whole = cover.from <= 0.0 && cover.to >= 1.0 && cover.left && cover.right;
-        whole && self.folded.is_empty()
+        cover.left && cover.right && self.folded.is_empty()
+    }
+
+    /// How many faces there are.
+    pub fn count(&self) -> usize {
+        self.cut_base as usize + self.projected.cuts.len()
     }
 
     /// The grid.
@@ -245,25 +186,38 @@ impl<'a> Occluders<'a> {
         &self.projected.page
     }
 
-    /// Calls `f` once or more with each face that may hide a part of the line; in the order of cells
-    /// and depths, until it says that it has seen enough.
+    /// Calls `f` once, or now and then more often, with each face that may hide a part of the line; in the order of cells
+    /// and depths. In cells in which the line is known to be hidden, the rest is passed over.
     pub fn along(
         &self,
-        [p, q]: &[Vertex; 2],
-        mut f: impl FnMut(u32, &dyn Fn() -> Option<Occluder>) -> bool,
+        line: &[Vertex; 2],
+        met: &mut Met,
+        mut f: impl FnMut(u32, &dyn Fn() -> Option<Occluder>, &mut Met),
     ) {
-        let farthest = p.depth.max(q.depth) as f32;
+        let farthest = line[0].depth.max(line[1].depth) as f32;
         let farthest = farthest.next_up();
-        let mut more = true;
-        self.cells.rows_of(&[p.at, q.at], |row, from, to| {
-            let start = (row * self.cells.columns) as usize;
-            for cell in start + from as usize..=start + to as usize {
-                let [from, to] = [cell, cell + 1].map(|c| self.starts[c] as usize);
+        met.begin();
+        self.lists.each_of(&line.map(|v| v.at), |row, lists| {
+            for list in lists {
+                let [from, to] = [list, list + 1].map(|c| self.starts[c] as usize);
+                let is_hidden = |met: &Met| {
+                    !met.hides_nothing() && met.hides(self.lists.stretch(row, list, line))
+                };
+                if from == to || is_hidden(met) {
+                    continue;
+                }
                 for entry in &self.entries[from..to] {
-                    if !more || entry.nearest > farthest {
+                    if entry.nearest > farthest {
                         break;
                     }
-                    more = f(entry.id, &|| self.get(entry.id));
+                    if !met.is_first(entry.id) {
+                        continue;
+                    }
+                    let before = met.times();
+                    f(entry.id, &|| self.get(entry.id), met);
+                    if met.times() != before && is_hidden(met) {
+                        break;
+                    }
                 }
             }
         });
@@ -291,16 +245,4 @@ fn hiding(faces: &Faces, bodies: &Bodies, facing: &Facing, projected: &Projected
         bodies.of(item).is_some_and(|body| !front_only[body as usize] || facing.front(item))
     };
     (0..faces.len() as u32).map(hides).collect()
-}
-
-/// The smallest and the largest coordinates.
-fn bounds(lines: impl Iterator<Item = [Vertex; 2]>) -> [GridPoint; 2] {
-    let mut points = lines.flatten().map(|v| v.at);
-    let first = points.next().unwrap_or_default();
-    points.fold([first, first], |[lo, hi], p| {
-        [
-            GridPoint { x: lo.x.min(p.x), y: lo.y.min(p.y) },
-            GridPoint { x: hi.x.max(p.x), y: hi.y.max(p.y) },
-        ]
-    })
 }

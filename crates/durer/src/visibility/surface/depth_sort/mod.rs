@@ -2,8 +2,9 @@
 //!
 //! M. Newell, R. Newell, T. Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual
 //! Conference 1972. List priority. Cost: O(n log n + n · polygons near by and at like depths), but
-//! O(n²) pieces where all faces penetrate each other; memory O(n + pieces' rows). Coherence used:
-//! faces, depth.
+//! O(n²) pieces where all faces penetrate each other, each compared with many others, O(n³) and more; that is
+//! cut off by [`Error::Limit`] (300 faces that all penetrate each other are sorted, 500 are not). Memory O(n +
+//! pieces' rows). Coherence used: faces, depth.
 //!
 //! Deviations: candidates for the tests come from tiles of the screen, in which polygons stand
 //! sorted by depth. The tests keep clear of rounding; what they leave open is decided at the pixel
@@ -33,6 +34,7 @@ use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
     Masks, Visible, pixels_of, with_lighting, write, write_planes,
 };
+use crate::{Error, Result};
 use glazed::Glazed;
 use piece::{Key, Pieces};
 use relation::Verdict;
@@ -154,7 +156,10 @@ fn corners(t: &ScreenTriangle) -> [DVec2; 3] {
 
 /// Puts the triangles of an input into an order in which each may be painted over those before it;
 /// those that penetrate each other or overlap cyclically are split.
-pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Vec<ScreenPolygon> {
+///
+/// # Errors
+/// [`Error::Limit`] where it takes too many comparisons, as of hundreds of triangles that all penetrate each other.
+pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Result<Vec<ScreenPolygon>> {
     order_after(input, &[], t)
 }
 
@@ -162,11 +167,30 @@ pub fn order(input: &SurfaceInput<'_>, t: &mut impl Tracer<Step>) -> Vec<ScreenP
 /// scene seen before, not from far to near. `previous` has that order's items. Any list gives an order that is
 /// as right; the picture is the same. Little is saved: a tenth of the moves, where frames are a degree
 /// apart.
+///
+/// # Errors
+/// As [`order`].
 pub fn order_after(
     input: &SurfaceInput<'_>,
     previous: &[u32],
     t: &mut impl Tracer<Step>,
-) -> Vec<ScreenPolygon> {
+) -> Result<Vec<ScreenPolygon>> {
+    let more = COMPARISONS_PER_TRIANGLE.saturating_mul(input.triangles.len() as u64);
+    order_within(input, previous, COMPARISONS.saturating_add(more), t)
+}
+
+/// So many comparisons are made at most, some seconds' worth, and so many more for each triangle. Models of surfaces
+/// take some hundred per triangle.
+const COMPARISONS: u64 = 1 << 26;
+const COMPARISONS_PER_TRIANGLE: u64 = 4096;
+
+/// [`order_after`] with so many comparisons at most.
+fn order_within(
+    input: &SurfaceInput<'_>,
+    previous: &[u32],
+    most: u64,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<ScreenPolygon>> {
     let pieces = Pieces::new(&input.triangles, pixels_of(input.view));
     let tiles = Tiles::new(&pieces, input.view);
     let turns = turns(input, previous);
@@ -180,6 +204,7 @@ pub fn order_after(
         marked: done.clone(),
         seen: vec![0; done.len()],
         round: 0,
+        looks: 0,
         done,
         stack: Vec::new(),
     };
@@ -188,8 +213,13 @@ pub fn order_after(
         if sorter.advance(p, t) {
             polygons.push(sorter.pieces.polygon(p));
         }
+        let value = sorter.looks / LOOKS_PER_COMPARISON;
+        if value > most {
+            let what = "comparisons of polygons by depth sort";
+            return Err(Error::Limit { what, value, limit: most });
+        }
     }
-    polygons
+    Ok(polygons)
 }
 
 /// Of each triangle of an input how early it stood in an order, the greater the earlier; those that
@@ -206,14 +236,17 @@ fn turns(input: &SurfaceInput<'_>, previous: &[u32]) -> Vec<u32> {
 }
 
 /// Renders the input into the planes that the framebuffer has.
+///
+/// # Errors
+/// As [`order`].
 pub fn render(
     input: &SurfaceInput<'_>,
     lights: &PreparedLights,
     options: &Options,
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
-) {
-    let polygons = order(input, t);
+) -> Result<()> {
+    let polygons = order(input, t)?;
     with_lighting(input, lights, &options.look, |lighting| {
         let masks = &mut Masks::new(input, lighting);
         let blended = input.having(Coverage::Blended);
@@ -227,6 +260,7 @@ pub fn render(
             write(&visible, lighting, &options.look, framebuffer);
         }
     });
+    Ok(())
 }
 
 /// Paints polygons over each other; `painted` hears of pixel, triangle and depth.
@@ -253,6 +287,9 @@ fn paint(
     visible
 }
 
+/// A comparison takes as long as about so many looks into the list of a tile.
+const LOOKS_PER_COMPARISON: u64 = 16;
+
 /// The list of polygons on its way to order.
 struct Sorter<'a> {
     pieces: Pieces<'a>,
@@ -268,6 +305,8 @@ struct Sorter<'a> {
     /// The round in which a polygon was last tested.
     seen: Vec<u32>,
     round: u32,
+    /// How often a tile's list was looked into; a comparison is so many looks.
+    looks: u64,
     /// The polygon in question, below it those that wait for it.
     stack: Vec<u32>,
 }
@@ -324,6 +363,7 @@ impl Sorter<'_> {
             let mut place = 0;
             while let Some(q) = self.tiles.get(tile, place) {
                 place += 1;
+                self.looks += 1;
                 if self.pieces.farthest(q) < self.pieces.nearest(p) {
                     break;
                 }
@@ -332,6 +372,7 @@ impl Sorter<'_> {
                     continue;
                 }
                 self.seen[i] = self.round;
+                self.looks += LOOKS_PER_COMPARISON;
                 let verdict = self.pieces.judge(p, q, self.marked[i]);
                 t.step(|| {
                     let passed =
@@ -377,5 +418,48 @@ impl Sorter<'_> {
             self.tiles.insert(piece, &self.pieces);
         }
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{DMat4, DVec3, Vec3};
+    use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
+    use crate::trace::NoTrace;
+    use crate::view::View;
+    use crate::visibility::surface::Cull;
+    use crate::visibility::surface::setup::Filter;
+
+    /// Triangles around the origin, turned against each other: each penetrates all others.
+    fn penetrating(count: u32) -> Scene {
+        let corner = |i: u32, k: u32| {
+            let [a, b] = [f64::from(i * 7 + k * 40), f64::from(i * 3 + k * 50)].map(|v| v * 0.7);
+            DVec3::new(libm::cos(a), libm::sin(a), libm::sin(b)).as_vec3()
+        };
+        let positions: Vec<Vec3> = (0..3 * count).map(|i| corner(i / 3, i % 3)).collect();
+        let mesh = Mesh { positions, ..Mesh::default() };
+        let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
+        Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
+    }
+
+    #[test]
+    fn faces_that_all_penetrate_each_other_end_at_the_limit() {
+        let scene = penetrating(24);
+        let camera = Camera {
+            eye: DVec3::new(0.0, 0.0, 5.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Orthographic { height: 2.5 },
+            near: 1.0,
+            far: 10.0,
+        };
+        let view = View::new(camera, 48, 48).unwrap();
+        let input = SurfaceInput::new(&scene, &view, Filter::new(Cull::None, 128)).unwrap();
+        let polygons = order(&input, &mut NoTrace).unwrap();
+        assert!(polygons.len() > 200, "{}", polygons.len());
+        let error = order_within(&input, &[], 500, &mut NoTrace).unwrap_err();
+        let Error::Limit { value, limit: 500, .. } = error else { panic!("{error}") };
+        assert!((501..1000).contains(&value), "{value}");
     }
 }

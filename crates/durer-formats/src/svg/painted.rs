@@ -1,0 +1,65 @@
+//! What was painted or decoded once and is used again: tiles of patterns, images.
+//!
+//! Things of the tree are known by their address: the tree outlives what is painted of it, and whoever refers to
+//! one thing twice has the same address twice.
+
+use super::paint::Tile;
+use durer::curve::Path;
+use durer::math::DAffine2;
+use durer::raster::paint::{Filter, Paint};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use usvg::ImageKind;
+
+/// Paints by what they are of.
+#[derive(Debug, Default)]
+pub(super) struct Painted {
+    pub tiles: BTreeMap<TileKey, Paint>,
+    /// With their frames; the reasons where they cannot be shown.
+    pub images: BTreeMap<ImageKey, Result<(Paint, Path), String>>,
+}
+
+/// Of a pattern and all of its map that its pixels depend on.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct TileKey {
+    pattern: usize,
+    size: [u32; 2],
+    is_averaged: bool,
+}
+
+impl TileKey {
+    pub fn new(pattern: &Arc<usvg::Pattern>, tile: &Tile) -> Self {
+        let pattern = Arc::as_ptr(pattern) as usize;
+        let is_averaged = tile.filter() == Filter::Area;
+        Self { pattern, size: [tile.width, tile.height], is_averaged }
+    }
+}
+
+/// Of an image's bytes, its size and quality, and how large it is seen.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct ImageKey {
+    bytes: usize,
+    size: [u32; 2],
+    rendering: u8,
+    scale: [u64; 2],
+}
+
+impl ImageKey {
+    /// Returns `None` for a drawing.
+    pub fn new(node: &usvg::Image, pixel_from_node: DAffine2) -> Option<Self> {
+        let bytes = match node.kind() {
+            ImageKind::PNG(bytes)
+            | ImageKind::JPEG(bytes)
+            | ImageKind::GIF(bytes)
+            | ImageKind::WEBP(bytes) => Arc::as_ptr(bytes) as usize,
+            ImageKind::SVG(_) => return None,
+        };
+        let (size, map) = (node.size(), pixel_from_node.matrix2);
+        Some(Self {
+            bytes,
+            size: [size.width(), size.height()].map(f32::to_bits),
+            rendering: node.rendering_mode() as u8,
+            scale: [map.x_axis, map.y_axis].map(|axis| axis.length().to_bits()),
+        })
+    }
+}
