@@ -49,7 +49,7 @@ def bracket():
     foot = cq.Workplane().box(40, 24, 6, centered=(False, True, False))
     back = cq.Workplane().box(6, 24, 30, centered=(False, True, False))
     both = foot.union(back).edges("|Y and (not <X) and (not >X)").edges("<Z or >X").edges("not <Z").fillet(2)
-    return both.faces(">X").workplane(offset=-10).center(0, 0).moveTo(0, 0) and both.faces("<Z").workplane().center(-26, 0).hole(8)
+    return both.faces("<Z").workplane().center(-26, 0).hole(8)
 
 
 PARTS = {

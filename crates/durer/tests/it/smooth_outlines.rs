@@ -324,3 +324,36 @@ fn outlines_of_open_shells_are_whole() {
         }
     }
 }
+
+#[test]
+fn turned_parts_have_the_lines_of_open_cascade() {
+    // By Open CASCADE 7.8, HLRBRep_Algo, of the parts themselves: profiles, and visible and hidden lengths by view.
+    let views =
+        [DVec3::new(1.0, -1.0, 1.0), DVec3::new(0.3, -0.8, 1.6), DVec3::new(1.0, -2.2, 0.45)];
+    let shaft: &[[f64; 2]] =
+        &[[6.0, 0.0], [6.0, 10.0], [4.0, 10.0], [4.0, 22.0], [2.5, 22.0], [2.5, 30.0]];
+    let cone: &[[f64; 2]] = &[[5.0, 0.0], [2.0, 10.0]];
+    let pulley: &[[f64; 2]] =
+        &[[8.0, 0.0], [8.0, 2.0], [5.0, 4.0], [5.0, 8.0], [8.0, 10.0], [8.0, 12.0]];
+    let parts = [
+        (shaft, [[130.171, 44.936], [125.32, 50.907], [124.221, 39.133]]),
+        (cone, [[40.615, 11.359], [40.114, 9.452], [39.386, 10.333]]),
+        (pulley, [[131.044, 93.898], [130.516, 125.601], [133.387, 71.296]]),
+    ];
+    for (profile, exact) in parts {
+        let (bottom, top) = ([0.0, profile[0][1]], [0.0, profile[profile.len() - 1][1]]);
+        let closed: Vec<[f64; 2]> = [&[bottom], profile, &[top]].concat();
+        for (n, within) in [(64, 0.01), (126, 0.01)] {
+            let part = turned(&closed, n);
+            for (to_eye, exact) in views.into_iter().zip(exact) {
+                let v = view(DVec3::new(0.0, 0.0, top[1] / 2.0), to_eye, 60.0, false);
+                let options = Options { smooth: Smooth::Auto, stubs: 0.01, ..Options::default() };
+                let drawing = draw(&soup(&part), &v, &options, &mut NoTrace).expect("drawing");
+                let found = [true, false].map(|seen| drawing.length(|l| l.is_visible() == seen));
+                let off = [0, 1].map(|k| (found[k] - exact[k]) / (exact[0] + exact[1]));
+                let worst = off[0].abs().max(off[1].abs());
+                assert!(worst < within, "{n} {to_eye}: {found:?}, not {exact:?}");
+            }
+        }
+    }
+}
