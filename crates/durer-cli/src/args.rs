@@ -10,6 +10,7 @@ use crate::encoding::EncodingArgs;
 use crate::environment::{self, Environment};
 use crate::explode::ExplodeArgs;
 use crate::kind::Kind;
+use crate::sandbox::Sandbox;
 use crate::section::SectionArgs;
 use crate::sides::{Sides, sides};
 use crate::staging::StageArgs;
@@ -464,6 +465,12 @@ pub struct RunningArgs {
     /// The budget, and what stops the work.
     #[arg(skip)]
     pub work: durer::work::Work,
+    /// Open nothing but the folders of what is read and of what is written, by Landlock (Linux)
+    ///
+    /// A fault in a reader can then neither read nor change other files, nor open connections. Where the system
+    /// cannot do that, the command ends with an error, or with `best-effort` goes on with a warning.
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "strict")]
+    pub sandbox: Option<Sandbox>,
     /// No warnings and no progress; errors are still told
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,

@@ -1,6 +1,9 @@
 //! Files that are written beside the place where they shall be, so that at any moment there is the
 //! old file or the whole new one.
 
+mod stale;
+
+use crate::places::check_unread;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, Write};
@@ -26,6 +29,10 @@ impl Beside {
         if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
             return Err(io::Error::other("the file is read-only"));
         }
+        if check_unread(&place).is_err() {
+            return Err(io::Error::other("this file is read; name another one for the result"));
+        }
+        stale::remove_beside(&place);
         for attempt in 0u32.. {
             let name = format!(".durer-{}-{attempt}.tmp", std::process::id());
             let path = place.with_file_name(name);

@@ -1,5 +1,6 @@
 //! How the command ends when it does not end well.
 
+use durer_formats::told::{message, shown_path};
 use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
@@ -46,7 +47,7 @@ impl Failure {
 
     /// A failure of a file: its name, then what is wrong with it.
     pub fn of_file(file: &Path, what: impl fmt::Display) -> Self {
-        Self::Data(format!("{}: {what}", file.display()))
+        Self::Data(format!("{}: {what}", shown_path(file)))
     }
 
     /// A failed write to standard output.
@@ -61,11 +62,21 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Data(message) | Self::Refused(message) | Self::Usage(message) => {
-                f.write_str(message)
+            Self::Data(text) | Self::Refused(text) | Self::Usage(text) => {
+                f.write_str(&message(text))
             }
             Self::Partial | Self::ClosedPipe => Ok(()),
         }
+    }
+}
+
+/// Has a write beyond the largest size of a file (`ulimit -f`) fail as others do, where it would end the process.
+pub fn tell_of_large_files() {
+    #[cfg(unix)]
+    {
+        let noted = std::sync::Arc::default();
+        // Where that cannot be, all is as it was.
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noted);
     }
 }
 

@@ -11,6 +11,7 @@ use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces};
 use durer::work::Work;
+use durer_formats::told::{cut, escaped};
 use durer_formats::{Model, ModelFormat};
 use serde::Serialize;
 use std::fmt::Write;
@@ -101,6 +102,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             // What a model has kept of the budget goes with it.
             let options = input::read_options(&args.reading, &args.running.work.part());
             let model = input::read(path, &options)?;
+            let name = input::given_name(path);
             infos.push(Told::Model(Box::new(of_model(name, &model, &args.running.work)?)));
         }
         messages.progress.advance();
@@ -158,14 +160,19 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
         up_axis: scene.up_axis.name(),
         materials: scene.materials.iter().map(material).collect(),
         textures: textures(scene),
-        cameras: scene.cameras.iter().map(|c| c.name.clone()).collect(),
+        cameras: scene.cameras.iter().map(|c| short(&c.name)).collect(),
         lights: scene.lights.iter().map(|l| light(&l.kind)).collect(),
-        animations: model.animations.clone(),
-        variants: model.variants.clone(),
-        plates: model.plates.clone(),
-        extensions: model.extensions.clone(),
+        animations: model.animations.iter().map(short).collect(),
+        variants: model.variants.iter().map(short).collect(),
+        plates: model.plates.iter().map(short).collect(),
+        extensions: model.extensions.iter().map(short).collect(),
         warnings,
     })
+}
+
+/// A name of the file, not too long.
+fn short(name: impl AsRef<str>) -> String {
+    cut(name.as_ref()).into_owned()
 }
 
 fn bounds(scene: &Scene) -> Option<Bounds> {
@@ -229,14 +236,14 @@ fn material(material: &Material) -> MaterialInfo {
         ShadingModel::Phong => "phong",
         ShadingModel::Unlit => "unlit",
     };
-    MaterialInfo { name: material.name.clone(), model, textures: material.textures().count() }
+    MaterialInfo { name: short(&material.name), model, textures: material.textures().count() }
 }
 
 fn textures(scene: &Scene) -> Vec<TextureInfo> {
     let images = scene.textures.iter().filter_map(|t| scene.images.get(t.image));
     // Those that nothing shows, or that could not be read, are empty.
     let read = images.filter(|i| !i.data.is_empty());
-    read.map(|i| TextureInfo { name: i.name.clone(), width: i.width, height: i.height }).collect()
+    read.map(|i| TextureInfo { name: short(&i.name), width: i.width, height: i.height }).collect()
 }
 
 fn light(kind: &LightKind) -> &'static str {
@@ -303,10 +310,10 @@ impl Info {
         list("plates", self.plates.iter().enumerate().map(numbered).collect());
         list("extensions", self.extensions.clone());
         lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
-        let mut text = format!("{}\n", self.model);
+        let mut text = format!("{}\n", escaped(&self.model));
         for (name, value) in lines {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {name:<11} {value}");
+            let _ = writeln!(text, "  {name:<11} {}", escaped(&value));
         }
         text
     }

@@ -5,6 +5,7 @@ use crate::failure::{Failure, in_words};
 use crate::resources::Folder;
 use crate::watch;
 use durer::work::Work;
+use durer_formats::told::shown_path;
 use durer_formats::{
     Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, gltf, read_model, stl,
 };
@@ -23,7 +24,27 @@ pub fn is_stream(path: &Path) -> bool {
 
 /// What messages call an input.
 pub fn display_name(path: &Path) -> String {
-    if is_stream(path) { "standard input".to_owned() } else { path.display().to_string() }
+    if is_stream(path) { "standard input".to_owned() } else { shown_path(path) }
+}
+
+/// What reports call an input: the path as it was given, whatever is in it.
+pub fn given_name(path: &Path) -> String {
+    if is_stream(path) { display_name(path) } else { path.display().to_string() }
+}
+
+/// The squares of larger coordinates are beyond what numbers of double precision hold.
+const FARTHEST: f64 = 1e150;
+
+/// A failure with the file's name, where it comes of a model that lies too far off for any view.
+pub fn blamed(name: &str, scene: &durer::scene::Scene, failure: Failure) -> Failure {
+    let farthest = || scene.bounds().map(|b| b.min.abs().max(b.max.abs()).max_element());
+    let too_far = || farthest().is_some_and(|farthest| farthest.is_nan() || farthest > FARTHEST);
+    match failure {
+        Failure::Usage(_) | Failure::Data(_) if too_far() => Failure::Data(format!(
+            "{name}: coordinates of the model, times the matrices above them, are beyond 10^150; scale them down"
+        )),
+        other => other,
+    }
 }
 
 /// At most one model can come from standard input.

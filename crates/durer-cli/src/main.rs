@@ -26,16 +26,19 @@ mod messages;
 mod output;
 mod panics;
 mod pick;
+mod places;
 mod plot;
 mod progress;
 mod regions;
 mod render;
 mod report;
 mod resources;
+mod sandbox;
 mod section;
 mod shape;
 mod sides;
 mod staging;
+mod threads;
 mod thumbnailer;
 mod tiles;
 mod values;
@@ -46,6 +49,7 @@ use args::{Cli, Command, RunningArgs};
 use clap::parser::ValueSource;
 use clap::{CommandFactory, FromArgMatches};
 use config::Configured;
+use durer_formats::told::shown_path;
 use encoding::EncodingArgs;
 use failure::Failure;
 use std::io::Write;
@@ -53,6 +57,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    failure::tell_of_large_files();
     let result = panics::told_at_the_end(parse_and_run);
     if let Some(code) = watch::interrupted() {
         return ExitCode::from(code);
@@ -75,7 +80,7 @@ fn parse_and_run() -> Result<(), Failure> {
     let (command, file) = parse()?;
     run(command).map_err(|failure| match (failure, file) {
         (Failure::Usage(what), Some(file)) => {
-            Failure::Usage(format!("{what} (options of {} count, too)", file.display()))
+            Failure::Usage(format!("{what} (options of {} count, too)", shown_path(&file)))
         }
         (other, _) => other,
     })
@@ -87,15 +92,16 @@ fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
         config::configured(Cli::command(), std::env::args_os().collect())?;
     let matches = command.try_get_matches_from(line).map_err(answered)?;
     let mut cli = Cli::from_arg_matches(&matches).map_err(answered)?;
-    let Some((_, given)) = matches.subcommand() else { return Ok((cli.command, file)) };
+    let Some((name, given)) = matches.subcommand() else { return Ok((cli.command, file)) };
     let by_hand =
         |id: &&clap::Id| given.value_source(id.as_str()) == Some(ValueSource::CommandLine);
     let names: Vec<String> = given.ids().filter(by_hand).map(ToString::to_string).collect();
     if let Some(encoding) = encoding(&mut cli.command) {
         encoding.quality_given = names.iter().any(|name| name == "quality");
     }
+    places::settle(name, given)?;
     if let Some(file) = file.as_ref().filter(|_| is_verbose(given)) {
-        let message = format!("durer: options are taken from {} too", file.display());
+        let message = format!("durer: options are taken from {} too", shown_path(file));
         // As for errors: nobody is there to be told that it failed.
         let _ = writeln!(std::io::stderr().lock(), "{message}");
     }
@@ -182,15 +188,14 @@ fn run(command: Command) -> Result<(), Failure> {
 /// Runs the work on as many threads and with the instructions that were asked for.
 fn on_threads(
     args: &RunningArgs,
-    work: impl FnOnce() -> Result<(), Failure> + Send,
+    work: impl FnOnce() -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     watch::start(args);
     if let Some(level) = args.simd {
         durer::simd::set_default_level(level);
     }
-    let Some(threads) = args.threads else { return work() };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
-    pool.map_err(|e| Failure::Data(format!("--threads {threads}: {e}")))?.install(work)
+    threads::start(args)?;
+    work()
 }
 
 fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {

@@ -3,6 +3,7 @@
 use crate::args::RunningArgs;
 use crate::progress::Progress;
 use durer_formats::Warning;
+use durer_formats::told;
 
 /// Warnings of one model that are told without `--verbose`; the rest is counted.
 const WARNINGS: usize = 5;
@@ -25,13 +26,13 @@ impl Messages {
 
     /// Something went wrong; always told.
     pub fn error(&self, message: impl std::fmt::Display) {
-        self.progress.tell(&format!("durer: {message}"));
+        self.progress.tell(&told::message(&format!("durer: {message}")));
     }
 
     /// A warning about a file that is not of its reader.
     pub fn warning(&self, file: &str, message: impl std::fmt::Display) {
         if !self.quiet {
-            self.progress.tell(&format!("durer: warning: {file}: {message}"));
+            self.progress.tell(&told::message(&format!("durer: warning: {file}: {message}")));
         }
     }
 
@@ -42,7 +43,7 @@ impl Messages {
         }
         let told = if self.verbose { warnings.len() } else { warnings.len().min(WARNINGS) };
         for warning in &warnings[..told] {
-            self.progress.tell(&format!("durer: warning: {file}: {warning}"));
+            self.progress.tell(&told::message(&format!("durer: warning: {file}: {warning}")));
         }
         let rest = warnings.len() - told;
         if rest > 0 {
@@ -54,7 +55,7 @@ impl Messages {
     /// What was done, for `--verbose`.
     pub fn detail(&self, message: impl FnOnce() -> String) {
         if self.verbose {
-            self.progress.tell(&format!("durer: {}", message()));
+            self.progress.tell(&told::message(&format!("durer: {}", message())));
         }
     }
 }

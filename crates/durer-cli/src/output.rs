@@ -4,7 +4,9 @@ use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
 use crate::kind::{Kind, Wanted};
-use std::collections::BTreeSet;
+use crate::places::{Place, check_unread};
+use durer_formats::told::shown_path;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -16,6 +18,16 @@ pub enum Target {
     Stdout,
     /// A file that is replaced as a whole.
     File(PathBuf),
+}
+
+impl Target {
+    /// What messages call it.
+    fn name(&self) -> String {
+        match self {
+            Self::Stdout => "standard output".to_owned(),
+            Self::File(path) => shown_path(path),
+        }
+    }
 }
 
 impl std::fmt::Display for Target {
@@ -57,17 +69,11 @@ pub fn plan(
         }
         wanted.check_name(option, path)?;
         make_folder(path.parent().unwrap_or(Path::new("")))?;
-        return Ok(names
-            .iter()
-            .map(|n| Target::File(pattern.path(n.frame.unwrap_or(0))))
-            .collect());
+        return names.iter().map(|n| unread(pattern.path(n.frame.unwrap_or(0)))).collect();
     }
     if path.is_dir() || ends_in_separator(path) || (many && path.extension().is_none()) {
         make_folder(path)?;
-        return Ok(names
-            .iter()
-            .map(|n| Target::File(path.join(n.file_name(wanted.kind))))
-            .collect());
+        return names.iter().map(|n| unread(path.join(n.file_name(wanted.kind)))).collect();
     }
     if many {
         let frames = names.iter().any(|n| n.frame.is_some());
@@ -77,17 +83,22 @@ pub fn plan(
     single(option, path, wanted).map(|t| vec![t])
 }
 
-/// Refuses two pictures in one place.
+/// Refuses two pictures in one place, however it is spelled.
 pub fn check_distinct<'a>(targets: impl Iterator<Item = &'a Target>) -> Result<(), Failure> {
-    let mut seen = BTreeSet::new();
+    let mut seen = BTreeMap::new();
     for target in targets {
-        let key = match target {
-            Target::Stdout => PathBuf::from("-"),
-            Target::File(path) => path.clone(),
+        let place = match target {
+            Target::Stdout => Place::of_stdout(),
+            Target::File(path) => Place::of(path),
         };
-        if !seen.insert(key.clone()) {
-            let place = key.display();
-            return Err(Failure::Usage(format!("{place}: two pictures would go there")));
+        let shown = target.name();
+        if let Some(first) = seen.insert(place, target) {
+            let also = if first == target {
+                String::new()
+            } else {
+                format!(" (it is {} too)", first.name())
+            };
+            return Err(Failure::Usage(format!("{shown}: two pictures would go there{also}")));
         }
     }
     Ok(())
@@ -139,12 +150,17 @@ pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
 fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(folder) {
-        Ok(m) if m.is_dir() => Ok(Target::File(path.to_owned())),
+        Ok(m) if m.is_dir() => unread(path.to_owned()),
         Ok(_) => Err(Failure::of_file(path, format!("{} is not a folder", folder.display()))),
         Err(e) => {
             Err(Failure::of_file(path, format!("folder {}: {}", folder.display(), in_words(&e))))
         }
     }
+}
+
+/// A file that is no input.
+fn unread(path: PathBuf) -> Result<Target, Failure> {
+    check_unread(&path).map(|()| Target::File(path))
 }
 
 /// Whether the path is there and neither a file nor a folder.
@@ -179,17 +195,19 @@ pub fn stems(models: &[impl AsRef<Path>]) -> Vec<String> {
     let part = |p: Option<&std::ffi::OsStr>| p.unwrap_or_default().to_string_lossy().into_owned();
     let stem = |m: &Path| if is_stream(m) { "stdin".to_owned() } else { part(m.file_stem()) };
     let stems: Vec<String> = models.iter().map(|m| stem(m.as_ref())).collect();
-    let shared = |s: &String| stems.iter().filter(|t| *t == s).count() > 1;
+    let mut counts = BTreeMap::new();
+    stems.iter().for_each(|stem| *counts.entry(stem).or_insert(0) += 1);
     let mut taken = BTreeSet::new();
+    // By the name, the number to try next: many may share one.
+    let mut numbers = BTreeMap::new();
     let mut result = Vec::new();
     for (model, stem) in models.iter().zip(&stems) {
-        let base = if shared(stem) { part(model.as_ref().file_name()) } else { stem.clone() };
+        let base = if counts[stem] > 1 { part(model.as_ref().file_name()) } else { stem.clone() };
+        let number = numbers.entry(base.clone()).or_insert(2);
         let mut name = base.clone();
-        for number in 2.. {
-            if taken.insert(name.clone()) {
-                break;
-            }
+        while !taken.insert(name.clone()) {
             name = format!("{base}-{number}");
+            *number += 1;
         }
         result.push(name);
     }
@@ -224,29 +242,29 @@ impl Pattern {
 
 /// Where encoders write to: memory, or a new file beside the old one.
 pub struct Out {
-    place: Place,
+    sink: Sink,
     written: u64,
 }
 
-enum Place {
+enum Sink {
     Memory(Vec<u8>),
     File(BufWriter<Beside>),
 }
 
 impl Write for Out {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let count = match &mut self.place {
-            Place::Memory(memory) => memory.write(bytes)?,
-            Place::File(file) => file.write(bytes)?,
+        let count = match &mut self.sink {
+            Sink::Memory(memory) => memory.write(bytes)?,
+            Sink::File(file) => file.write(bytes)?,
         };
         self.written += count as u64;
         Ok(count)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.place {
-            Place::Memory(_) => Ok(()),
-            Place::File(file) => file.flush(),
+        match &mut self.sink {
+            Sink::Memory(_) => Ok(()),
+            Sink::File(file) => file.flush(),
         }
     }
 }
@@ -262,22 +280,22 @@ pub fn deliver(
         Target::File(path) => (path.as_path(), (!is_special(path)).then_some(path)),
     };
     let fail = |e: &io::Error| Failure::of_file(name, in_words(e));
-    let place = match replaced {
-        Some(path) => Place::File(BufWriter::new(Beside::create(path).map_err(|e| fail(&e))?)),
-        None => Place::Memory(Vec::new()),
+    let sink = match replaced {
+        Some(path) => Sink::File(BufWriter::new(Beside::create(path).map_err(|e| fail(&e))?)),
+        None => Sink::Memory(Vec::new()),
     };
-    let mut out = Out { place, written: 0 };
+    let mut out = Out { sink, written: 0 };
     encode(&mut out).map_err(|e| match &e {
         durer_formats::Error::Io(e) => fail(e),
         _ => Failure::of_file(name, e),
     })?;
-    match (out.place, target) {
-        (Place::File(file), _) => {
+    match (out.sink, target) {
+        (Sink::File(file), _) => {
             let file = file.into_inner().map_err(|e| fail(e.error()))?;
             file.commit().map_err(|e| fail(&e))?;
         }
-        (Place::Memory(bytes), Target::File(path)) => write_special(path, &bytes)?,
-        (Place::Memory(bytes), Target::Stdout) => {
+        (Sink::Memory(bytes), Target::File(path)) => write_special(path, &bytes)?,
+        (Sink::Memory(bytes), Target::Stdout) => {
             let mut out = io::stdout().lock();
             out.write_all(&bytes).and_then(|()| out.flush()).map_err(|e| Failure::of_stdout(&e))?;
         }

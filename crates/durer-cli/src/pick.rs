@@ -79,12 +79,14 @@ pub fn run(args: &PickArgs) -> Result<(), Failure> {
     drop(messages);
     let usage = |e: durer::Error| Failure::of_library(&e);
     let natural = match args.size.is_open() {
-        true => shape::of_view(&args.view, &model.scene, None)?,
+        true => shape::of_view(&args.view, &model.scene, None)
+            .map_err(|failure| input::blamed(&name, &model.scene, failure))?,
         false => DVec2::ONE,
     };
     let size = args.size.of_shape(natural);
     let shot = Shot { view: None, size, turn: None };
-    let camera = camera::camera(&args.view, &model.scene, &shot)?;
+    let camera = camera::camera(&args.view, &model.scene, &shot)
+        .map_err(|failure| input::blamed(&name, &model.scene, failure))?;
     let view = View::new(camera, size.width, size.height).map_err(usage)?;
     let area = match (args.at, args.rect) {
         (_, Some(rect)) => Area::Rect(rect),

@@ -3,9 +3,7 @@
 use crate::args::{RenderArgs, Samples, Shadows};
 use crate::camera::{self, Shot};
 use crate::compare;
-use crate::drawing::report::DrawingReport;
 use crate::drawing::{self, Annotated, Subject};
-use crate::encoding;
 use crate::environment;
 use crate::explode;
 use crate::failure::Failure;
@@ -14,7 +12,8 @@ use crate::input;
 use crate::kind::Wanted;
 use crate::messages::Messages;
 use crate::output::{self, Name, Target};
-use crate::report::{self, Failed, ModelReport, PictureReport, Report};
+use crate::report::noticed::Noticed;
+use crate::report::{Failed, Growing, ModelReport, PictureReport};
 use crate::section;
 use crate::staging;
 use crate::values::{Algorithm, Size};
@@ -26,7 +25,7 @@ use durer::target::Framebuffer;
 use durer::view::components::components;
 use durer::view::layout::Layout;
 use durer::view::objects::divided;
-use durer_formats::{Model, png};
+use durer_formats::png;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -38,35 +37,47 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let jobs = plan(args)?;
     let pictures = jobs.iter().map(|job| job.pictures.len() as u64).sum();
     let messages = Messages::new(&args.running, pictures);
-    let mut report = Report { version: env!("CARGO_PKG_VERSION"), ..Report::default() };
-    for job in &jobs {
-        match render_model(args, job, &messages) {
-            Ok(model) => {
-                report.models.push(model);
-                if args.skip_failures {
-                    watch::done();
-                }
+    let mut report = Growing::new(args.json);
+    let ended = render_all(args, &jobs, &messages, &mut report);
+    drop(messages);
+    let printed = report.print(start.elapsed().as_secs_f64());
+    ended.and(printed)
+}
+
+/// Renders models one after the other, up to the first that fails unless such are skipped.
+fn render_all(
+    args: &RenderArgs,
+    jobs: &[Job],
+    messages: &Messages,
+    report: &mut Growing,
+) -> Result<(), Failure> {
+    let (mut done, mut failed) = (0, 0);
+    for job in jobs {
+        let Err(failure) = render_model(args, job, messages, report) else {
+            done += 1;
+            if args.skip_failures {
+                watch::done();
             }
-            Err(Failure::Data(error)) if args.skip_failures => {
-                messages.error(&error);
-                report.failed.push(Failed { model: job.model.display().to_string(), error });
-                if !args.running.work.go_on() {
-                    break;
-                }
-            }
-            Err(failure) => return Err(failure),
+            continue;
+        };
+        let error = failure.to_string();
+        let skipped = args.skip_failures && matches!(failure, Failure::Data(_));
+        if skipped {
+            messages.error(&error);
+            failed += 1;
+        }
+        report.failed(&Failed { model: job.model.display().to_string(), error });
+        if !skipped {
+            return Err(failure);
+        }
+        if !args.running.work.go_on() {
+            break;
         }
     }
-    drop(messages);
-    report.total_seconds = start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = report::peak_memory();
-    if args.json {
-        report::print(&report)?;
-    }
-    match (report.failed.is_empty(), report.models.is_empty()) {
-        (true, _) => Ok(()),
-        (false, false) => Err(Failure::Partial),
-        (false, true) => Err(Failure::Data("no model could be rendered".to_owned())),
+    match (done, failed) {
+        (_, 0) => Ok(()),
+        (1.., _) => Err(Failure::Partial),
+        _ => Err(Failure::Data("no model could be rendered".to_owned())),
     }
 }
 
@@ -274,7 +285,12 @@ fn plan(args: &RenderArgs) -> Result<Vec<Job<'_>>, Failure> {
 }
 
 /// Reads a model and makes its pictures.
-fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<ModelReport, Failure> {
+fn render_model(
+    args: &RenderArgs,
+    job: &Job,
+    messages: &Messages,
+    told: &mut Growing,
+) -> Result<(), Failure> {
     let name = input::display_name(job.model);
     messages.progress.stage(|| format!("reading {name}"));
     let start = Instant::now();
@@ -307,14 +323,14 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
     });
     let found;
     let args = if args.picture.sides.is_open() {
-        found = sized(args, drawing::shape(args, &model.scene)?);
+        let shape = drawing::shape(args, &model.scene);
+        found = sized(args, shape.map_err(|f| input::blamed(&name, &model.scene, f))?);
         check_size(&found)?;
         &found
     } else {
         args
     };
-    let mut pictures = Vec::new();
-    let mut unseen_of_all = None;
+    let mut noticed = Noticed::default();
     let mut film = job.film();
     let kind = wanted(args).kind;
     let is_drawing = drawing::is_wanted(args, kind);
@@ -339,32 +355,27 @@ fn render_model(args: &RenderArgs, job: &Job, messages: &Messages) -> Result<Mod
         } else {
             render_picture(args, &model.scene, picture, &mut sink)
         };
-        let (report, unseen) = report.map_err(|failure| with_file(&name, failure))?;
+        let (report, unseen) = report
+            .map_err(|failure| input::blamed(&name, &model.scene, with_file(&name, failure)))?;
         if let Some(why) = unseen {
             messages.warning(&name, &why);
-            unseen_of_all.get_or_insert(why);
+            noticed.unseen.get_or_insert(why);
         }
         tell_differing(&name, &report, messages);
         messages.detail(|| describe(&report));
         messages.progress.advance();
-        pictures.push(report);
+        noticed.add(&report);
+        told.picture(&report);
     }
     film.map_or(Ok(()), Film::finish)?;
-    tell_non_finite(&name, &mut model, &pictures, messages);
-    if let Some(why) = unseen_of_all {
-        model.warn(durer_formats::Place::Whole, why);
-    }
-    tell_notes(&name, &mut model, &pictures, messages);
-    tell_loose_faces(&name, &mut model, &pictures, messages);
-    tell_scale(&name, &mut model, &pictures, messages);
-    tell_flattened(&name, &mut model, &pictures, messages);
-    Ok(ModelReport {
-        model: name,
+    noticed.tell(&name, &mut model, messages);
+    told.model(&ModelReport {
+        model: input::given_name(job.model),
         format: model.format,
         read_seconds,
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
-        pictures,
-    })
+    });
+    Ok(())
 }
 
 /// The default material in another colour.
@@ -378,63 +389,6 @@ fn tell_differing(name: &str, report: &PictureReport, messages: &Messages) {
     for c in report.compared.iter().filter(|c| c.differing_pixels > 0) {
         let (algorithm, count) = (c.algorithm, c.differing_pixels);
         messages.warning(name, format!("{algorithm} differs from the z-buffer at {count} pixels"));
-    }
-}
-
-/// Vertices that are no numbers are found by the renderer, not by the reader.
-fn tell_non_finite(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
-    let count = pictures.first().map_or(0, |p| p.triangles.non_finite);
-    if count == 0 {
-        return;
-    }
-    let known = model.warnings.len();
-    let message = format!("{count} triangles with a coordinate that is not finite are left out");
-    model.warn(durer_formats::Place::Whole, message);
-    messages.warnings(name, &model.warnings[known..]);
-}
-
-/// What sheets cannot show is known when they have been laid out.
-fn tell_notes(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
-    let known = model.warnings.len();
-    let mut told: Vec<&String> = pictures.iter().flat_map(|p| &p.notes).collect();
-    // Frames of a film have the same.
-    told.dedup();
-    told.into_iter().for_each(|note| model.warn(durer_formats::Place::Whole, note.clone()));
-    messages.warnings(name, &model.warnings[known..]);
-}
-
-/// How faces meet is known when their lines have been drawn.
-fn tell_loose_faces(
-    name: &str,
-    model: &mut Model,
-    pictures: &[PictureReport],
-    messages: &Messages,
-) {
-    let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
-    if let Some(message) = drawings.filter_map(DrawingReport::loose_faces).next() {
-        let known = model.warnings.len();
-        model.warn(durer_formats::Place::Whole, message);
-        messages.warnings(name, &model.warnings[known..]);
-    }
-}
-
-/// The scale is known when the drawing has been laid onto its paper.
-fn tell_scale(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
-    let drawings = pictures.iter().filter_map(|p| p.drawing.as_ref());
-    if let Some(message) = drawings.filter_map(|d| d.told_scale.clone()).next() {
-        let known = model.warnings.len();
-        model.warn(durer_formats::Place::Whole, message);
-        messages.warnings(name, &model.warnings[known..]);
-    }
-}
-
-/// What is transparent is known when it has been painted.
-fn tell_flattened(name: &str, model: &mut Model, pictures: &[PictureReport], messages: &Messages) {
-    if pictures.iter().any(|p| p.flattened) {
-        let known = model.warnings.len();
-        let message = format!("{}; --background gives it another colour", encoding::FLATTENED);
-        model.warn(durer_formats::Place::Whole, message);
-        messages.warnings(name, &model.warnings[known..]);
     }
 }
 

@@ -1,23 +1,14 @@
 //! What `durer render --json` says.
 
+mod growing;
+pub mod noticed;
+
+pub use growing::Growing;
+
 use durer::pipeline::{self, Status, Unseen};
 use durer::scene::{Camera, Projection};
+use durer_formats::told;
 use serde::Serialize;
-
-/// The whole report.
-#[derive(Debug, Default, Serialize)]
-pub struct Report {
-    /// The version of durer.
-    pub version: &'static str,
-    /// Models in the order of the command line, without those that failed.
-    pub models: Vec<ModelReport>,
-    /// Models that failed.
-    pub failed: Vec<Failed>,
-    /// From start to end.
-    pub total_seconds: f64,
-    /// The most memory that the process held, where the system tells.
-    pub peak_memory_bytes: Option<u64>,
-}
 
 /// A model that could be read.
 #[derive(Debug, Serialize)]
@@ -30,8 +21,6 @@ pub struct ModelReport {
     pub read_seconds: f64,
     /// What was repaired or left out.
     pub warnings: Vec<String>,
-    /// What was made of it.
-    pub pictures: Vec<PictureReport>,
 }
 
 /// One picture, with its further planes.
@@ -191,7 +180,7 @@ pub fn print(value: &impl Serialize) -> Result<(), crate::failure::Failure> {
     let mut text = serde_json::to_string_pretty(value)
         .map_err(|e| crate::failure::Failure::Data(format!("the report: {e}")))?;
     text.push('\n');
-    print_text(&text)
+    print_text(&told::json(&text))
 }
 
 /// Writes text to standard output.

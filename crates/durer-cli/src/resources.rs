@@ -123,6 +123,29 @@ fn directory(folder: &Path) -> io::Result<PathBuf> {
     if full.is_dir() { Ok(full) } else { Err(io::Error::other("it is not a folder")) }
 }
 
+/// Opens a file for reading; does not wait for whoever writes to a pipe.
+fn open(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(
+        &mut options,
+        libc::O_NONBLOCK | libc::O_NOCTTY,
+    );
+    options.read(true).open(path)
+}
+
+/// Where an open file lies, as the system tells; where it does not, the path that it was opened by.
+#[cfg(target_os = "linux")]
+fn place_of(file: &File, path: &Path) -> PathBuf {
+    use std::os::fd::AsRawFd;
+    fs::read_link(format!("/proc/self/fd/{}", file.as_raw_fd())).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn place_of(_: &File, path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
 /// The names in a folder, as far as it can be read.
 fn names(folder: &Path) -> Names {
     let mut names = Names::new();
@@ -154,7 +177,12 @@ impl Resources for Folder {
 
     fn find(&self, path: &str, limit: u64) -> Result<Found, String> {
         let (full, note) = self.place(path)?;
-        let metadata = fs::metadata(&full).map_err(|e| in_words(&e))?;
+        // What is checked is what was opened: paths may lead elsewhere a moment later.
+        let file = open(&full).map_err(|e| in_words(&e))?;
+        if !self.allows(&place_of(&file, &full)) {
+            return Err("it was moved while it was opened".to_owned());
+        }
+        let metadata = file.metadata().map_err(|e| in_words(&e))?;
         if !metadata.is_file() {
             return Err("it is not a file".to_owned());
         }
@@ -163,7 +191,6 @@ impl Resources for Folder {
         if metadata.len() > limit {
             return Err(too_large());
         }
-        let file = File::open(&full).map_err(|e| in_words(&e))?;
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| in_words(&e))?;
         if bytes.len() as u64 > limit { Err(too_large()) } else { Ok(Found { bytes, note }) }

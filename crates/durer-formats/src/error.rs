@@ -1,5 +1,6 @@
 //! What can be wrong with bytes.
 
+use crate::told::{message, shown};
 use thiserror::Error;
 
 /// Where in a file something is.
@@ -24,7 +25,7 @@ impl std::fmt::Display for Place {
             Self::Line(line, 0) => write!(f, "line {line}: "),
             Self::Line(line, column) => write!(f, "line {line}, column {column}: "),
             Self::Byte(offset) => write!(f, "byte {offset}: "),
-            Self::Path(path) => write!(f, "{path}: "),
+            Self::Path(path) => write!(f, "{}: ", shown(path)),
         }
     }
 }
@@ -34,7 +35,7 @@ impl std::fmt::Display for Place {
 #[non_exhaustive]
 pub enum Error {
     /// The bytes are not what their format demands.
-    #[error("{place}{message}")]
+    #[error("{}", crate::told::message(&format!("{place}{message}")))]
     Decode {
         /// Where.
         place: Place,
@@ -42,7 +43,7 @@ pub enum Error {
         message: String,
     },
     /// The file needs something that durer does not have, e.g. a required glTF extension.
-    #[error("{place}{what} is not supported{}", if hint.is_empty() { String::new() } else { format!("; {hint}") })]
+    #[error("{}", unsupported(place, what, hint))]
     Unsupported {
         /// Where.
         place: Place,
@@ -64,7 +65,7 @@ pub enum Error {
         limit: u64,
     },
     /// Something that the file refers to could not be had.
-    #[error("{place}cannot read `{uri}`: {message}")]
+    #[error("{}", crate::told::message(&format!("{place}cannot read `{}`: {message}", shown(uri))))]
     Resource {
         /// Where the reference stands.
         place: Place,
@@ -74,14 +75,26 @@ pub enum Error {
         message: String,
     },
     /// The format is not known, by content or by name.
-    #[error("not a known format: {0}")]
+    #[error("not a known format: {}", shown(.0))]
     Unknown(String),
     /// The library refused the value.
     #[error(transparent)]
     Library(#[from] durer::Error),
     /// Reading or writing failed.
-    #[error(transparent)]
+    #[error("{}", without_number(.0))]
     Io(#[from] std::io::Error),
+}
+
+/// The system's message without the number that Rust adds.
+fn without_number(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_owned()
+}
+
+fn unsupported(place: &Place, what: &str, hint: &str) -> String {
+    let what = shown(what);
+    let then = if hint.is_empty() { "" } else { "; " };
+    message(&format!("{place}{what} is not supported{then}{hint}")).into_owned()
 }
 
 impl Error {
@@ -107,6 +120,12 @@ impl Error {
             Self::Unsupported { place, what, hint } => {
                 Self::Unsupported { place: place_of(place), what, hint }
             }
+            Self::Limit { place, what, value, limit } => {
+                Self::Limit { place: place_of(place), what, value, limit }
+            }
+            Self::Resource { place, uri, message } => {
+                Self::Resource { place: place_of(place), uri, message }
+            }
             other => other,
         }
     }
@@ -128,7 +147,7 @@ pub struct Warning {
 
 impl std::fmt::Display for Warning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}{}", self.place, self.message)
+        f.write_str(&message(&format!("{}{}", self.place, self.message)))
     }
 }
 

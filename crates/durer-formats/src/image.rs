@@ -16,6 +16,7 @@ pub use orientation::Orientation;
 pub use png::{DeepImage, bits_per_sample, decode_deep};
 pub(crate) use png::{check_png_holds, is_grey};
 
+use crate::told::shown;
 use crate::{Error, Limits, Place, Result};
 use durer::scene::Image;
 
@@ -55,7 +56,7 @@ pub fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Image> {
 fn unsupported(name: &str, format: &str) -> Error {
     Error::Unsupported {
         place: Place::Whole,
-        what: format!("image `{name}`: the format {format}"),
+        what: format!("image `{}`: the format {format}", shown(name)),
         hint: "use PNG, JPEG or WebP".to_owned(),
     }
 }
@@ -83,9 +84,14 @@ fn show_if_all_transparent(pixels: &mut [[u8; 4]]) {
     }
 }
 
+/// The place of a picture, where it has a name.
+fn place(name: &str) -> Place {
+    if name.is_empty() { Place::Whole } else { Place::Path(format!("image `{}`", shown(name))) }
+}
+
 /// A decode error that names the picture.
 fn broken(name: &str, message: impl std::fmt::Display) -> Error {
-    Error::whole(format!("image `{name}`: {message}"))
+    Error::whole(format!("image `{}`: {message}", shown(name)))
 }
 
 /// Checks a size against the limits and against what the file's bytes can hold.
@@ -96,7 +102,7 @@ fn check_size(
     name: &str,
     limits: &Limits,
 ) -> Result<()> {
-    let limit = |what, value, limit| Err(Error::Limit { place: Place::Whole, what, value, limit });
+    let limit = |what, value, limit| Err(Error::Limit { place: place(name), what, value, limit });
     let side = size.0.max(size.1);
     if side > limits.image_side {
         return limit("side of an image", u64::from(side), u64::from(limits.image_side));

@@ -125,8 +125,8 @@ fn is_opaque(pixels: &Pixels<[u8; 4]>) -> bool {
 }
 
 /// What an encoder says beside failed writes.
-fn refused(error: impl std::fmt::Display) -> Error {
-    Error::whole(error.to_string())
+fn refused(_: impl std::fmt::Display) -> Error {
+    Error::whole(crate::foreign::REFUSED)
 }
 
 #[cfg(test)]

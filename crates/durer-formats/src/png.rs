@@ -3,6 +3,7 @@
 //! All writers take row 0 as the top row, write no time stamp and give the same bytes for the same
 //! pixels. Memory: one row, and what the compressor keeps (some 100 kB); cost: one pass.
 
+use crate::foreign;
 use crate::image::DECODED;
 use crate::{Error, Limits, Result};
 use durer::target::{NO_ITEM, Pixels};
@@ -139,7 +140,8 @@ pub fn write_depth<W: Write>(out: W, pixels: &Pixels<f32>, compression: Compress
 /// [`Error::Limit`] for more pixels than `limits.decoded_bytes` hold at 4 bytes each or a side above
 /// `limits.image_side`, [`Error::Decode`] for what is broken or no 16-bit grey PNG.
 pub fn read_depth(bytes: &[u8], limits: &Limits) -> Result<Pixels<f32>> {
-    let wrong = |e: png::DecodingError| Error::whole(format!("the depth picture {e}"));
+    let wrong =
+        |e: png::DecodingError| Error::whole(format!("the depth picture {}", foreign::png(&e)));
     let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
     let input = std::io::Cursor::new(bytes);
     let mut decoder = png::Decoder::new_with_limits(input, png::Limits { bytes: memory });
@@ -275,7 +277,7 @@ pub(crate) fn set_compression<W: Write>(encoder: &mut Encoder<W>, compression: C
 pub(crate) fn encoding(error: EncodingError) -> Error {
     match error {
         EncodingError::IoError(error) => Error::Io(error),
-        other => Error::whole(other.to_string()),
+        _ => Error::whole(foreign::REFUSED),
     }
 }
 

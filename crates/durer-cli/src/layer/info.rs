@@ -8,6 +8,7 @@ use durer::math::Rect;
 use durer::work::Work;
 use durer_formats::geo::crs::Crs;
 use durer_formats::geo::{Dimensions, Feature, FieldKind, GeoFormat, Schema, System};
+use durer_formats::told::escaped;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -211,9 +212,11 @@ impl LayerInfo {
             lines.push((if i == 0 { "fields" } else { "" }, text.trim_end().to_owned()));
         }
         lines.extend(self.warnings.iter().map(|w| ("warning", w.clone())));
-        let lines: Vec<String> =
-            lines.iter().map(|(name, value)| format!("  {name:<11} {value}\n")).collect();
-        format!("{title}\n{}", lines.concat())
+        let lines: Vec<String> = lines
+            .iter()
+            .map(|(name, value)| format!("  {name:<11} {}\n", escaped(value)))
+            .collect();
+        format!("{}\n{}", escaped(&title), lines.concat())
     }
 }
 

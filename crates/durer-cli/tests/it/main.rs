@@ -16,6 +16,7 @@ mod drawings;
 mod faults;
 mod fill;
 mod harness;
+mod hostile;
 mod kinds;
 mod limits;
 mod looks;

@@ -1,5 +1,6 @@
 //! A COLLADA document as a tree of elements, whose texts stay where they are in the file.
 
+use crate::foreign;
 use crate::{Error, Place, Result, number};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -50,7 +51,7 @@ impl<'a> Document<'a> {
             let event = reader.read_event();
             let after = reader.buffer_position() as usize;
             let wrong = |message: String| Error::Decode { place: document.line(start), message };
-            match event.map_err(|e| wrong(e.to_string()))? {
+            match event.map_err(|e| wrong(foreign::xml(&e)))? {
                 Event::Start(e) => {
                     let number = document.add(&e, start..after, open.last().copied(), &mut names);
                     memory = memory.saturating_add(ELEMENT + 2 * (after - start) as u64);

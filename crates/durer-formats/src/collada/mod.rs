@@ -42,7 +42,8 @@ pub(crate) fn sniff(head: &[u8]) -> bool {
 /// [`Error::Limit`] for too much of anything. All else that is wrong is a warning.
 pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> Result<Model> {
     let text = xml::utf8(bytes);
-    let text = std::str::from_utf8(&text).map_err(|e| Error::whole(e.to_string()))?;
+    let text = std::str::from_utf8(&text)
+        .map_err(|e| Error::byte(e.valid_up_to() as u64, "this is not UTF-8"))?;
     let limits = options.limits.clone();
     let document = Document::parse(text, limits.decoded_bytes)?;
     let root = document.root().filter(|&r| document.name(r) == "COLLADA");

@@ -8,6 +8,7 @@
 //! Cost: one pass. Memory: 24 bytes per point while reading, 20 more for colour and intensity.
 
 use crate::cloud::Cloud;
+use crate::foreign;
 use crate::{Error, Limits, Model, Place, ReadOptions, Resources, Result};
 use durer::math::{DMat3, DVec3, Vec4};
 use e57::{CartesianCoordinate, E57Reader, Point, PointCloud, RecordDataType, SphericalCoordinate};
@@ -62,7 +63,7 @@ struct Scans {
 impl Scans {
     fn read(&mut self, bytes: &[u8], model: &mut Model) -> Result<()> {
         let reader = E57Reader::new(Cursor::new(bytes));
-        let mut reader = reader.map_err(|e| broken(&e.to_string()))?;
+        let mut reader = reader.map_err(|e| broken(foreign::e57(&e)))?;
         let scans = reader.pointclouds();
         if scans.is_empty() {
             return Err(Error::whole("holds no scan"));

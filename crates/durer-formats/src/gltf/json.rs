@@ -4,6 +4,7 @@
 //! indices or sizes may be written as `3` or `3.0`, as JSON Schema allows.
 
 use super::old;
+use crate::foreign;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
@@ -336,10 +337,7 @@ pub fn parse(text: &[u8]) -> crate::Result<Root> {
         if let Some(version) = old::version(text) {
             return old::unsupported(crate::Place::Path("asset.version".to_owned()), &version);
         }
-        let message = e.to_string();
-        // The place goes before the message, so it is taken off its end.
-        let end = format!(" at line {} column {}", e.line(), e.column());
-        let message = message.strip_suffix(&end).unwrap_or(&message);
+        let message = foreign::json(&e);
         crate::Error::line(e.line() as u64, e.column() as u64, format!("in the JSON: {message}"))
     })
 }

@@ -3,6 +3,7 @@
 
 use super::npy::{self, Array};
 use super::{Grid, HeightMapOptions};
+use crate::foreign;
 use crate::{Error, Limits, Place, Result};
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
@@ -11,7 +12,7 @@ type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 pub fn read(bytes: &[u8], options: &HeightMapOptions) -> Result<Grid> {
     let mut archive = ZipArchive::new(Cursor::new(bytes))
-        .map_err(|e| Error::whole(format!("the ZIP archive is broken: {e}")))?;
+        .map_err(|e| Error::whole(format!("the ZIP archive is broken: {}", foreign::zip(&e))))?;
     let names = archive.file_names().filter_map(Result::ok).map(|n| n.into_owned());
     let mut names: Vec<String> = names.collect();
     names.sort();

@@ -1,6 +1,7 @@
 //! The first picture of a GIF, by `gif`.
 
 use super::{Picture, broken, check_size};
+use crate::foreign;
 use crate::{Limits, Result};
 use gif::{ColorOutput, DecodeOptions, MemoryLimit};
 use std::num::NonZeroU64;
@@ -13,7 +14,7 @@ pub(super) const MAGIC: &[u8] = b"GIF8";
 /// # Errors
 /// As [`super::decode`].
 pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
-    let wrong = |e: gif::DecodingError| broken(name, e);
+    let wrong = |e: gif::DecodingError| broken(name, foreign::gif(&e));
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::RGBA);
     options.set_memory_limit(match NonZeroU64::new(limits.decoded_bytes) {

@@ -1,6 +1,7 @@
 //! JPEG: grey, colours and inks.
 
 use super::{Picture, broken, check_size, pixels_of};
+use crate::foreign;
 use crate::{Error, Limits, Result};
 use std::io::Cursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
@@ -17,7 +18,7 @@ const JPEG_PIXELS_PER_BYTE: u64 = 8 * 64;
 /// # Errors
 /// As [`super::decode`].
 pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
-    let wrong = |e: zune_jpeg::errors::DecodeErrors| broken(name, e);
+    let wrong = |e: zune_jpeg::errors::DecodeErrors| broken(name, foreign::jpeg(&e));
     let open = |out: ColorSpace| {
         let options = DecoderOptions::new_safe()
             .set_max_width(limits.image_side as usize)

@@ -1,6 +1,7 @@
 //! PNG: to 8 bits per channel, and deep ones to 16.
 
 use super::{Picture, broken, check_size, pixels_of};
+use crate::foreign;
 use crate::png::Channels;
 use crate::{Limits, Result};
 use durer::target::Pixels;
@@ -93,7 +94,7 @@ fn png_samples(
     name: &str,
     limits: &Limits,
 ) -> Result<(png::OutputInfo, Vec<u8>)> {
-    let wrong = |e: png::DecodingError| broken(name, e);
+    let wrong = |e: png::DecodingError| broken(name, foreign::png(&e));
     let memory = usize::try_from(limits.decoded_bytes).unwrap_or(usize::MAX);
     let mut decoder =
         png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: memory });

@@ -98,7 +98,7 @@ pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Pictur
         ImageError::IoError(e) if e.kind() == ErrorKind::UnexpectedEof => {
             broken(name, "is cut off")
         }
-        e => broken(name, e),
+        _ => broken(name, "holds broken TGA data"),
     };
     let (head, rest) = bytes.split_at_checked(HEADER).unwrap_or((bytes, &[]));
     let head = header.without_alpha(head);

@@ -1,6 +1,7 @@
 //! WebP, by `image-webp`.
 
 use super::{Picture, broken, check_size};
+use crate::foreign;
 use crate::{Limits, Result};
 use image_webp::WebPDecoder;
 use std::io::Cursor;
@@ -15,7 +16,7 @@ pub(super) fn is_webp(bytes: &[u8]) -> bool {
 /// # Errors
 /// As [`super::decode`].
 pub(super) fn decode(bytes: &[u8], name: &str, limits: &Limits) -> Result<Picture> {
-    let wrong = |e: image_webp::DecodingError| broken(name, e);
+    let wrong = |e: image_webp::DecodingError| broken(name, foreign::webp(&e));
     let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(wrong)?;
     let size @ (width, height) = decoder.dimensions();
     // Pixels that are all alike take no bits at all, so that nothing is known of how many there can be.

@@ -4,6 +4,7 @@
 //! Remote Sensing 79 (2), 2013.
 
 use super::{Header, take};
+use crate::foreign;
 use crate::{Error, Place, Result};
 use laz::{LasZipDecompressor, LazItemType, LazVlr};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -27,11 +28,11 @@ pub(super) fn points(bytes: &[u8], header: &Header, mut each: impl FnMut(&[u8]))
     let mut read = 0;
     // Of broken data the crate may be of another opinion than its authors.
     let all = catch_unwind(AssertUnwindSafe(|| {
-        let vlr = LazVlr::from_buffer(record).map_err(|e| broken(&e.to_string()))?;
+        let vlr = LazVlr::from_buffer(record).map_err(|e| broken(foreign::laz(&e)))?;
         check(bytes, header, &vlr)?;
         let source = Guard::new(bytes, header.data, &vlr);
         let mut points =
-            LasZipDecompressor::new(source, vlr).map_err(|e| broken(&e.to_string()))?;
+            LasZipDecompressor::new(source, vlr).map_err(|e| broken(foreign::laz(&e)))?;
         points.get_mut().begin();
         let mut point = vec![0; header.length];
         while read < header.count && points.decompress_one(&mut point).is_ok() {

@@ -342,7 +342,7 @@ fn wrong(error: usvg::Error) -> Error {
         usvg::Error::InvalidSize => Error::whole(
             "the drawing has no size; `svg` needs a `viewBox`, or a `width` and `height` above 0",
         ),
-        other => Error::whole(other.to_string()),
+        _ => Error::whole("the drawing cannot be read as SVG"),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The text of a drawing from its bytes, which may be compressed and in any encoding.
 
+use crate::foreign;
 use crate::{Error, Limits, Place, Result};
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE};
 use flate2::bufread::MultiGzDecoder;
@@ -23,7 +24,9 @@ pub(super) fn text<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Cow<'a, str>>
     }
     let (mut unpacked, limit) = (Vec::new(), limits.decoded_bytes);
     let mut source = MultiGzDecoder::new(bytes).take(limit.saturating_add(1));
-    source.read_to_end(&mut unpacked).map_err(|e| Error::whole(format!("broken gzip: {e}")))?;
+    source
+        .read_to_end(&mut unpacked)
+        .map_err(|e| Error::whole(format!("broken gzip: {}", foreign::inflating(&e))))?;
     if unpacked.len() as u64 > limit {
         let what = "size of a drawing without its compression";
         return Err(Error::Limit {

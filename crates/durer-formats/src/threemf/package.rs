@@ -1,5 +1,6 @@
 //! The archive: parts by name, and the relationship that tells which is the model.
 
+use crate::foreign;
 use crate::{Error, Limits, Place, Result, xml};
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -22,8 +23,9 @@ pub(super) struct Package<'a> {
 
 impl<'a> Package<'a> {
     pub fn open(bytes: &'a [u8], limits: Limits) -> Result<Self> {
-        let archive = ZipArchive::new(Cursor::new(bytes))
-            .map_err(|e| Error::whole(format!("the ZIP archive is broken: {e}")))?;
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
+            Error::whole(format!("the ZIP archive is broken: {}", foreign::zip(&e)))
+        })?;
         Ok(Self { archive, left: limits.decoded_bytes, limit: limits.decoded_bytes })
     }
 
@@ -64,7 +66,8 @@ impl<'a> Package<'a> {
     pub fn read(&mut self, name: &str) -> Result<Vec<u8>> {
         let at = |message: String| Error::path(name, message);
         let number = self.number(name).ok_or_else(|| at("is not in the archive".to_owned()))?;
-        let file = self.archive.by_index(number).map_err(|e| at(format!("cannot be read: {e}")))?;
+        let file = self.archive.by_index(number);
+        let file = file.map_err(|e| at(format!("cannot be read: {}", foreign::zip(&e))))?;
         let (what, limit) = ("size of the inflated parts", self.limit);
         let too_large = |size: u64| {
             let value = (limit - self.left).saturating_add(size);
@@ -77,7 +80,8 @@ impl<'a> Package<'a> {
         // is left gives the lie away.
         let mut bytes = Vec::new();
         let mut file = file.take(self.left.saturating_add(1));
-        file.read_to_end(&mut bytes).map_err(|e| at(format!("cannot be inflated: {e}")))?;
+        file.read_to_end(&mut bytes)
+            .map_err(|e| at(format!("cannot be inflated: {}", foreign::inflating(&e))))?;
         if bytes.len() as u64 > self.left {
             return Err(too_large(bytes.len() as u64));
         }
@@ -105,7 +109,8 @@ impl<'a> Package<'a> {
                 Ok(Event::Eof) => break,
                 Ok(_) => {}
                 Err(e) => {
-                    return Err(Error::path(format!("{RELATIONSHIPS}, byte {at}"), e.to_string()));
+                    let place = format!("{RELATIONSHIPS}, byte {at}");
+                    return Err(Error::path(place, foreign::xml(&e)));
                 }
             }
         }

@@ -3,6 +3,7 @@
 use super::extension;
 use super::lattice::Lattice;
 use super::property::{Group, Properties};
+use crate::foreign;
 use crate::text::Tally;
 use crate::xml::{self, Here, attribute};
 use crate::{Error, Limits, Place, Result, number};
@@ -75,7 +76,7 @@ pub(super) fn parse(name: &str, xml: &[u8], limit: u64) -> Result<Part> {
     let mut depth = 0u32;
     loop {
         parser.here.byte = reader.buffer_position();
-        match reader.read_event().map_err(|e| parser.here.wrong(e.to_string()))? {
+        match reader.read_event().map_err(|e| parser.here.wrong(foreign::xml(&e)))? {
             Event::Start(e) => {
                 depth += 1;
                 if depth > Limits::default().depth {

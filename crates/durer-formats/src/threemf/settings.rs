@@ -6,6 +6,7 @@
 //! `Slic3r_PE_model.config`, XML).
 
 use super::package::Package;
+use crate::foreign;
 use crate::xml::{self, attribute};
 use crate::{Model, Place, color};
 use durer::math::{Vec3, Vec4};
@@ -111,7 +112,7 @@ impl Settings {
         let mut reader = Reader::from_reader(text);
         let mut parser = ObjectParser { settings: self, object: None, volume: None, plate: None };
         loop {
-            match reader.read_event().map_err(|e| e.to_string())? {
+            match reader.read_event().map_err(|e| foreign::xml(&e))? {
                 Event::Start(e) => parser.open(&e),
                 Event::Empty(e) => {
                     parser.open(&e);
@@ -140,7 +141,7 @@ fn project_filaments(text: &[u8]) -> Result<Vec<String>, String> {
         #[serde(default)]
         filament_colour: Vec<String>,
     }
-    let project: Project = serde_json::from_slice(text).map_err(|e| e.to_string())?;
+    let project: Project = serde_json::from_slice(text).map_err(|e| foreign::json(&e))?;
     Ok(project.filament_colour)
 }
 

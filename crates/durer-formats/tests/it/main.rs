@@ -29,3 +29,4 @@ mod shared;
 mod svg;
 mod svg_styles;
 mod threemf;
+mod told;

@@ -57,7 +57,7 @@ fn hilbert(side: u32, step: u64) -> [u32; 2] {
     let (mut x, mut y) = (0, 0);
     let (mut rest, mut size) = (step, 1);
     while size < side {
-        let right = (rest / 2 & 1) as u32;
+        let right = ((rest / 2) & 1) as u32;
         let up = ((rest ^ u64::from(right)) & 1) as u32;
         if up == 0 {
             if right == 1 {

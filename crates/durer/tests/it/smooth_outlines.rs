@@ -314,7 +314,7 @@ fn outlines_of_open_shells_are_whole() {
         let v = view(DVec3::ZERO, DVec3::new(0.2, -1.0, z), 8.0, false);
         let options = Options { stubs: 0.01, ..Options::default() };
         let drawn = |smooth| {
-            let options = Options { smooth, ..options };
+            let options = Options { smooth, ..options.clone() };
             draw(&soup(&bowl), &v, &options, &mut NoTrace).expect("drawing")
         };
         let [smooth, plain] = [Smooth::On, Smooth::Off].map(drawn);

@@ -1,6 +1,7 @@
 //! Values in a piece of JSON text, with their places in the file.
 
 use super::scan::{Progress, Scan};
+use crate::foreign;
 use crate::{Error, Place, Result};
 
 /// A piece of a file, and where a value in it stands.
@@ -35,9 +36,7 @@ impl<'a> Text<'a> {
         serde_json::from_str::<serde::de::IgnoredAny>(text).map_err(|e| {
             let lines = text.split_inclusive('\n').take(e.line().saturating_sub(1));
             let at = lines.map(str::len).sum::<usize>() + e.column().saturating_sub(1);
-            let message = e.to_string();
-            let message = message.split(" at line").next().unwrap_or(&message).to_owned();
-            self.error_at(self.from + at, message)
+            self.error_at(self.from + at, foreign::json(&e))
         })?;
         Ok(text.to_owned())
     }

@@ -1,6 +1,7 @@
 //! Features from a file.
 
 use super::values::{Meaning, json};
+use crate::foreign;
 use crate::geo::members::object;
 use crate::geo::reader::Beside;
 use crate::geo::{Feature, Geometry, Member, System, Warnings, wkb};
@@ -39,14 +40,15 @@ impl Reader {
         super::footer::check(&bytes)?;
         // Of broken files the crate may be of another opinion than its authors.
         let open = || SerializedFileReader::new(::bytes::Bytes::from(bytes));
-        let file = caught(open)?.map_err(|e| broken(&e.to_string()))?;
+        let file = caught(open)?.map_err(|_| broken("its directory is missing or damaged"))?;
         let about = file.metadata().file_metadata();
         let text = about.key_value_metadata().into_iter().flatten().find(|pair| pair.key == "geo");
         let text = text.and_then(|pair| pair.value.clone()).ok_or_else(|| {
             Error::whole("this is Parquet without the metadata `geo` of GeoParquet, so that no column is known to hold geometries")
         })?;
-        let geo: Value = serde_json::from_str(&text)
-            .map_err(|e| Error::path("metadata `geo`", format!("it is not JSON: {e}")))?;
+        let geo: Value = serde_json::from_str(&text).map_err(|e| {
+            Error::path("metadata `geo`", format!("it is not JSON: {}", foreign::json(&e)))
+        })?;
         let geometry = geo["primary_column"].as_str().unwrap_or("geometry").to_owned();
         let column = &geo["columns"][&geometry];
         check(column, &geometry, warnings)?;
@@ -67,7 +69,8 @@ impl Reader {
         };
         self.row += 1;
         let place = Place::Path(format!("row {}", self.row));
-        let row = row.map_err(|e| broken(&e.to_string()).at(|_| place.clone()))?;
+        let row =
+            row.map_err(|_| broken("the data of this row are damaged").at(|_| place.clone()))?;
         Ok(Some(self.feature(row, &place, warnings)))
     }
 

@@ -1,5 +1,6 @@
 //! What attributes of SVG say: matrices, lengths, properties, and the numbers in all of them.
 
+use crate::foreign;
 use durer::math::DVec2;
 use quick_xml::events::BytesStart;
 
@@ -33,11 +34,11 @@ pub fn compose(outer: &Matrix, inner: &Matrix) -> Matrix {
 }
 
 pub fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>, String> {
-    let found = element.try_get_attribute(name).map_err(|e| e.to_string())?;
+    let found = element.try_get_attribute(name).map_err(|e| foreign::xml(&e.into()))?;
     let Some(found) = found else { return Ok(None) };
     quick_xml::escape::unescape(&found.value)
         .map(|t| Some(t.into_owned()))
-        .map_err(|e| e.to_string())
+        .map_err(|_| foreign::entity())
 }
 
 /// What `href`, of SVG 2 or of XLink, refers to.

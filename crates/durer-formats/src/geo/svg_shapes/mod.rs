@@ -13,6 +13,7 @@ mod attributes;
 mod path;
 
 use super::{Feature, Geometry, MAX_DEPTH, Warnings};
+use crate::foreign;
 use crate::{Error, Place, Result};
 use attributes::{Matrix, UPRIGHT, attribute, compose, length, property, reference, transforms};
 use durer::clip::polygon::FillRule;
@@ -157,7 +158,7 @@ impl Walk {
                 if depth > 1 {
                     self.charge(text, at, next)?;
                 }
-                let event = event.map_err(|e| self.fail(text, at, e.to_string()))?;
+                let event = event.map_err(|e| self.fail(text, at, foreign::xml(&e)))?;
                 let found = match &event {
                     Event::Eof => {
                         self.end_of_file(text, at)?;

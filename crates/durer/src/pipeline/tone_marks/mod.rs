@@ -17,8 +17,8 @@ use crate::math::DVec2;
 use crate::raster::stipple::stipple;
 use crate::scene::Scene;
 use crate::shade::Shading;
+use crate::target::Pixels;
 use crate::target::drawing::{Line, LineClass};
-use crate::target::{Framebuffer, Pixels};
 use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Samples;
@@ -53,6 +53,9 @@ const PIXELS: [f64; 2] = [3.0, 4.0];
 /// Width or height of the picture at most.
 const MOST_PIXELS: f64 = 3072.0;
 
+/// Bytes of a pixel's place, normal, sides, curvatures and directions.
+const BYTES_OF_PIXEL: u64 = 500;
+
 /// A dot is a stroke so much shorter than it is wide.
 const DOT_LENGTH: f64 = 0.02;
 
@@ -73,11 +76,16 @@ pub fn tone_marks(scene: &Scene, options: &DrawOptions, marks: ToneMarks) -> Res
         return Err(Error::parameter("size of marks", size, "a number above 0"));
     }
     scene.check()?;
-    let smoothed = with_needed_normals(scene, Some(Shading::Phong));
-    let scene = smoothed.as_ref().unwrap_or(scene);
     let frame = Frame::new(options, size, pixels)?;
-    let picture = frame.picture(scene, options)?;
+    let mut how = frame.picture(options);
+    let smoothed = with_needed_normals(scene, &how)?;
+    let scene = smoothed.as_ref().unwrap_or(scene);
+    how.shading = None;
+    let _room = options.work.charge("tones", frame.bytes())?;
+    let picture = render(scene, &how)?.0;
     let seen = Seen::new(scene, &frame.view, &picture, options.cap_material);
+    drop(picture);
+    options.work.check()?;
     Ok(match marks {
         ToneMarks::Contours { .. } => contours(&seen, &frame, seen_height(&options.camera)),
         ToneMarks::Dots { .. } => dots(&seen, &frame),
@@ -107,20 +115,27 @@ impl Frame {
         Ok(Self { view, corner: -half, pixel, size: size / pixel })
     }
 
-    fn picture(&self, scene: &Scene, options: &DrawOptions) -> Result<Framebuffer> {
-        let how = RenderOptions {
+    /// The picture that tones come from, with smooth normals.
+    fn picture(&self, options: &DrawOptions) -> RenderOptions {
+        RenderOptions {
             width: self.view.width(),
             height: self.view.height(),
             lighting: options.lighting.clone(),
             exposure: options.exposure,
             cull: options.cull,
+            shading: Some(Shading::Phong),
             samples: Samples::One,
             depth: true,
             item: true,
             normal: true,
+            work: options.work.clone(),
             ..RenderOptions::new(options.camera)
-        };
-        Ok(render(scene, &how)?.0)
+        }
+    }
+
+    /// The memory for all that is found at pixels.
+    fn bytes(&self) -> u64 {
+        u64::from(self.view.width()) * u64::from(self.view.height()) * BYTES_OF_PIXEL
     }
 
     fn plane_from_pixels(&self, p: DVec2) -> DVec2 {

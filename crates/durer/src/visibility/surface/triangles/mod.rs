@@ -88,7 +88,8 @@ struct Wanted {
 const LEAST_WEIGHT: f32 = 0.5;
 
 impl<'a> Triangles<'a> {
-    /// Keeps as many as `kept`, a power of two; samples are up to `reach`/256 pixels from pixels' centres.
+    /// Keeps as many as `kept`, a power of two, or as there are, rounded up to one: small scenes then need no large
+    /// blocks of memory. Samples are up to `reach`/256 pixels from pixels' centres.
     pub fn new(
         scene: &'a Scene,
         view: &'a View,
@@ -97,6 +98,8 @@ impl<'a> Triangles<'a> {
         (kept, reach): (usize, i32),
     ) -> Self {
         let most_change = most_change(reach);
+        let items = runs.last().map_or(0, |run| run.first_item as usize + run.range.len());
+        let kept = items.min(kept).next_power_of_two();
         let normals = vec![NormalPlane::default(); kept].into_boxed_slice();
         let kept = vec![VisibleTriangle::default(); kept].into_boxed_slice();
         Self {

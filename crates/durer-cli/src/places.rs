@@ -1,0 +1,123 @@
+//! Where files are, by identity and not by spelling: `a.png`, `./a.png`, links to it and its full path are one place.
+
+use crate::failure::Failure;
+use crate::input::is_stream;
+use crate::sandbox::{self, Sandbox};
+use clap::ArgMatches;
+use durer_formats::told::shown_path;
+use std::collections::BTreeMap;
+use std::fs::{self, Metadata};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// Options that name what is written; all others with paths name what is read.
+const OUTPUTS: [&str; 4] = ["output", "item", "depth", "normal"];
+
+/// Of `warp`, which reads depths.
+const WARP: &str = "warp";
+
+/// Options that name what is read, though they are no mere paths.
+const OTHER_INPUTS: [&str; 2] = ["environment", "annotations"];
+
+/// A place for a file, whether there is one or not.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// Standard output, where it is no file.
+    Stdout,
+    /// A file that is there: the numbers of its device and its inode.
+    There(u64, u64),
+    /// Where a file will be, or is where files have no such numbers: without links and `..`, where possible.
+    At(PathBuf),
+}
+
+impl Place {
+    /// The place of a path.
+    pub fn of(path: &Path) -> Self {
+        fs::metadata(path).ok().and_then(|m| numbers(&m)).unwrap_or_else(|| Self::At(full(path)))
+    }
+
+    /// Where standard output leads to.
+    pub fn of_stdout() -> Self {
+        let metadata = fs::metadata("/dev/stdout").ok().filter(Metadata::is_file);
+        metadata.and_then(|m| numbers(&m)).unwrap_or(Self::Stdout)
+    }
+}
+
+#[cfg(unix)]
+fn numbers(metadata: &Metadata) -> Option<Place> {
+    use std::os::unix::fs::MetadataExt;
+    Some(Place::There(metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn numbers(_: &Metadata) -> Option<Place> {
+    None
+}
+
+/// A path without links and `..`, as far as its folder is there.
+fn full(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::canonicalize(path)
+        .or_else(|_| fs::canonicalize(folder).map(|f| f.join(path.file_name().unwrap_or_default())))
+        .unwrap_or_else(|_| path.to_owned())
+}
+
+/// The files that this run reads, by place.
+static READ: OnceLock<BTreeMap<Place, PathBuf>> = OnceLock::new();
+
+/// Refuses an output that is an input.
+pub fn check_unread(output: &Path) -> Result<(), Failure> {
+    match READ.get().and_then(|read| read.get(&Place::of(output))) {
+        Some(input) => Err(Failure::Usage(format!(
+            "{}: this is the file {}, which is read; name another one for the result",
+            shown_path(output),
+            shown_path(input)
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Takes note of the files that a command names, and confines the process to their folders where that is wanted. Comes before any other thread.
+pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
+    let (inputs, outputs) = named(name, given);
+    let files = inputs.iter().filter(|path| path.is_file());
+    let _ = READ.set(files.map(|path| (Place::of(path), path.clone())).collect());
+    match given.try_get_one::<Sandbox>("sandbox") {
+        Ok(Some(&how)) => sandbox::confine(how, &inputs, &outputs),
+        _ => Ok(()),
+    }
+}
+
+/// The paths that a command reads and those that it writes.
+fn named(command: &str, given: &ArgMatches) -> (Vec<PathBuf>, Vec<PathBuf>) {
+    let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+    for id in given.ids().map(clap::Id::as_str) {
+        let list = match OUTPUTS.contains(&id) && (command, id) != (WARP, "depth") {
+            true => &mut outputs,
+            false => &mut inputs,
+        };
+        if let Ok(Some(paths)) = given.try_get_many::<PathBuf>(id) {
+            list.extend(paths.filter(|path| !is_stream(path)).cloned());
+        } else if OTHER_INPUTS.contains(&id) {
+            list.extend(given.get_raw(id).into_iter().flatten().map(PathBuf::from));
+        }
+    }
+    (inputs, outputs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spelling_makes_no_other_place() {
+        let here = std::env::current_dir().unwrap();
+        for name in ["Cargo.toml", "no such file"] {
+            let place = Place::of(Path::new(name));
+            for other in [Path::new("./src/..").join(name), here.join(name)] {
+                assert_eq!(Place::of(&other), place, "{}", other.display());
+            }
+        }
+        assert_ne!(Place::of(Path::new("Cargo.toml")), Place::of(Path::new("no such file")));
+    }
+}

@@ -1,0 +1,116 @@
+//! The report as text that grows while pictures are made. Of a picture its line is all that is kept, in one block with those
+//! of the others: small values of each, held to the end, would lie between the large blocks that pictures need for
+//! a while, and keep an allocator from using those again.
+
+use super::{Failed, ModelReport, PictureReport, peak_memory};
+use crate::failure::Failure;
+use durer_formats::told;
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// A report, where one is wanted.
+pub struct Growing {
+    wanted: bool,
+    /// Of the models that are done, parted by commas, then the pictures of the one in work.
+    models: String,
+    /// How much of it is of models that are done.
+    done: usize,
+    /// Of the models that failed.
+    failed: String,
+}
+
+/// What comes before models.
+#[derive(Serialize)]
+struct Head {
+    /// The version of durer.
+    version: &'static str,
+}
+
+/// What comes after them.
+#[derive(Serialize)]
+struct Tail {
+    /// From start to end.
+    total_seconds: f64,
+    /// The most memory that the process held, where the system tells.
+    peak_memory_bytes: Option<u64>,
+}
+
+impl Growing {
+    /// An empty report; one that is not wanted stays so.
+    pub fn new(wanted: bool) -> Self {
+        Self { wanted, models: String::new(), done: 0, failed: String::new() }
+    }
+
+    /// Adds a picture of the model in work.
+    pub fn picture(&mut self, picture: &PictureReport) {
+        if self.wanted {
+            let between = if self.models.len() > self.done { "," } else { "" };
+            let line = serde_json::to_string(picture).unwrap_or_default();
+            self.models.extend([between, "\n        ", &*told::json(&line)]);
+        }
+    }
+
+    /// Ends a model with all of its pictures.
+    pub fn model(&mut self, model: &ModelReport) {
+        if self.wanted {
+            // What comes first is known last.
+            let opening = opening(model, self.done > 0);
+            self.models.insert_str(self.done, &opening);
+            let pictures = self.models.len() > self.done + opening.len();
+            self.models.push_str(closing(pictures));
+            self.done = self.models.len();
+        }
+    }
+
+    /// Ends a model that failed, with those of its pictures that were written.
+    pub fn failed(&mut self, failed: &Failed) {
+        if self.wanted {
+            let pictures = self.models.split_off(self.done);
+            let opening = opening(failed, !self.failed.is_empty());
+            self.failed.extend([&opening, &pictures, closing(!pictures.is_empty())]);
+        }
+    }
+
+    /// Writes the report to standard output, where it is wanted.
+    pub fn print(&self, total_seconds: f64) -> Result<(), Failure> {
+        if !self.wanted {
+            return Ok(());
+        }
+        let mut out = io::stdout().lock();
+        self.write(total_seconds, &mut out)
+            .and_then(|()| out.flush())
+            .map_err(|e| Failure::of_stdout(&e))
+    }
+
+    fn write(&self, total_seconds: f64, out: &mut impl Write) -> io::Result<()> {
+        let head = members(&Head { version: env!("CARGO_PKG_VERSION") }, "  ");
+        write!(out, "{{\n{head}")?;
+        for (name, list) in [("models", &self.models), ("failed", &self.failed)] {
+            let end = if list.is_empty() { "]" } else { "\n  ]" };
+            write!(out, ",\n  \"{name}\": [{list}{end}")?;
+        }
+        let tail = Tail { total_seconds, peak_memory_bytes: peak_memory() };
+        writeln!(out, ",\n{}\n}}", members(&tail, "  "))
+    }
+}
+
+/// The begin of a model's entry up to its pictures, after others or the first.
+fn opening(facts: &impl Serialize, follows: bool) -> String {
+    let between = if follows { "," } else { "" };
+    format!("{between}\n    {{\n{},\n      \"pictures\": [", members(facts, "      "))
+}
+
+/// The end of a model's entry, after pictures or none.
+fn closing(pictures: bool) -> &'static str {
+    if pictures { "\n      ]\n    }" } else { "]\n    }" }
+}
+
+/// The members of an object, a line each, with an indent in front of each.
+fn members(object: &impl Serialize, indent: &str) -> String {
+    let text = serde_json::to_string_pretty(object).unwrap_or_default();
+    let text = told::json(&text);
+    let inner = text.strip_prefix("{\n  ").and_then(|text| text.strip_suffix("\n}"));
+    // No string of JSON has a line break in it.
+    let deeper = inner.unwrap_or_default().replace("\n  ", &format!("\n{indent}"));
+    format!("{indent}{deeper}")
+}

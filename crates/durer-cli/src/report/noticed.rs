@@ -1,0 +1,68 @@
+//! What pictures of a model tell of the model, when they have been made.
+
+use super::PictureReport;
+use crate::encoding::FLATTENED;
+use crate::messages::Messages;
+use durer_formats::{Model, Place};
+
+/// What was noticed in all pictures of a model.
+#[derive(Debug, Default)]
+pub struct Noticed {
+    /// Why nothing of the model is seen in the first picture where that is so; told already.
+    pub unseen: Option<String>,
+    /// Triangles of a picture with a vertex that is no number, which the renderer finds, not the reader.
+    non_finite: u64,
+    /// What sheets cannot show.
+    notes: Vec<String>,
+    /// How faces meet.
+    loose_faces: Option<String>,
+    /// The scale of the drawing on its paper.
+    scale: Option<String>,
+    /// Whether something transparent had to become opaque.
+    flattened: bool,
+}
+
+impl Noticed {
+    /// Adds what a picture tells.
+    pub fn add(&mut self, picture: &PictureReport) {
+        self.non_finite = self.non_finite.max(picture.triangles.non_finite);
+        for note in &picture.notes {
+            // Frames of a film have the same.
+            if !self.notes.contains(note) {
+                self.notes.push(note.clone());
+            }
+        }
+        if let Some(drawing) = &picture.drawing {
+            self.loose_faces = self.loose_faces.take().or_else(|| drawing.loose_faces());
+            self.scale = self.scale.take().or_else(|| drawing.told_scale.clone());
+        }
+        self.flattened |= picture.flattened;
+    }
+
+    /// Adds warnings to the model, and tells them.
+    pub fn tell(self, name: &str, model: &mut Model, messages: &Messages) {
+        let non_finite = (self.non_finite > 0).then(|| {
+            let count = self.non_finite;
+            format!("{count} triangles with a coordinate that is not finite are left out")
+        });
+        let flattened = format!("{FLATTENED}; --background gives it another colour");
+        tell(name, model, messages, non_finite);
+        if let Some(why) = self.unseen {
+            model.warn(Place::Whole, why);
+        }
+        tell(name, model, messages, self.notes);
+        tell(name, model, messages, self.loose_faces.into_iter().chain(self.scale));
+        tell(name, model, messages, self.flattened.then_some(flattened));
+    }
+}
+
+fn tell(
+    name: &str,
+    model: &mut Model,
+    messages: &Messages,
+    texts: impl IntoIterator<Item = String>,
+) {
+    let known = model.warnings.len();
+    texts.into_iter().for_each(|text| model.warn(Place::Whole, text));
+    messages.warnings(name, &model.warnings[known..]);
+}

@@ -1,0 +1,91 @@
+//! A process that can open only what it was asked to read and to write, where the system can see to that.
+
+use crate::failure::Failure;
+use clap::ValueEnum;
+use std::path::{Path, PathBuf};
+
+/// What is done where the system cannot confine the process.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Sandbox {
+    /// The command ends with an error.
+    Strict,
+    /// A warning, and as much as the system can do.
+    BestEffort,
+}
+
+/// What tells of memory and threads.
+#[cfg(target_os = "linux")]
+const SYSTEM: [&str; 4] =
+    ["/proc/self", "/proc/meminfo", "/sys/fs/cgroup", "/sys/devices/system/cpu"];
+
+/// Confines the process: from here on it opens nothing but what lies in the folders of its inputs, or in folders that it was
+/// given, and makes and replaces files in the folders of its outputs only. It opens no connections.
+///
+/// # Errors
+/// A system that cannot do that.
+pub fn confine(how: Sandbox, inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<(), Failure> {
+    let read: Vec<PathBuf> = inputs.iter().filter_map(|input| folder(input)).collect();
+    let written: Vec<PathBuf> = outputs.iter().filter_map(|output| folder(output)).collect();
+    match (landlocked(&read, &written), how) {
+        (Ok(()), _) => Ok(()),
+        (Err(why), Sandbox::Strict) => {
+            let hint = "--sandbox=best-effort goes on without";
+            Err(Failure::Usage(format!("--sandbox: {why}; {hint}")))
+        }
+        (Err(why), Sandbox::BestEffort) => {
+            use std::io::Write;
+            // A closed standard error leaves nobody to tell.
+            let _ = writeln!(std::io::stderr().lock(), "durer: warning: --sandbox: {why}");
+            Ok(())
+        }
+    }
+}
+
+/// The folder of a file without links; a folder itself, and what is neither. Of what is not there, the folder above it
+/// that is: it will be made there.
+fn folder(path: &Path) -> Option<PathBuf> {
+    if let Ok(full) = std::fs::canonicalize(path) {
+        let within = if full.is_file() { full.parent() } else { Some(&*full) };
+        return within.map(Path::to_owned);
+    }
+    let mut above = path.ancestors().skip(1);
+    above.find_map(|path| {
+        let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+        std::fs::canonicalize(path).ok()
+    })
+}
+
+/// Has the kernel confine the process, by Landlock (M. Salaün, Linux 5.13; truncation from 6.2 on).
+#[cfg(target_os = "linux")]
+fn landlocked(read: &[PathBuf], written: &[PathBuf]) -> Result<(), String> {
+    use landlock::{
+        ABI, Access, AccessFs, AccessNet, CompatLevel, Compatible, Ruleset, RulesetAttr,
+        RulesetCreatedAttr, RulesetError, path_beneath_rules,
+    };
+    let reading = AccessFs::ReadFile | AccessFs::ReadDir;
+    let confined = || -> Result<(), RulesetError> {
+        let files = AccessFs::from_all(ABI::V3);
+        Ruleset::default()
+            // Files at least, or nothing is confined.
+            .set_compatibility(CompatLevel::HardRequirement)
+            .handle_access(files)?
+            .set_compatibility(CompatLevel::BestEffort)
+            .handle_access(AccessFs::from_all(ABI::V5))?
+            .handle_access(AccessNet::from_all(ABI::V5))?
+            .create()?
+            .add_rules(path_beneath_rules(SYSTEM, reading))?
+            .add_rules(path_beneath_rules(read, reading))?
+            .add_rules(path_beneath_rules(written, files & !AccessFs::Execute))?
+            .restrict_self()
+            .map(drop)
+    };
+    confined().map_err(|_| {
+        "this system does not confine processes; it needs Linux 6.2 or later, with Landlock"
+            .to_owned()
+    })
+}
+
+#[cfg(not(target_os = "linux"))]
+fn landlocked(_: &[PathBuf], _: &[PathBuf]) -> Result<(), String> {
+    Err("only Linux confines processes this way".to_owned())
+}

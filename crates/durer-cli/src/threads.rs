@@ -1,0 +1,53 @@
+//! The threads that share the work.
+
+use crate::args::RunningArgs;
+use crate::failure::{Failure, in_words};
+use std::io::{self, Write};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::available_parallelism;
+
+/// Makes as many threads as are asked for, the main one among them: one needs none beside it. Where the system gives fewer,
+/// which is told, those there are do the work; the pictures are the same.
+pub fn start(args: &RunningArgs) -> Result<(), Failure> {
+    let wanted = args.threads.map_or_else(usual, usize::from);
+    // Threads come first and get their part later: a pool that lacks some of its own would wait for them.
+    let (give, take) = channel::<rayon::ThreadBuilder>();
+    let take = Arc::new(Mutex::new(take));
+    let refused = (1..wanted).find_map(|made| waiting(&take).err().map(|error| (made, error)));
+    let count = refused.as_ref().map_or(wanted, |(made, _)| *made);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(count)
+        .use_current_thread()
+        .spawn_handler(move |thread| give.send(thread).map_err(|_| io::ErrorKind::Other.into()));
+    pool.build_global().map_err(|_| Failure::Data("the threads cannot be prepared".to_owned()))?;
+    if let Some((made, error)) = refused.filter(|_| !args.quiet) {
+        let threads = if made == 1 { "thread does" } else { "threads do" };
+        let why = in_words(&error);
+        // A closed standard error leaves nobody to tell.
+        let _ = writeln!(
+            io::stderr().lock(),
+            "durer: warning: {made} {threads} the work, not {wanted}: {why}; --threads asks for fewer"
+        );
+    }
+    Ok(())
+}
+
+/// A thread that waits for its part.
+fn waiting(take: &Arc<Mutex<Receiver<rayon::ThreadBuilder>>>) -> io::Result<()> {
+    let take = Arc::clone(take);
+    let work = move || {
+        let part = take.lock().unwrap_or_else(PoisonError::into_inner).recv();
+        if let Ok(part) = part {
+            part.run();
+        }
+    };
+    std::thread::Builder::new().spawn(work).map(drop)
+}
+
+/// As many as `RAYON_NUM_THREADS` says, or as there are processors.
+fn usual() -> usize {
+    let said = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok());
+    let processors = || available_parallelism().map_or(1, usize::from);
+    said.filter(|&count| count > 0).unwrap_or_else(processors)
+}

@@ -1,0 +1,227 @@
+//! What other crates find wrong with files, in durer's words: theirs speak of types of Rust, and may quote what a file
+//! says at any length.
+
+use crate::told::shown;
+use quick_xml::Error as Xml;
+use quick_xml::errors::{IllFormedError, SyntaxError};
+use std::io::ErrorKind;
+use zip::result::ZipError;
+
+/// What is wrong with XML.
+pub(crate) fn xml(error: &Xml) -> String {
+    match error {
+        Xml::Syntax(error) => not_closed(error).to_owned(),
+        Xml::IllFormed(error) => ill_formed(error),
+        Xml::InvalidAttr(_) => {
+            "an attribute is not written as `name=\"value\"`, or is there twice".to_owned()
+        }
+        Xml::Escape(_) => entity(),
+        Xml::Encoding(_) => "the text is not in the encoding that it names".to_owned(),
+        Xml::Namespace(_) => "a prefix of a namespace is not declared".to_owned(),
+        Xml::Io(_) => "the text ends early".to_owned(),
+    }
+}
+
+/// What is wrong with an entity of XML.
+pub(crate) fn entity() -> String {
+    "after `&` no known entity follows; `&` itself is written `&amp;`".to_owned()
+}
+
+fn not_closed(error: &SyntaxError) -> &'static str {
+    match error {
+        SyntaxError::UnclosedComment => "a comment does not end with `-->`",
+        SyntaxError::UnclosedCData => "a CDATA section does not end with `]]>`",
+        SyntaxError::UnclosedDoctype => "the DOCTYPE does not end with `>`",
+        SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl => {
+            "a processing instruction does not end with `?>`"
+        }
+        SyntaxError::UnclosedTag => "a tag does not end with `>`",
+        SyntaxError::InvalidBangMarkup => "`<!` is not followed by a comment, CDATA or a DOCTYPE",
+        _ => "the value of an attribute does not end with a quote",
+    }
+}
+
+fn ill_formed(error: &IllFormedError) -> String {
+    match error {
+        IllFormedError::MismatchedEndTag { expected, found } => {
+            let (expected, found) = (shown(expected), shown(found));
+            format!("`</{found}>` stands where `</{expected}>` is needed")
+        }
+        IllFormedError::UnmatchedEndTag(name) => {
+            format!("`</{}>` ends what was not begun", shown(name))
+        }
+        IllFormedError::MissingEndTag(name) => format!("`</{}>` is missing", shown(name)),
+        IllFormedError::MissingDoctypeName => "the DOCTYPE has no name".to_owned(),
+        _ => "it is not well-formed".to_owned(),
+    }
+}
+
+/// What is wrong with JSON, without the place.
+pub(crate) fn json(error: &serde_json::Error) -> String {
+    if error.is_eof() {
+        return "the text ends early".to_owned();
+    }
+    let text = error.to_string();
+    let text = text.rsplit_once(" at line ").map_or(text.as_str(), |(text, _)| text);
+    if error.is_syntax() { syntax(text).to_owned() } else { types(text) }
+}
+
+/// What is wrong with the syntax of JSON; all that is not in the list is told in general.
+fn syntax(text: &str) -> &'static str {
+    match text {
+        "expected `:`" => "`:` is needed after a name",
+        "expected `,` or `]`" => "`,` or `]` is needed in a list",
+        "expected `,` or `}`" => "`,` or `}` is needed in an object",
+        "trailing comma" => "a comma has nothing after it",
+        "trailing characters" => "something follows after the end",
+        "key must be a string" => "a name in an object is not in double quotes",
+        "invalid escape"
+        | "lone leading surrogate in hex escape"
+        | "unexpected end of hex escape" => {
+            "a `\\` in a string is not followed by what JSON allows"
+        }
+        "invalid number" | "number out of range" => "this is not a number of JSON",
+        "recursion limit exceeded" => {
+            "lists and objects are nested too deep; 128 levels are allowed"
+        }
+        "control character (\\u0000-\\u001F) found while parsing a string" => {
+            "a string holds a control character; a line break is written `\\n`"
+        }
+        _ => "a value is expected",
+    }
+}
+
+/// What has another type in JSON than it needs to have.
+fn types(text: &str) -> String {
+    if let Some(name) = text.strip_prefix("missing field `").and_then(|t| t.strip_suffix('`')) {
+        return format!("`{}` is missing", shown(name));
+    }
+    if let Some(name) = text.strip_prefix("duplicate field `").and_then(|t| t.strip_suffix('`')) {
+        return format!("`{}` is there twice", shown(name));
+    }
+    let said = ["invalid type: ", "invalid value: ", "invalid length "];
+    let found = said.iter().find_map(|start| text.strip_prefix(start));
+    match found.and_then(|rest| rest.rsplit_once(", expected ")) {
+        Some((found, needed)) => {
+            format!("{} stands where {} is needed", shown(&value(found)), kind(needed))
+        }
+        None => shown(text).into_owned(),
+    }
+}
+
+/// A value that serde calls `string "x"`, ``integer `5` `` or the like.
+fn value(found: &str) -> String {
+    for (theirs, ours) in
+        [("string ", "the text "), ("integer ", "the number "), ("floating point ", "the number ")]
+    {
+        if let Some(rest) = found.strip_prefix(theirs) {
+            return format!("{ours}{rest}");
+        }
+    }
+    kind(found).to_owned()
+}
+
+/// A type of Rust, or of serde, in words of JSON.
+fn kind(name: &str) -> &str {
+    match name {
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0 on",
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
+        "f32" | "f64" => "a number",
+        "a boolean" | "boolean `true`" | "boolean `false`" => "true or false",
+        "a string" | "str" => "a text",
+        "sequence" | "a sequence" => "a list",
+        "map" | "a map" => "an object",
+        "null" | "unit" | "unit value" => "null",
+        _ if name.starts_with("struct ") => "an object",
+        _ => name,
+    }
+}
+
+/// What is wrong with a ZIP archive, or with a part of one.
+pub(crate) fn zip(error: &ZipError) -> &'static str {
+    match error {
+        ZipError::Io(error) => inflating(error),
+        ZipError::UnsupportedArchive(why) if *why == ZipError::PASSWORD_REQUIRED => {
+            "it is encrypted; save it without a password"
+        }
+        ZipError::InvalidPassword => "it is encrypted; save it without a password",
+        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => {
+            "it is packed in a way that is not read; pack it with deflate"
+        }
+        ZipError::FileNotFound => "it is not in the archive",
+        _ => "its directory, at the end of the file, is missing or damaged",
+    }
+}
+
+/// What is wrong with deflated data.
+pub(crate) fn inflating(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => "the data are cut off",
+        _ => "the data are damaged",
+    }
+}
+
+/// What an encoder of pictures says, beside failed writes, of what durer has not refused itself.
+pub(crate) const REFUSED: &str = "this picture cannot be put into its format; write a PNG";
+
+/// What is wrong with a PNG, as said of it.
+pub(crate) fn png(error: &png::DecodingError) -> &'static str {
+    use png::DecodingError::{IoError, LimitsExceeded};
+    match error {
+        IoError(error) if error.kind() == ErrorKind::UnexpectedEof => "is cut off",
+        LimitsExceeded => "is too large",
+        _ => "holds broken PNG data",
+    }
+}
+
+/// What is wrong with a JPEG, as said of it.
+pub(crate) fn jpeg(error: &zune_jpeg::errors::DecodeErrors) -> &'static str {
+    use zune_jpeg::errors::DecodeErrors::{ExhaustedData, IoErrors, LargeDimensions, Unsupported};
+    match error {
+        ExhaustedData | IoErrors(_) => "is cut off",
+        LargeDimensions(_) => "is too large",
+        Unsupported(_) => "is a kind of JPEG that is not read; save it as baseline or progressive",
+        _ => "holds broken JPEG data",
+    }
+}
+
+/// What is wrong with a GIF, as said of it.
+pub(crate) fn gif(error: &gif::DecodingError) -> &'static str {
+    use gif::DecodingError::{EndCodeNotFound, MemoryLimit, OutOfMemory, UnexpectedEof};
+    match error {
+        UnexpectedEof | EndCodeNotFound => "is cut off",
+        MemoryLimit | OutOfMemory => "is too large",
+        _ => "holds broken GIF data",
+    }
+}
+
+/// What is wrong with a WebP, as said of it.
+pub(crate) fn webp(error: &image_webp::DecodingError) -> &'static str {
+    use image_webp::DecodingError::{ImageTooLarge, IoError, MemoryLimitExceeded};
+    match error {
+        IoError(_) => "is cut off",
+        ImageTooLarge | MemoryLimitExceeded => "is too large",
+        _ => "holds broken WebP data",
+    }
+}
+
+/// What is wrong with an E57 file.
+#[cfg(feature = "e57")]
+pub(crate) fn e57(error: &e57::Error) -> &'static str {
+    match error {
+        e57::Error::Read { .. } => "it is cut off, or a checksum is wrong",
+        e57::Error::NotImplemented { .. } => "it holds what is not read; save it with plain points",
+        _ => "its header or its XML is damaged",
+    }
+}
+
+/// What is wrong with LAZ data.
+#[cfg(feature = "laz")]
+pub(crate) fn laz(error: &laz::LasZipError) -> &'static str {
+    use laz::LasZipError as E;
+    match error {
+        E::IoError(_) => "they are cut off",
+        E::MissingChunkTable => "their table of chunks is missing",
+        _ => "they are packed in a way that is not known",
+    }
+}

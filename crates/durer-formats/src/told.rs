@@ -1,0 +1,195 @@
+//! What files say, as messages may show it: on one line, in one direction, and not too long.
+
+use std::borrow::Cow;
+use std::fmt::Write;
+
+/// Characters of a name, or of other words of a file, that are shown.
+const WORDS: usize = 120;
+
+/// Characters of a whole message that are shown; durer's own words, and what they quote, are fewer.
+const MESSAGE: usize = 1000;
+
+/// Numbers with more characters than this are written with an exponent.
+const NUMBER: usize = 20;
+
+/// Returns text of a file, such as a name, for a message: what would steer a terminal, end the line or turn the
+/// direction of writing is written as in Rust (`\n`, `\u{202e}`), and what comes after 120 characters is cut.
+pub fn shown(text: &str) -> Cow<'_, str> {
+    escaped(cut(text))
+}
+
+/// Returns at most 120 characters of a text, the last one an ellipsis where there were more.
+pub fn cut(text: &str) -> Cow<'_, str> {
+    cut_at(text, WORDS)
+}
+
+fn cut_at(text: &str, most: usize) -> Cow<'_, str> {
+    let mut ends = text.char_indices().map(|(at, _)| at).skip(most - 1);
+    match (ends.next(), ends.next()) {
+        (Some(last), Some(_)) => Cow::Owned(format!("{}…", text.get(..last).unwrap_or_default())),
+        _ => Cow::Borrowed(text),
+    }
+}
+
+/// Returns a path for a message, as [`shown`] does; of a long one the end, where the file's name is.
+pub fn shown_path(path: &std::path::Path) -> String {
+    let text = path.to_string_lossy();
+    let count = text.chars().count();
+    let end: String = text.chars().skip(count.saturating_sub(WORDS - 1)).collect();
+    escaped(if count > WORDS { Cow::Owned(format!("…{end}")) } else { text.clone() }).into_owned()
+}
+
+/// Returns a text with the characters written out that would steer a terminal, end the line or turn the direction of
+/// writing. What is written out already stays so.
+pub fn escaped<'a>(text: impl Into<Cow<'a, str>>) -> Cow<'a, str> {
+    let text = text.into();
+    if !text.chars().any(steers) {
+        return text;
+    }
+    let mut told = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if steers(c) {
+            told.extend(c.escape_default());
+        } else {
+            told.push(c);
+        }
+    }
+    Cow::Owned(told)
+}
+
+/// Returns JSON with what would turn the direction of writing, or steer a terminal, written out in its strings, as JSON
+/// itself has it: it says the same.
+pub fn json(text: &str) -> Cow<'_, str> {
+    let written_out = |c: char| steers(c) && !matches!(c, '\n' | '\r' | '\t');
+    if !text.chars().any(written_out) {
+        return Cow::Borrowed(text);
+    }
+    let mut told = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if written_out(c) {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                // Writing to a string cannot fail.
+                let _ = write!(told, "\\u{unit:04x}");
+            }
+        } else {
+            told.push(c);
+        }
+    }
+    Cow::Owned(told)
+}
+
+/// Returns a message that quotes words of a file, as a terminal may have it: escaped, with what stands between backticks cut
+/// as by [`shown`], and long numbers written with an exponent.
+pub fn message(text: &str) -> Cow<'_, str> {
+    // Nearly all are fine as they are.
+    if text.len() <= NUMBER || (text.len() <= WORDS && !has_long_number(text)) {
+        return escaped(text);
+    }
+    let mut told = String::new();
+    for (i, part) in text.split('`').enumerate() {
+        let quoted = i % 2 == 1;
+        if i > 0 {
+            told.push('`');
+        }
+        told += &if quoted { cut(part) } else { with_short_numbers(part) };
+    }
+    Cow::Owned(escaped(cut_at(&told, MESSAGE)).into_owned())
+}
+
+/// Whether a character acts on what shows it, or on the characters beside it.
+fn steers(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}'
+            | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
+            | '\u{e0000}'..='\u{e007f}')
+}
+
+fn of_number(byte: u8) -> bool {
+    byte.is_ascii_digit() || byte == b'.'
+}
+
+fn has_long_number(text: &str) -> bool {
+    text.as_bytes().chunk_by(|&a, &b| of_number(a) == of_number(b)).any(is_long_number)
+}
+
+fn is_long_number(run: &[u8]) -> bool {
+    run.len() > NUMBER && run.iter().all(|&b| of_number(b))
+}
+
+/// The same text with numbers of more than 20 characters as powers of ten.
+fn with_short_numbers(text: &str) -> Cow<'_, str> {
+    if !has_long_number(text) {
+        return Cow::Borrowed(text);
+    }
+    let mut told = String::new();
+    let mut rest = text;
+    for run in text.as_bytes().chunk_by(|&a, &b| of_number(a) == of_number(b)) {
+        // Runs end beside ASCII characters, so between characters.
+        let (run_text, after) = rest.split_at_checked(run.len()).unwrap_or((rest, ""));
+        rest = after;
+        match run_text.parse::<f64>().ok().filter(|_| is_long_number(run)) {
+            // Writing to a string cannot fail.
+            Some(number) => drop(write!(told, "{}", short(number))),
+            None => told.push_str(run_text),
+        }
+    }
+    Cow::Owned(told)
+}
+
+/// A number of few digits; those of single precision are enough to find it.
+fn short(number: f64) -> String {
+    let text = format!("{number:.8e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let digits = digits.trim_end_matches('0').trim_end_matches('.');
+    if exponent == "0" { digits.to_owned() } else { format!("{digits}e{exponent}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_steers_is_written_out() {
+        for (text, told) in [
+            ("a\u{1b}[31mX\n\rdurer: b", r"a\u{1b}[31mX\n\rdurer: b"),
+            ("a\u{202e}b\u{2066}c\u{9b}", r"a\u{202e}b\u{2066}c\u{9b}"),
+            ("Größe, 大きさ, 👩‍🚀, \u{301}", "Größe, 大きさ, 👩‍🚀, \u{301}"),
+        ] {
+            assert_eq!(shown(text), told);
+            assert_eq!(message(told), told);
+        }
+    }
+
+    #[test]
+    fn words_are_cut_and_what_is_said_of_them_stays() {
+        let name = "é".repeat(500);
+        assert_eq!(shown(&name).chars().count(), 120);
+        assert_eq!(shown(&name[..240]), &name[..240]);
+        let told =
+            message(&format!("material `{name}` is not defined; a grey one is used")).into_owned();
+        assert!(
+            told.starts_with("material `éé")
+                && told.ends_with("é…` is not defined; a grey one is used")
+        );
+        assert_eq!(message(&"`".repeat(5000)).chars().count(), 1000);
+        let path = format!("/{name}/model.obj");
+        let shown = shown_path(path.as_ref());
+        assert!(shown.starts_with("…é") && shown.ends_with("é/model.obj"), "{shown}");
+        assert_eq!(shown.chars().count(), 120);
+    }
+
+    #[test]
+    fn json_says_the_same() {
+        let names = ["a\u{202e}b\n", "\u{e0041}\u{7f}", "é"];
+        let text = serde_json::to_string_pretty(&names).unwrap();
+        let told = json(&text);
+        assert!(told.contains(r"a\u202eb\n") && told.contains(r"\udb40\udc41\u007f"), "{told}");
+        assert_eq!(serde_json::from_str::<[String; 3]>(&told).unwrap(), names);
+    }
+
+    #[test]
+    fn long_numbers_have_an_exponent() {
+        let text = format!("eye is [{}, {}, 12345678901234567890]; no", 1e300, 1.5e-30);
+        assert_eq!(message(&text), "eye is [1e300, 1.5e-30, 12345678901234567890]; no");
+    }
+}
