@@ -3,7 +3,6 @@
 
 mod stale;
 
-use crate::places::check_unread;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, Write};
@@ -28,9 +27,6 @@ impl Beside {
         let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
         if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
             return Err(io::Error::other("the file is read-only"));
-        }
-        if check_unread(&place).is_err() {
-            return Err(io::Error::other("this file is read; name another one for the result"));
         }
         stale::remove_beside(&place);
         for attempt in 0u32.. {

@@ -4,7 +4,7 @@ use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
 use crate::kind::{Kind, Wanted};
-use crate::places::{Place, check_unread};
+use crate::places::Place;
 use durer_formats::told::shown_path;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, OpenOptions};
@@ -69,11 +69,17 @@ pub fn plan(
         }
         wanted.check_name(option, path)?;
         make_folder(path.parent().unwrap_or(Path::new("")))?;
-        return names.iter().map(|n| unread(pattern.path(n.frame.unwrap_or(0)))).collect();
+        return Ok(names
+            .iter()
+            .map(|n| Target::File(pattern.path(n.frame.unwrap_or(0))))
+            .collect());
     }
     if path.is_dir() || ends_in_separator(path) || (many && path.extension().is_none()) {
         make_folder(path)?;
-        return names.iter().map(|n| unread(path.join(n.file_name(wanted.kind)))).collect();
+        return Ok(names
+            .iter()
+            .map(|n| Target::File(path.join(n.file_name(wanted.kind))))
+            .collect());
     }
     if many {
         let frames = names.iter().any(|n| n.frame.is_some());
@@ -150,17 +156,12 @@ pub fn file_or_stream(option: &str, path: &Path) -> Result<Target, Failure> {
 fn in_its_folder(path: &Path) -> Result<Target, Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::metadata(folder) {
-        Ok(m) if m.is_dir() => unread(path.to_owned()),
+        Ok(m) if m.is_dir() => Ok(Target::File(path.to_owned())),
         Ok(_) => Err(Failure::of_file(path, format!("{} is not a folder", folder.display()))),
         Err(e) => {
             Err(Failure::of_file(path, format!("folder {}: {}", folder.display(), in_words(&e))))
         }
     }
-}
-
-/// A file that is no input.
-fn unread(path: PathBuf) -> Result<Target, Failure> {
-    check_unread(&path).map(|()| Target::File(path))
 }
 
 /// Whether the path is there and neither a file nor a folder.

@@ -4,11 +4,8 @@ use crate::failure::Failure;
 use crate::input::is_stream;
 use crate::sandbox::{self, Sandbox};
 use clap::ArgMatches;
-use durer_formats::told::shown_path;
-use std::collections::BTreeMap;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 /// Options that name what is written; all others with paths name what is read.
 const OUTPUTS: [&str; 4] = ["output", "item", "depth", "normal"];
@@ -62,28 +59,13 @@ fn full(path: &Path) -> PathBuf {
         .unwrap_or_else(|_| path.to_owned())
 }
 
-/// The files that this run reads, by place.
-static READ: OnceLock<BTreeMap<Place, PathBuf>> = OnceLock::new();
-
-/// Refuses an output that is an input.
-pub fn check_unread(output: &Path) -> Result<(), Failure> {
-    match READ.get().and_then(|read| read.get(&Place::of(output))) {
-        Some(input) => Err(Failure::Usage(format!(
-            "{}: this is the file {}, which is read; name another one for the result",
-            shown_path(output),
-            shown_path(input)
-        ))),
-        None => Ok(()),
-    }
-}
-
-/// Takes note of the files that a command names, and confines the process to their folders where that is wanted. Comes before any other thread.
+/// Confines the process to the folders of the files that a command names, where that is wanted. Comes before any other thread.
 pub fn settle(name: &str, given: &ArgMatches) -> Result<(), Failure> {
-    let (inputs, outputs) = named(name, given);
-    let files = inputs.iter().filter(|path| path.is_file());
-    let _ = READ.set(files.map(|path| (Place::of(path), path.clone())).collect());
     match given.try_get_one::<Sandbox>("sandbox") {
-        Ok(Some(&how)) => sandbox::confine(how, &inputs, &outputs),
+        Ok(Some(&how)) => {
+            let (inputs, outputs) = named(name, given);
+            sandbox::confine(how, &inputs, &outputs)
+        }
         _ => Ok(()),
     }
 }

@@ -4,7 +4,6 @@ use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
 use crate::output::is_special;
-use crate::places::check_unread;
 use durer_formats::Error;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -34,7 +33,6 @@ impl Sink {
 
     /// A file, replaced by [`Sink::commit`]; a device or pipe is written to directly.
     pub fn file(path: &Path) -> Result<Self, Failure> {
-        check_unread(path)?;
         let out = if is_special(path) {
             let file = OpenOptions::new().write(true).open(path);
             file.map(|f| Out::Special(BufWriter::with_capacity(CAPACITY, f)))

@@ -5,7 +5,6 @@ use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
 use crate::input::is_stream;
 use crate::output::{self, Target, is_special};
-use crate::places::check_unread;
 use durer::clip::tiles::Tile;
 use durer_formats::tiles::{MbTiles, Metadata, PmTiles};
 use durer_formats::{Error, Result as Made};
@@ -65,7 +64,6 @@ impl Out {
     /// A place for tiles; nothing is in it yet.
     pub fn new(format: TileFormat, path: PathBuf) -> Result<Self, Failure> {
         let file = |path: &Path| {
-            check_unread(path)?;
             if path.is_dir() || is_special(path) {
                 return Err(Failure::of_file(
                     path,
