@@ -13,8 +13,10 @@ const MOST_ACROSS: f64 = 4096.0;
 /// Of smaller ones, of which few are kept.
 const MOST_SMALL_ACROSS: f64 = 65_536.0;
 
-/// Cells are made smaller where lines run through less than one in so many.
+/// Cells are made smaller where lines run through less than one in so many, and their lists have more entries than this on
+/// average: round bodies with fine facets have some ten along their outlines.
 const FEW: usize = 16;
+const LONG: usize = 64;
 
 /// Log₂ of the smallest cell's side in steps.
 const LEAST_SHIFT: u32 = 4;
@@ -177,16 +179,22 @@ enum Kept {
 }
 
 impl Lists {
-    /// Cells for so many faces and for the lines.
+    /// As many cells as there are faces, for the lines.
     pub fn new(faces: usize, lines: impl Iterator<Item = [Vertex; 2]> + Clone) -> Self {
-        let cells = Cells::new(bounds(lines.clone()), faces);
-        let all = Self::all(cells, lines.clone());
-        let Kept::All(marked) = &all.kept else { return all };
+        Self::all(Cells::new(bounds(lines.clone()), faces), lines)
+    }
+
+    /// Smaller cells, where lines run through few of these and their lists, of so many entries together, are long.
+    pub fn finer(
+        &self,
+        (faces, entries): (usize, usize),
+        lines: impl Iterator<Item = [Vertex; 2]> + Clone,
+    ) -> Option<Self> {
+        let Kept::All(marked) = &self.kept else { return None };
         let run_through = marked.iter().filter(|marked| **marked).count();
-        if run_through.saturating_mul(FEW) < faces {
-            return Self::small(cells, faces, lines);
-        }
-        all
+        let few = run_through.saturating_mul(FEW) < faces;
+        let long = entries > run_through.saturating_mul(LONG);
+        (few && long).then(|| Self::small(self.cells, faces, lines))
     }
 
     fn all(cells: Cells, lines: impl Iterator<Item = [Vertex; 2]>) -> Self {
@@ -298,7 +306,10 @@ mod tests {
         let count = 10_000;
         let step = 1 << 12;
         let lines = (0..count).map(|i| line([i * step, i * step, i * step + step, i * step]));
-        let lists = Lists::new(count as usize, lines.clone());
+        let coarse = Lists::new(count as usize, lines.clone());
+        assert!(coarse.finer((count as usize, 0), lines.clone()).is_none());
+        let finer = coarse.finer((count as usize, 1 << 30), lines.clone());
+        let lists = finer.expect("lines run through the diagonal only");
         assert!(lists.count() > count as usize / 2 && lists.count() < 8 * count as usize);
         let mut longest = 0;
         let mut of_list = vec![0; lists.count()];

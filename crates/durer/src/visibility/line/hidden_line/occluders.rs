@@ -81,11 +81,18 @@ impl<'a> Occluders<'a> {
             whole.chain(cut.filter(|(c, _)| hides[c.item as usize]).map(|(_, id)| id))
         };
         let most = (found.count() * MOST_PER_FACE).min(u32::MAX as usize);
+        let mut counted = found.ends(ids(), most);
+        let entries = counted.as_ref().map_or(0, |(_, sum)| *sum as usize);
+        if let Some(finer) = found.lists.finer((count, entries), lines.clone()) {
+            found.lists = finer;
+            counted = found.ends(ids(), most);
+        }
         let (mut starts, sum) = loop {
-            if let Some(counted) = found.ends(ids(), most) {
-                break counted;
+            match counted {
+                Some(counted) => break counted,
+                None => found.lists = found.lists.coarser(lines.clone()),
             }
-            found.lists = found.lists.coarser(lines.clone());
+            counted = found.ends(ids(), most);
         };
         let mut entries = vec![Entry { nearest: 0.0, id: 0 }; sum as usize];
         for id in ids() {
