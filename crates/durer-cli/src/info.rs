@@ -206,19 +206,21 @@ fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
     }
     let meshes = scene.meshes.iter().zip(shown);
     let solid = meshes.filter(|(mesh, shown)| mesh.triangle_count() > 0 && *shown);
-    let (mut each, mut count) = (true, 0);
+    let (mut each, mut count) = (true, 0_usize);
     for (mesh, _) in solid {
         let (triangles, vertices) = (mesh.triangle_count() as u64, mesh.positions.len() as u64);
         let _edges = work.charge("edges of the model", 36 * triangles + 16 * vertices)?;
         each &= written_topology(mesh, scene.last_digit).closed;
         count += 1;
     }
-    match count {
-        0 => Ok(None),
-        1 => Ok(Some(each)),
-        _ => Ok(Some(each || closed_together(scene, work)?)),
+    if count == 0 || each || scene.triangle_count() > MOST_TOGETHER {
+        return Ok((count > 0).then_some(each));
     }
+    closed_together(scene, work).map(Some)
 }
+
+/// Whether meshes of more triangles bound bodies together is not looked for: it would take more memory than a picture.
+const MOST_TOGETHER: u64 = 1 << 20;
 
 /// Whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that go along each
 /// other are one.

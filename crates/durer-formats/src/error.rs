@@ -75,7 +75,7 @@ pub enum Error {
         message: String,
     },
     /// The format is not known, by content or by name.
-    #[error("not a known format: {}", shown(.0))]
+    #[error("{}", crate::told::message(&format!("not a known format: {}", .0)))]
     Unknown(String),
     /// The library refused the value.
     #[error(transparent)]

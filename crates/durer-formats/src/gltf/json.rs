@@ -354,7 +354,7 @@ mod tests {
         assert!(error("{\n\"scene\": -1}").starts_with("line 2, column 1"));
         assert!(error("{\"scene\": 1.5}").contains("whole number"));
         assert!(error("{\"images\": [[\"uri\"]]}").contains("a JSON object"));
-        assert!(error("{} x").contains("trailing"));
+        assert!(error("{} x").contains("something follows after the end"));
         assert!(error(&"[".repeat(100_000)).starts_with("line 1"));
         assert!(error(&format!("{{\"extras\": {}", "[".repeat(100_000))).starts_with("line 1"));
     }

@@ -179,7 +179,7 @@ mod tests {
         let error = |bytes: &[u8]| decode(bytes, "x", &Limits::default()).unwrap_err().to_string();
         assert!(error(&file(3, 8, 0, &[], &[1, 2])).contains("cut off"));
         assert!(error(&file(11, 8, 0, &[], &[0x81, 1])).contains("cut off"));
-        assert!(error(&file(1, 8, 0, &[1, 2, 3], &[0, 0, 0, 1])).contains("color map"));
+        assert!(error(&file(1, 8, 0, &[1, 2, 3], &[0, 0, 0, 1])).contains("broken TGA data"));
         let mut huge = file(3, 8, 0, &[], &[1, 2, 3, 4]);
         huge[12..16].copy_from_slice(&[0xff, 0x3f, 0xff, 0x3f]);
         assert!(error(&huge).contains("too short for its 16383 × 16383 pixels"));

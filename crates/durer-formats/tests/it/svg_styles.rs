@@ -416,7 +416,7 @@ fn pictures_of_many_kinds_are_painted() {
     let (picture, told) =
         draw("<rect/>\n<image width='9' height='9' href='data:image/png;base64,iVBORw0KGgo='/>");
     assert_eq!(extent(&picture), None);
-    assert!(told.len() == 1 && told[0].starts_with("line 2, column 29: image `data:image/png;base64,iVBORw0KGgo=` is left out: unexpected end"), "{told:?}");
+    assert!(told.len() == 1 && told[0].starts_with("line 2, column 29: image `data:image/png;base64,iVBORw0KGgo=` is left out: it is cut off"), "{told:?}");
     let (_, told) = draw("<image width='9' height='9' href='data:image/avif;base64,AAAA'/>");
     assert!(told.len() == 1 && told[0].contains("is neither PNG nor JPEG"), "{told:?}");
 }

@@ -156,7 +156,7 @@ mod tests {
             ..Sheet::default()
         };
         let page = Rect::new(DVec2::ZERO, sheet.size).expect("page");
-        let view = Rect::new(DVec2::new(0.0, 0.0), DVec2::new(14.0, 100.0)).expect("view");
+        let view = Rect::new(DVec2::new(0.0, 0.0), DVec2::new(17.0, 100.0)).expect("view");
         let places = make_room(&mut sheet, &[view], &page);
         let x: Vec<f64> = sheet.layers[1]
             .marks
