@@ -455,7 +455,7 @@ pub struct RunningArgs {
     /// Take no more memory than this for the work, in bytes; k, M, G are understood [default: half of what the machine or its
     /// control group allows, at most 4G]
     ///
-    /// What would need more is refused with an error that says what it is needed for. Other limits of size are parts of
+    /// Work that needs more ends with an error that names the stage and the option. The other limits of size count towards
     /// this one.
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = values::bytes)]
     pub max_memory: Option<u64>,

@@ -31,7 +31,7 @@ impl Failure {
         }
     }
 
-    /// What the library refuses: options that are wrong, or work that costs too much.
+    /// Returns the failure for an error of the library: wrong options, or work that costs too much.
     pub fn of_library(error: &durer::Error) -> Self {
         let message = error.to_string();
         if error.is_of_budget() { Self::Refused(message) } else { Self::Usage(message) }

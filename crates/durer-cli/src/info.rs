@@ -213,23 +213,27 @@ fn closed(scene: &Scene, work: &Work) -> durer::Result<Option<bool>> {
         each &= written_topology(mesh, scene.last_digit).closed;
         count += 1;
     }
-    if count == 0 || each || scene.triangle_count() > MOST_TOGETHER {
+    if count == 0 || each {
         return Ok((count > 0).then_some(each));
     }
     closed_together(scene, work).map(Some)
 }
 
-/// Whether meshes of more triangles bound bodies together is not looked for: it would take more memory than a picture.
+/// The most triangles whose meshes are looked at together: more would take more memory than a picture of them.
 const MOST_TOGETHER: u64 = 1 << 20;
 
-/// Whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that go along each
-/// other are one.
+/// Returns whether the meshes bound bodies together, as those of files with a mesh for each face do; borders that run along
+/// each other are one.
 fn closed_together(scene: &Scene, work: &Work) -> durer::Result<bool> {
-    let _faces = work.charge("edges of the model", 150 * scene.triangle_count())?;
-    Ok(Faces::new(scene).is_ok_and(|faces| {
-        let edges = Edges::new(&faces, |_| true);
-        edges.iter().all(|(_, sides)| sides.len() == 2)
-    }))
+    let value = scene.triangle_count();
+    if value > MOST_TOGETHER {
+        let what = "number of triangles whose borders are compared";
+        return Err(durer::Error::Limit { what, value, limit: MOST_TOGETHER });
+    }
+    let _faces = work.charge("edges of the model", 150 * value)?;
+    let faces = Faces::new(scene)?;
+    let edges = Edges::new(&faces, |_| true);
+    Ok(edges.iter().all(|(_, sides)| sides.len() == 2))
 }
 
 fn material(material: &Material) -> MaterialInfo {

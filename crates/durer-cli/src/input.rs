@@ -27,7 +27,7 @@ pub fn display_name(path: &Path) -> String {
     if is_stream(path) { "standard input".to_owned() } else { shown_path(path) }
 }
 
-/// What reports call an input: the path as it was given, whatever is in it.
+/// Returns the name of an input in reports: the path as given, unescaped.
 pub fn given_name(path: &Path) -> String {
     if is_stream(path) { display_name(path) } else { path.display().to_string() }
 }

@@ -114,7 +114,7 @@ fn parse() -> Result<(Command, Option<PathBuf>), Failure> {
     Ok((cli.command, file))
 }
 
-/// How a command runs, where it works on something.
+/// Returns the options about threads, limits and messages of a command that has them.
 fn running(command: &mut Command) -> Option<&mut RunningArgs> {
     Some(match command {
         Command::Render(args) => &mut args.running,

@@ -21,7 +21,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// What messages call it.
+    /// Its name in messages.
     fn name(&self) -> String {
         match self {
             Self::Stdout => "standard output".to_owned(),

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Options that name what is written; all others with paths name what is read.
 const OUTPUTS: [&str; 4] = ["output", "item", "depth", "normal"];
 
-/// Of `warp`, which reads depths.
+/// The command that reads depths.
 const WARP: &str = "warp";
 
 /// Options that name what is read, though they are no mere paths.
@@ -23,7 +23,8 @@ pub enum Place {
     Stdout,
     /// A file that is there: the numbers of its device and its inode.
     There(u64, u64),
-    /// Where a file will be, or is where files have no such numbers: without links and `..`, where possible.
+    /// The full path of a file that does not exist yet, or of any file where the system has no such numbers; without links and `..`
+    /// where possible.
     At(PathBuf),
 }
 
@@ -33,7 +34,7 @@ impl Place {
         fs::metadata(path).ok().and_then(|m| numbers(&m)).unwrap_or_else(|| Self::At(full(path)))
     }
 
-    /// Where standard output leads to.
+    /// Returns the place that standard output leads to.
     pub fn of_stdout() -> Self {
         let metadata = fs::metadata("/dev/stdout").ok().filter(Metadata::is_file);
         metadata.and_then(|m| numbers(&m)).unwrap_or(Self::Stdout)

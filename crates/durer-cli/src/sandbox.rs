@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
 
-/// What is done where the system cannot confine the process.
+/// The answer to a system that cannot confine the process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Sandbox {
     /// The command ends with an error.

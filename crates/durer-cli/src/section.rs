@@ -82,7 +82,7 @@ impl SectionArgs {
     }
 }
 
-/// What the parser does not know to be wrong.
+/// Refuses options that the parser accepts one by one but that do not go together.
 pub fn check(args: &SectionArgs, sheet: bool) -> Result<(), Failure> {
     match args.views().next() {
         Some((letter, _)) if !sheet => Err(Failure::Usage(format!(

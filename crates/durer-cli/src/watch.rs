@@ -14,21 +14,21 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// So long work has to end by itself when it is stopped, and when it is interrupted.
+/// The time that work has to end by itself after it is stopped, and after a signal.
 const GRACE: Duration = Duration::from_secs(1);
 const GRACE_OF_SIGNALS: Duration = Duration::from_millis(100);
 
-/// How often is looked, and how often where there is much room left.
+/// The time between two looks, and the longer one while nothing is near a limit.
 const OFTEN: Duration = Duration::from_millis(4);
 const SELDOM: Duration = Duration::from_millis(20);
 
 /// Memory that is held besides what is charged: the program itself, stacks, and what is small.
 const BESIDES: u64 = 16 << 20;
 
-/// So much more, and an eighth of the budget, is held before the work is not waited for.
+/// The process ends at once where it holds this much and an eighth of the budget more than allowed.
 const SLACK: u64 = 8 << 20;
 
-/// What the command is at, for whoever is ended in the middle of it.
+/// The stage that the command is in, for the message of a hard end.
 static NOW: Mutex<String> = Mutex::new(String::new());
 
 /// The file that it works on.
@@ -40,28 +40,28 @@ static DONE: AtomicBool = AtomicBool::new(false);
 /// The number of the signal that came.
 static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
-/// Says what the command is at.
+/// Sets the stage that the command is in.
 pub fn now(what: String) {
     *NOW.lock().unwrap_or_else(PoisonError::into_inner) = what;
 }
 
-/// Says which file the command works on.
+/// Sets the file that the command works on.
 pub fn of_file(name: String) {
     *FILE.lock().unwrap_or_else(PoisonError::into_inner) = name;
 }
 
-/// Says that something is done that stays, whatever comes after it.
+/// Notes that a result is complete and stays, whatever happens later.
 pub fn done() {
     DONE.store(true, Ordering::Relaxed);
 }
 
-/// The exit code of a process that a signal has ended, where one has.
+/// Returns the exit code for the signal that came, if one did.
 pub fn interrupted() -> Option<u8> {
     let signal = SIGNAL.get().map_or(0, |signal| signal.load(Ordering::Relaxed));
     u8::try_from(signal).ok().filter(|signal| *signal > 0).map(|signal| 128 + signal)
 }
 
-/// The work of a command, within its budget.
+/// Returns the work of a command, within its budget.
 pub fn work(args: &RunningArgs) -> Work {
     let budget = args.max_memory.unwrap_or_else(memory::usual_budget);
     Work::with_budget(budget, "--max-memory")

@@ -7,7 +7,7 @@ use quick_xml::errors::{IllFormedError, SyntaxError};
 use std::io::ErrorKind;
 use zip::result::ZipError;
 
-/// What is wrong with XML.
+/// Describes a fault of XML.
 pub(crate) fn xml(error: &Xml) -> String {
     match error {
         Xml::Syntax(error) => not_closed(error).to_owned(),
@@ -22,7 +22,7 @@ pub(crate) fn xml(error: &Xml) -> String {
     }
 }
 
-/// What is wrong with an entity of XML.
+/// Describes a fault of an entity of XML.
 pub(crate) fn entity() -> String {
     "after `&` no known entity follows; `&` itself is written `&amp;`".to_owned()
 }
@@ -56,7 +56,7 @@ fn ill_formed(error: &IllFormedError) -> String {
     }
 }
 
-/// What is wrong with JSON, without the place.
+/// Describes a fault of JSON, without its place.
 pub(crate) fn json(error: &serde_json::Error) -> String {
     if error.is_eof() {
         return "the text ends early".to_owned();
@@ -66,7 +66,7 @@ pub(crate) fn json(error: &serde_json::Error) -> String {
     if error.is_syntax() { syntax(text).to_owned() } else { types(text) }
 }
 
-/// What is wrong with the syntax of JSON; all that is not in the list is told in general.
+/// Describes a fault of the syntax of JSON; faults that are not in the list get a general answer.
 fn syntax(text: &str) -> &'static str {
     match text {
         "expected `:`" => "`:` is needed after a name",
@@ -91,7 +91,7 @@ fn syntax(text: &str) -> &'static str {
     }
 }
 
-/// What has another type in JSON than it needs to have.
+/// Describes a value of JSON that has the wrong type.
 fn types(text: &str) -> String {
     if let Some(name) = text.strip_prefix("missing field `").and_then(|t| t.strip_suffix('`')) {
         return format!("`{}` is missing", shown(name));
@@ -137,7 +137,7 @@ fn kind(name: &str) -> &str {
     }
 }
 
-/// What is wrong with a ZIP archive, or with a part of one.
+/// Describes a fault of a ZIP archive, or of a part of one.
 pub(crate) fn zip(error: &ZipError) -> &'static str {
     match error {
         ZipError::Io(error) => inflating(error),
@@ -153,7 +153,7 @@ pub(crate) fn zip(error: &ZipError) -> &'static str {
     }
 }
 
-/// What is wrong with deflated data.
+/// Describes a fault of deflated data.
 pub(crate) fn inflating(error: &std::io::Error) -> &'static str {
     match error.kind() {
         ErrorKind::UnexpectedEof => "the data are cut off",
@@ -161,10 +161,10 @@ pub(crate) fn inflating(error: &std::io::Error) -> &'static str {
     }
 }
 
-/// What an encoder of pictures says, beside failed writes, of what durer has not refused itself.
+/// The message for a picture that an encoder refuses, failed writes aside.
 pub(crate) const REFUSED: &str = "this picture cannot be put into its format; write a PNG";
 
-/// What is wrong with a PNG, as said of it.
+/// Describes a fault of a PNG, as a predicate of its name.
 pub(crate) fn png(error: &png::DecodingError) -> &'static str {
     use png::DecodingError::{IoError, LimitsExceeded};
     match error {
@@ -174,7 +174,7 @@ pub(crate) fn png(error: &png::DecodingError) -> &'static str {
     }
 }
 
-/// What is wrong with a JPEG, as said of it.
+/// Describes a fault of a JPEG, as a predicate of its name.
 pub(crate) fn jpeg(error: &zune_jpeg::errors::DecodeErrors) -> &'static str {
     use zune_jpeg::errors::DecodeErrors::{ExhaustedData, IoErrors, LargeDimensions, Unsupported};
     match error {
@@ -185,7 +185,7 @@ pub(crate) fn jpeg(error: &zune_jpeg::errors::DecodeErrors) -> &'static str {
     }
 }
 
-/// What is wrong with a GIF, as said of it.
+/// Describes a fault of a GIF, as a predicate of its name.
 pub(crate) fn gif(error: &gif::DecodingError) -> &'static str {
     use gif::DecodingError::{EndCodeNotFound, MemoryLimit, OutOfMemory, UnexpectedEof};
     match error {
@@ -195,7 +195,7 @@ pub(crate) fn gif(error: &gif::DecodingError) -> &'static str {
     }
 }
 
-/// What is wrong with a WebP, as said of it.
+/// Describes a fault of a WebP, as a predicate of its name.
 pub(crate) fn webp(error: &image_webp::DecodingError) -> &'static str {
     use image_webp::DecodingError::{ImageTooLarge, IoError, MemoryLimitExceeded};
     match error {
@@ -205,7 +205,7 @@ pub(crate) fn webp(error: &image_webp::DecodingError) -> &'static str {
     }
 }
 
-/// What is wrong with an E57 file.
+/// Describes a fault of an E57 file.
 #[cfg(feature = "e57")]
 pub(crate) fn e57(error: &e57::Error) -> &'static str {
     match error {
@@ -215,7 +215,7 @@ pub(crate) fn e57(error: &e57::Error) -> &'static str {
     }
 }
 
-/// What is wrong with LAZ data.
+/// Describes a fault of LAZ data.
 #[cfg(feature = "laz")]
 pub(crate) fn laz(error: &laz::LasZipError) -> &'static str {
     use laz::LasZipError as E;

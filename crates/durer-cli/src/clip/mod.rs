@@ -111,7 +111,7 @@ fn joins(args: &ClipArgs) -> bool {
     matches!(args.cutting.op, BooleanOp::Union | BooleanOp::Xor)
 }
 
-/// What the parser does not know to be wrong.
+/// Refuses options that the parser accepts one by one but that do not go together.
 fn check(args: &ClipArgs) -> Result<(), Failure> {
     let usage = |message: &str| Err(Failure::Usage(message.to_owned()));
     let region = &args.region;

@@ -162,7 +162,7 @@ impl Job<'_> {
         Ok(Given { layer, format, bytes })
     }
 
-    /// What is read is bounded by.
+    /// The limits on what is read.
     fn limits(&self) -> Limits {
         let work = self.args.running.work.clone();
         Limits { decoded_bytes: self.args.max_bytes, work, ..Limits::default() }

@@ -4,6 +4,8 @@ pub mod annotations;
 pub mod args;
 mod broken;
 mod callouts;
+mod check;
+mod layout;
 pub mod machine;
 pub mod report;
 mod sheet;
@@ -20,12 +22,11 @@ use crate::shape;
 use crate::values::Size;
 pub use annotations::Annotated;
 use annotations::{FeatureReport, Look};
-use args::{Fill, Hatch, Hidden, Merge, NAMES, OF_ANNOTATIONS, Smooth, Unit};
+use args::{Fill, Hatch, Hidden, Merge, Smooth};
 use callouts::Callouts;
+pub use check::check;
 use durer::math::{DVec2, Vec4};
-use durer::paper::{
-    self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock, ViewBreaks, ViewKind,
-};
+use durer::paper::{self, Page, Scale, SheetView, ViewBreaks, ViewKind};
 use durer::pipeline::{self, Background, DrawOptions, DrawStyle, Lighting};
 use durer::scene::{Camera, Scene};
 use durer::target::drawing::Drawing;
@@ -33,6 +34,7 @@ use durer::target::sheet::Sheet;
 use durer::view::components::Component;
 use durer::visibility::line::hidden_line;
 use durer_formats::drawing::{DrawingFormat, DxfStrokes, FileOptions};
+use layout::{lay_out, told_scale, unit};
 use report::DrawingReport;
 use sheet::Shot;
 use std::time::Instant;
@@ -54,130 +56,15 @@ const BENEATH: f64 = 0.2;
 /// are no more exact.
 const FIT: f64 = 0.02;
 
-/// The longer side of drawings that are 1:1 where neither page nor scale is given, millimetres: for DXF and G-code as far
-/// as their digits reach, for SVG what a desk or a screen has room for.
-const SMALLEST: f64 = 0.1;
-const LARGEST: f64 = 900_000.0;
-const HANDY: std::ops::RangeInclusive<f64> = 20.0..=420.0;
-
 /// Lines are simplified at least by this part of the drawing's extent: what is nearer comes from rounding.
 const FINEST: f64 = 1e-5;
-
-/// Free space on paper, millimetres: on pages, and around drawings without one.
-const PAGE_MARGIN: f64 = 10.0;
-const MARGIN: f64 = 5.0;
 
 /// The shape of a sheet of several views, where no page is given: that of lying ISO paper.
 const SHEET: DVec2 = DVec2::new(297.0, 210.0);
 
-/// The longer side of the paper behind a painted picture, millimetres: pens are as wide in it as on a
-/// sheet of this size.
-const PAINTED_SIDE: f64 = 190.0;
-
-/// Options that are about pixels, and what to use for drawings.
-const OF_PIXELS: &[(&str, &str)] = &[
-    ("algorithm", "it finds the surfaces of pixels; --style says what a drawing shows"),
-    ("aa", "vectors have no samples; leave it out, or write a .png"),
-    ("look", "--style says what a drawing shows"),
-    ("ambient_occlusion", "areas of drawings have one colour each; leave it out"),
-    ("ground", "--style shadows draws shadows exactly"),
-    ("edges", "--style regions+lines draws areas with edges"),
-    ("grid", "it is for pictures; leave it out"),
-    ("axes", "it is for pictures; leave it out"),
-    ("line_width", "--pen says how wide lines are; leave it out"),
-    ("point_size", "points of drawings are small crosses; leave it out"),
-    ("color", "pens and materials say what drawings look like; leave it out"),
-    ("shading", "areas of drawings have one colour each; leave it out, and give lights by --light"),
-    ("shadows", "--style shadows draws them exactly"),
-    ("shadow_map", "--style shadows draws shadows exactly, without a map"),
-    ("bounces", "drawings show no reflections; leave it out"),
-    ("environment", "drawings show no reflections; leave it out"),
-    ("tone_map", "areas of drawings have one colour each; --exposure makes all lighter or darker"),
-    ("viewports", "use --sheet third-angle, or a file for each --view"),
-    ("item", "areas of a .geojson with --style regions have the property `item`"),
-    ("depth", "write it beside a .png without --style"),
-    ("normal", "write it beside a .png without --style"),
-];
-
-/// Options that are about pixels but go with painted drawings too.
-const OF_PICTURES: &[(&str, &str)] = &[
-    ("size", "a vector file has millimetres; use --page, e.g. --page 200x150"),
-    ("compression", "it is for .png and .jpg files; leave it out"),
-];
-
 /// Whether the options ask for a drawing, rather than for pixels of surfaces.
 pub fn is_wanted(args: &RenderArgs, kind: Kind) -> bool {
     kind.is_vector() || args.drawing.style.is_some() || args.drawing.sheet.is_some()
-}
-
-/// What the parser does not know to be wrong.
-pub fn check(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
-    let given = |id: &str| args.given.iter().any(|g| g == id);
-    let option = |id: &str| id.replace('_', "-");
-    if !is_wanted(args, kind) {
-        return match NAMES.iter().find(|id| given(id)) {
-            Some(id) => Err(Failure::Usage(format!(
-                "--{}: it is for drawings; write a .svg, .pdf, .dxf, .hpgl, .gcode or .geojson, or give \
-                 --style, e.g. --style hidden-line",
-                option(id)
-            ))),
-            None => Ok(()),
-        };
-    }
-    let vector = kind.is_vector();
-    let wrong = OF_PIXELS.iter().chain(OF_PICTURES.iter().filter(|_| vector));
-    for (id, instead) in wrong {
-        if given(id) {
-            let what = if vector { "a vector drawing" } else { "a drawing" };
-            return Err(Failure::Usage(format!("--{} is not for {what}: {instead}", option(id))));
-        }
-    }
-    let noted = OF_ANNOTATIONS.iter().find(|id| given(id));
-    if let (Some(id), true) = (noted, kind == Kind::Drawing(DrawingFormat::GeoJson)) {
-        let message = "GeoJSON has no paper to write on; write a .svg, .pdf or .dxf";
-        return Err(Failure::Usage(format!("--{}: {message}", option(id))));
-    }
-    background(args, kind)?;
-    args.drawing.machine.check(kind.drawing())?;
-    if args.drawing.fill == Some(Fill::Trapped) && hatch(args, kind) == Hatch::Shade {
-        let message = "--fill trapped: hatching is drawn on areas that do not overlap; use --fill \
-                       disjoint, or --hatch none";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    let asked = args.drawing.hatch == Some(Hatch::Shade);
-    if asked && args.drawing.style == Some(DrawStyle::Wireframe) {
-        let message = "--hatch shade: a wireframe shows no areas; use --style hidden-line, regions, \
-                       regions+lines or shadows";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    tones::check(args)?;
-    let geojson = kind == Kind::Drawing(DrawingFormat::GeoJson);
-    if geojson && args.drawing.fit.is_some_and(|fit| fit > 0.0) {
-        let message = "--fit: GeoJSON has no curves, and no paper; leave it out";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    if args.drawing.dxf_polylines && kind != Kind::Drawing(DrawingFormat::Dxf) {
-        let message = "--dxf-polylines: it is for .dxf files; leave it out";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    check_weights(args, kind)?;
-    broken::check(args, kind)?;
-    sheet::check(args, kind)
-}
-
-/// Refuses what tells visible lines apart where there are none.
-fn check_weights(args: &RenderArgs, kind: Kind) -> Result<(), Failure> {
-    let given = [("depth-cue", args.drawing.depth_cue), ("contour", args.drawing.contour)];
-    let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
-    let message = match args.drawing.style {
-        Some(DrawStyle::Wireframe) => "a wireframe shows all lines alike; use --style hidden-line",
-        Some(DrawStyle::Regions) => "areas have no lines; use --style regions+lines",
-        _ if name == "depth-cue" && kind == Kind::Drawing(DrawingFormat::GeoJson) => {
-            "GeoJSON has no pens; leave it out"
-        }
-        _ => return Ok(()),
-    };
-    Err(Failure::Usage(format!("--{name}: {message}")))
 }
 
 /// Tells contours from other outlines, and near lines from far ones, where that is asked for.
@@ -227,7 +114,7 @@ pub struct Subject<'a> {
     pub cap_material: Option<usize>,
     /// The kinds of its parts, where they are to be numbered.
     pub components: Vec<Component>,
-    /// What is to be written on its drawings, with its round parts.
+    /// The annotations of its drawings, with its round parts.
     pub annotated: Option<Annotated>,
 }
 
@@ -237,7 +124,7 @@ pub struct Shown {
     kind: Option<ViewKind>,
     camera: Camera,
     drawing: Drawing,
-    /// What the drawing leaves out.
+    /// The breaks of the drawing.
     breaks: ViewBreaks,
 }
 
@@ -542,155 +429,7 @@ fn single_camera(args: &RenderArgs, scene: &Scene, frame: Option<u32>) -> Result
     camera::camera(&view(args), scene, &shot)
 }
 
-fn unit(args: &RenderArgs, subject: &Subject) -> Unit {
-    known_unit(args, subject).unwrap_or(Unit::Mm)
-}
-
-/// The model's unit, where it is given or the format says it. Readers bring lengths to metres, and those of 3MF to
-/// millimetres.
-fn known_unit(args: &RenderArgs, subject: &Subject) -> Option<Unit> {
-    let format = subject.format.to_ascii_lowercase();
-    let is_one = |names: &[&str]| names.iter().any(|name| format.contains(name));
-    let of_format = match () {
-        () if is_one(&["gl", "collada", "fbx"]) => Some(Unit::M),
-        () if is_one(&["3mf"]) => Some(Unit::Mm),
-        () => None,
-    };
-    args.drawing.unit.or(of_format)
-}
-
-fn lay_out(
-    args: &RenderArgs,
-    kind: Kind,
-    subject: &Subject,
-    (frame, room): (Option<u32>, f64),
-    (shown, called): (&[Shown], &Callouts),
-) -> Result<LaidOut, Failure> {
-    let paper = paper_options(args, kind, subject, frame, shown)?;
-    let options = paper::Options { around: room, ..paper };
-    let name = args.drawing.title.clone().unwrap_or_else(|| subject.name.to_owned());
-    let views: Vec<SheetView> = shown.iter().filter_map(Shown::sheet_view).collect();
-    let laid = if views.is_empty() {
-        let empty = Drawing::default();
-        let drawing = shown.first().map_or(&empty, |s| &s.drawing);
-        paper::lay_out(drawing, &name, &options)
-    } else {
-        let sheet = args.drawing.sheet;
-        let title = sheet.map(|_| TitleBlock {
-            name,
-            unit: unit(args, subject).name().to_owned(),
-            date: args.drawing.date.clone(),
-        });
-        let contents = Contents {
-            angle: sheet.map(Into::into).unwrap_or_default(),
-            views: &views,
-            callouts: &called.callouts,
-            parts: &called.parts,
-            title: title.as_ref(),
-        };
-        paper::lay_out_views(&contents, &options)
-    };
-    laid.map_err(|e| Failure::Usage(format!("--{e}")))
-}
-
-/// Returns whether a drawing without page and scale is 1:1: for machines, and where that makes a handy sheet.
-fn is_true_size(args: &RenderArgs, kind: Kind, subject: &Subject, shown: &[Shown]) -> bool {
-    let sides = shown.iter().filter_map(|s| s.drawing.bounds()).map(|b| b.size().max_element());
-    let size = sides.fold(0.0, f64::max) * unit(args, subject).millimetres();
-    match kind {
-        Kind::Drawing(DrawingFormat::Dxf) => (SMALLEST..=LARGEST).contains(&size),
-        Kind::Drawing(DrawingFormat::Svg) => {
-            known_unit(args, subject).is_some() && HANDY.contains(&size)
-        }
-        Kind::Drawing(DrawingFormat::Gcode) => {
-            known_unit(args, subject).is_some() && (SMALLEST..=LARGEST).contains(&size)
-        }
-        _ => false,
-    }
-}
-
-/// Returns the warning about the scale of drawings that machines cut or that are measured, if one is due.
-fn told_scale(args: &RenderArgs, kind: Kind, subject: &Subject, laid: &LaidOut) -> Option<String> {
-    let asked = matches!(args.drawing.scale, Some(Scale::Given(_)));
-    let cuts = matches!(kind, Kind::Drawing(DrawingFormat::Dxf | DrawingFormat::Gcode));
-    if !cuts || args.drawing.sheet.is_some() {
-        return None;
-    }
-    let size = laid.sheet.size;
-    let on_bed = kind != Kind::Drawing(DrawingFormat::Gcode) || args.drawing.page.is_some();
-    if !asked && !on_bed && laid.scale == 1.0 && size.max_element() > *HANDY.end() {
-        let [width, height] = [size.x, size.y].map(|v| v.ceil());
-        return Some(format!(
-            "the drawing is as large as the model, {width} × {height} mm; --page, e.g. {width}x{height}, tells how \
-             large the machine is, and makes the drawing fit"
-        ));
-    }
-    if !asked && laid.scale != 1.0 {
-        let scale = paper::scale_text(laid.scale);
-        return Some(format!("the drawing is {scale}; --scale 1:1 makes it as large as the model"));
-    }
-    known_unit(args, subject).is_none().then(|| {
-        let format = subject.format.split(',').next().unwrap_or_default();
-        format!("a unit of the model is taken as 1 mm, as {format} has none; --unit tells another")
-    })
-}
-
 /// Options that the library refuses.
 fn usage(e: durer::Error) -> Failure {
     Failure::of_library(&e)
-}
-
-fn paper_options(
-    args: &RenderArgs,
-    kind: Kind,
-    subject: &Subject,
-    frame: Option<u32>,
-    shown: &[Shown],
-) -> Result<paper::Options, Failure> {
-    let drawing = &args.drawing;
-    let view = &args.view;
-    // Whoever says where the eye is, or how high the view, wants to see just that; so do frames of a
-    // turntable, which have to fit each other.
-    let placed =
-        view.eye.is_some() || view.camera.is_some() || matches!(view.ortho, Some(Ortho::Height(_)));
-    let window = drawing.sheet.is_none()
-        && drawing.breaks.is_empty()
-        && (placed || frame.is_some() || !kind.is_vector());
-    let page = drawing.page.unwrap_or_else(|| match kind {
-        Kind::Picture(_) | Kind::Gif if drawing.sheet.is_none() && drawing.scale.is_none() => {
-            let Size { width, height } = args.picture.size;
-            let size = durer::math::DVec2::new(f64::from(width), f64::from(height));
-            Page::Exact(size * (PAINTED_SIDE / size.max_element()))
-        }
-        _ => Page::Fit,
-    });
-    let on_page = drawing.page.is_some() || drawing.sheet.is_some();
-    let parallel = view.fov.is_none() && view.eye.is_none() && view.camera.is_none();
-    let scale = match (on_page, parallel) {
-        (true, true) => Scale::Standard,
-        (false, true) if is_true_size(args, kind, subject, shown) => Scale::Given(1.0),
-        _ => Scale::Fit,
-    };
-    // A painted window fills the picture, as pixels of surfaces do.
-    let filled = !kind.is_vector() && window && drawing.page.is_none();
-    let margin = if on_page {
-        PAGE_MARGIN
-    } else if filled {
-        0.0
-    } else {
-        MARGIN
-    };
-    Ok(paper::Options {
-        page,
-        margin: drawing.margin.unwrap_or(margin),
-        scale: drawing.scale.unwrap_or(scale),
-        unit: unit(args, subject).millimetres(),
-        frame: if window { Frame::Window } else { Frame::Content },
-        hidden: drawing.hidden.into(),
-        pens: drawing.pen.unwrap_or_default(),
-        fit: curve_fit(args, kind),
-        fit_areas: kind.is_vector() && !is_trapped(args, kind),
-        background: background(args, kind)?,
-        around: 0.0,
-    })
 }

@@ -9,7 +9,7 @@ use durer::pipeline::{self, DrawOptions, DrawStyle, ToneMarks};
 use durer::scene::Scene;
 use durer::target::drawing::{Drawing, Line, LineClass};
 
-/// Which marks are asked for.
+/// Returns the marks that `--hatch` asks for.
 pub fn asked(args: &RenderArgs) -> Option<Hatch> {
     args.drawing.hatch.filter(|hatch| matches!(hatch, Hatch::Contour | Hatch::Stipple))
 }
@@ -28,7 +28,7 @@ pub fn check(args: &RenderArgs) -> Result<(), Failure> {
     )))
 }
 
-/// The marks for the tones of what a view shows; `factor` is its scale, millimetres for a plane unit.
+/// Returns the marks for the tones of a view; `factor` is its scale, millimetres per plane unit.
 pub fn marks(
     args: &RenderArgs,
     (scene, options): (&Scene, &DrawOptions),

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Takes bytes as they come.
 pub struct Sink {
     out: Out,
-    /// What messages call it.
+    /// Its name in messages.
     name: PathBuf,
 }
 

@@ -19,14 +19,14 @@ pub struct Growing {
     failed: String,
 }
 
-/// What comes before models.
+/// The JSON before the models.
 #[derive(Serialize)]
 struct Head {
     /// The version of durer.
     version: &'static str,
 }
 
-/// What comes after them.
+/// The JSON after the models.
 #[derive(Serialize)]
 struct Tail {
     /// From start to end.

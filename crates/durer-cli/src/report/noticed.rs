@@ -5,14 +5,14 @@ use crate::encoding::FLATTENED;
 use crate::messages::Messages;
 use durer_formats::{Model, Place};
 
-/// What was noticed in all pictures of a model.
+/// The notes on all pictures of a model.
 #[derive(Debug, Default)]
 pub struct Noticed {
     /// Why nothing of the model is seen in the first picture where that is so; told already.
     pub unseen: Option<String>,
     /// Triangles of a picture with a vertex that is no number, which the renderer finds, not the reader.
     non_finite: u64,
-    /// What sheets cannot show.
+    /// The notes on sheets.
     notes: Vec<String>,
     /// How faces meet.
     loose_faces: Option<String>,

@@ -148,7 +148,7 @@ pub(super) fn text_quad(mark: &Mark) -> Option<Quad> {
     }
 }
 
-/// What the circle around a number takes up.
+/// Returns the room that the circle around a number takes.
 fn circle_quad(mark: &Mark) -> Option<Quad> {
     match mark {
         Mark::Stroke { points, closed: true, .. } => {
@@ -158,7 +158,7 @@ fn circle_quad(mark: &Mark) -> Option<Quad> {
     }
 }
 
-/// What a text, a line or an arrow takes up.
+/// Returns the room that a text, a line or an arrow takes.
 fn thin_quads(mark: &Mark) -> Vec<Quad> {
     let along = |points: &[DVec2]| {
         points.windows(2).map(|w| Quad::of_segment(w[0], w[1], HALO)).collect::<Vec<_>>()

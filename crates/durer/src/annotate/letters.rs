@@ -51,7 +51,7 @@ fn moved(quad: Quad, way: DVec2) -> Quad {
     Quad(quad.0.map(|p| p + way))
 }
 
-/// How a letter is to be moved.
+/// Returns how far a letter is to be moved.
 fn way(sheet: &Sheet, own: (usize, usize), quad: Quad, views: &[Rect], page: &Rect) -> DVec2 {
     let near = Near::new(sheet, own, quad, |l| FIXED.contains(&l.name.as_str()));
     if near.is_free(&quad) {

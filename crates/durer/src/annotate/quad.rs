@@ -51,7 +51,7 @@ impl Quad {
         Self(Self(corners).wider(space).0.map(|corner| at + along.rotate(corner)))
     }
 
-    /// What the text of a dimension takes up, with space around it.
+    /// Returns the room that the text of a dimension takes, with space around it.
     pub fn of_dimension(text: &DimensionText) -> Self {
         Self::of_text(&text.text, (text.at, text.along), text.height, Anchor::Middle, HALO)
     }

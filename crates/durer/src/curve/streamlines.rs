@@ -21,7 +21,7 @@ pub trait Field {
     fn joins(&self, from: DVec2, to: DVec2) -> bool;
 }
 
-/// How streamlines are traced.
+/// The settings of [`streamlines`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Distance between points of a line, above 0; in the units of the plane.
@@ -165,7 +165,7 @@ impl<F: Field> Tracing<'_, F> {
         (next.is_finite() && self.field.joins(at, next)).then_some((next, direction))
     }
 
-    /// Where new lines might begin beside a line, on both sides.
+    /// Returns where new lines might begin beside a line, on both sides.
     fn places_beside(&self, line: usize) -> Vec<DVec2> {
         let points = self.lines.get(line).map_or(&[][..], |l| &l.points);
         let mut places = Vec::new();

@@ -18,7 +18,7 @@ pub struct PlacedView {
     pub factor: f64,
     /// What the drawing takes up, in the sheet's millimetres.
     pub bounds: Rect,
-    /// What the drawing leaves out.
+    /// The breaks of the drawing.
     pub breaks: ViewBreaks,
 }
 

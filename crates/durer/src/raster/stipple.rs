@@ -7,7 +7,7 @@
 use crate::math::DVec2;
 use crate::target::Pixels;
 
-/// How often dots are moved.
+/// The number of rounds in which dots are moved.
 const ROUNDS: usize = 24;
 
 /// Dots at most; beyond that each stands for more tone.

@@ -62,7 +62,7 @@ pub struct SheetView<'a> {
     pub camera: Camera,
     /// What is seen.
     pub drawing: &'a Drawing,
-    /// What the drawing leaves out.
+    /// The breaks of the drawing.
     pub breaks: ViewBreaks,
 }
 

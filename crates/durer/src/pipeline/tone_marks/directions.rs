@@ -12,7 +12,7 @@ use super::seen::Seen;
 use super::tensor::Tensor;
 use crate::math::{DVec2, DVec3};
 
-/// Which of two directions at right angles on the surface.
+/// One of two directions at right angles on the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Across {
     /// That of the strongest curvature, as a rule.
@@ -141,9 +141,9 @@ impl Bent {
     const NOT: Self = Self { directions: [DVec3::ZERO; 2], weight: 0.0, lead: 0.0 };
 }
 
-/// How a surface goes on from pixel to pixel.
+/// The change of a surface from pixel to pixel.
 struct Sides {
-    /// What a pixel to the right adds to the place, and one below.
+    /// The change of the place from a pixel to the one on its right, and to the one below.
     place: [DVec3; 2],
     /// The same for the normal.
     turn: [DVec3; 2],
@@ -201,7 +201,7 @@ impl Sides {
     }
 }
 
-/// How the place and the normal change by a pixel, between the neighbours on the same surface.
+/// Returns the change of the place and of the normal per pixel, between the neighbours on the same surface.
 fn difference(seen: &Seen, here: (u32, u32), around: [(u32, u32); 2]) -> Option<[DVec3; 2]> {
     let own = seen.pixel(here.0, here.1)?;
     let [before, after] =

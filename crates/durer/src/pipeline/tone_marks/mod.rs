@@ -26,7 +26,7 @@ use crate::{Error, Result};
 use directions::{Across, Directions};
 use seen::Seen;
 
-/// Which marks show tones.
+/// The marks that show tones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ToneMarks {
     /// Lines along the surfaces' curvature, crossed where it is darkest; class [`LineClass::Hatch`].
@@ -99,7 +99,7 @@ struct Frame {
     corner: DVec2,
     /// The size of a pixel, plane units.
     pixel: f64,
-    /// What was asked for, in pixels.
+    /// The size of marks, in pixels.
     size: f64,
 }
 
@@ -200,7 +200,7 @@ impl Field for Hatching<'_> {
     }
 }
 
-/// How lines of one direction follow the tone, 0 … 1.
+/// The distances of lines of one direction by the tone, 0 … 1.
 struct Tones {
     /// Up to which they are at their closest.
     closest: f64,

@@ -15,7 +15,7 @@ pub struct Seen {
     pixels: Vec<Pixel>,
 }
 
-/// What one pixel shows.
+/// The surface at one pixel.
 #[derive(Clone, Copy)]
 pub struct Pixel {
     /// From the eye: to the right, down, and back; model units. NaN where nothing is.
@@ -159,7 +159,7 @@ fn caps(scene: &Scene, material: Option<usize>) -> Vec<Range<u32>> {
     found
 }
 
-/// How a pixel and its depth become a place.
+/// The map from a pixel and its depth to a place.
 struct Eye {
     /// Right, down and back.
     axes: [DVec3; 3],
@@ -180,7 +180,7 @@ impl Eye {
         Self { axes, from_screen, perspective }
     }
 
-    /// Where a pixel's surface is, and its normal on the eye's side.
+    /// Returns where a pixel's surface is, and its normal on the eye's side.
     fn sees(&self, [x, y]: [u32; 2], depth: f32, normal: [f32; 3]) -> Option<(DVec3, DVec3)> {
         let at = DVec4::new(f64::from(x) + 0.5, f64::from(y) + 0.5, f64::from(depth), 1.0);
         let place = self.from_screen * at;
