@@ -1,29 +1,17 @@
 //! A CPU graphics pipeline: geometry in, pixels or exact vector drawings out.
 //!
 //! ```
-//! use durer::math::{DMat4, DVec3, Vec3};
 //! use durer::pipeline::{RenderOptions, Shading, render};
-//! use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
+//! use durer::scene::{Camera, Mesh, Projection, Scene};
 //!
-//! // A triangle that fills the lower left half of what the camera sees.
-//! let positions = vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(-1.0, 1.0, 0.0)];
-//! let mesh = Mesh { positions, ..Mesh::default() };
-//! let instance = Instance { mesh: 0, world_from_mesh: DMat4::IDENTITY, name: String::new() };
-//! let scene = Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() };
+//! // A triangle that fills the lower left half of the camera's view.
+//! let mesh = Mesh::from_triangles([[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 0.0]]]);
+//! let camera = Camera::look_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+//! let camera = Camera { projection: Projection::Orthographic { height: 2.0 }, ..camera };
+//! let shading = Some(Shading::Unlit);
+//! let options = RenderOptions { width: 64, height: 64, shading, ..RenderOptions::new(camera) };
 //!
-//! let camera = Camera {
-//!     eye: DVec3::new(0.0, 0.0, 5.0),
-//!     target: DVec3::ZERO,
-//!     up: DVec3::Y,
-//!     projection: Projection::Orthographic { height: 2.0 },
-//!     near: 1.0,
-//!     far: 10.0,
-//! };
-//! let mut options = RenderOptions::new(camera);
-//! (options.width, options.height) = (64, 64);
-//! options.shading = Some(Shading::Unlit);
-//!
-//! let (picture, report) = render(&scene, &options)?;
+//! let (picture, report) = render(&Scene::from(mesh), &options)?;
 //! assert_eq!(report.drawn, 1);
 //! assert_eq!(picture.color.get(10, 50), Some([231, 231, 231, 255])); // the default material
 //! assert_eq!(picture.color.get(50, 10), Some([255, 255, 255, 255])); // the background
@@ -175,7 +163,7 @@
 
 // The README's library example is compiled and run with the documentation's.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;
 
 pub mod error;

@@ -47,6 +47,25 @@ pub struct NamedCamera {
 }
 
 impl Camera {
+    /// Creates a camera at `eye` that looks at `target` in perspective, with a vertical angle of 45° and the
+    /// clipping planes at a hundredth and a hundred times the distance; all world space. `up` is up in the
+    /// picture.
+    ///
+    /// ```
+    /// use durer::scene::{Camera, Projection};
+    ///
+    /// let camera = Camera::look_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    /// assert_eq!((camera.near, camera.far), (0.05, 500.0));
+    /// let parallel = Camera { projection: Projection::Orthographic { height: 2.0 }, ..camera };
+    /// assert!(parallel.check().is_ok());
+    /// ```
+    pub fn look_at(eye: impl Into<DVec3>, target: impl Into<DVec3>, up: impl Into<DVec3>) -> Self {
+        let (eye, target) = (eye.into(), target.into());
+        let distance = eye.distance(target);
+        let projection = Projection::Perspective { fov_y: std::f64::consts::FRAC_PI_4 };
+        Self { eye, target, up: up.into(), projection, near: distance / 100.0, far: distance * 100.0 }
+    }
+
     /// Checks that the camera can see: finite, eye ≠ target, up not parallel, near < far.
     ///
     /// # Errors

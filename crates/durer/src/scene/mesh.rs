@@ -61,6 +61,20 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Creates a mesh of triangles, given by their corners, counter-clockwise seen from the front. Vertices are not
+    /// shared.
+    ///
+    /// ```
+    /// use durer::scene::Mesh;
+    ///
+    /// let mesh = Mesh::from_triangles([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]);
+    /// assert_eq!(mesh.triangle_count(), 1);
+    /// ```
+    pub fn from_triangles<P: Into<Vec3>>(triangles: impl IntoIterator<Item = [P; 3]>) -> Self {
+        let positions = triangles.into_iter().flatten().map(Into::into).collect();
+        Self { positions, ..Self::default() }
+    }
+
     /// The number of indices, explicit or not.
     pub fn index_count(&self) -> usize {
         self.indices.as_ref().map_or(self.positions.len(), Vec::len)

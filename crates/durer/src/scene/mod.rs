@@ -98,6 +98,20 @@ pub struct Instance {
     pub name: String,
 }
 
+impl Instance {
+    /// Creates an instance of a mesh in its own coordinates, without a name.
+    pub const fn of(mesh: usize) -> Self {
+        Self { mesh, world_from_mesh: DMat4::IDENTITY, name: String::new() }
+    }
+}
+
+impl From<Mesh> for Scene {
+    /// Creates a scene that shows one mesh in its own coordinates.
+    fn from(mesh: Mesh) -> Self {
+        Self { meshes: vec![mesh], instances: vec![Instance::of(0)], ..Self::default() }
+    }
+}
+
 /// Everything that can be drawn, posed at one moment. Instances are drawn in their order.
 ///
 /// The item index of a triangle is its place in the sequence of all triangles of all instances.
