@@ -66,6 +66,7 @@ pub fn range(ends: &[u32], index: usize) -> Range<usize> {
 }
 
 /// Less than this is filled faster than it is shared out.
+#[cfg(feature = "parallel")]
 const FILLS: usize = if cfg!(test) { 8 } else { 1 << 16 };
 
 /// So many times a value: memory that is written for the first time costs the kernel a fault for each
