@@ -2,12 +2,12 @@
 
 use crate::args::{PictureArgs, ViewArgs};
 use crate::failure::Failure;
-use crate::fit;
 use crate::values::{Size, positive};
 use durer::math::{DQuat, DVec3};
 use durer::scene::{Camera, Projection, Scene};
+use durer::view::fit::{self, fit_turning};
 use durer::view::layout::Layout;
-use durer::view::projection::{FitOptions, Lens, NamedView, ViewDirection};
+use durer::view::projection::{FitOptions, Lens, NamedView, ViewDirection, fit_scene};
 
 /// Angle of view of a fitted camera, degrees: like a lens of 70 mm on a full frame.
 pub const FOV: f64 = 30.0;
@@ -186,7 +186,7 @@ fn fitted(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure
         None => Lens::Perspective { fov_y: args.fov.unwrap_or(FOV).to_radians() },
     };
     let options = FitOptions { lens, aspect: shot.aspect(), margin: MARGIN };
-    let fit = if shot.turn.is_some() { fit::turning } else { fit::still };
+    let fit = if shot.turn.is_some() { fit_turning } else { fit_scene };
     let mut camera = fit(scene, &direction, &options).map_err(|e| Failure::Data(e.to_string()))?;
     if let Some(Ortho::Height(height)) = args.ortho {
         camera.projection = Projection::Orthographic { height };

@@ -15,7 +15,6 @@ mod explode;
 mod failure;
 mod fill;
 mod film;
-mod fit;
 mod info;
 mod input;
 mod kind;

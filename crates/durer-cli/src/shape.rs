@@ -3,10 +3,10 @@
 use crate::args::{PictureArgs, ViewArgs};
 use crate::camera::{self, Shot};
 use crate::failure::Failure;
-use crate::fit;
 use crate::values::Size;
 use durer::math::DVec2;
 use durer::scene::Scene;
+use durer::view::fit;
 use durer::view::layout::Layout;
 
 /// Shapes that are longer than this become this: a line has no height.

@@ -2,7 +2,6 @@
 
 use crate::args::ViewArgs;
 use crate::failure::Failure;
-use crate::fit;
 use crate::values;
 use clap::{Args, ValueEnum};
 use durer::math::Vec4;
@@ -11,6 +10,7 @@ use durer::pipeline::{
 };
 use durer::scene::{AlphaMode, Camera, Material, Scene, ShadingModel};
 use durer::target::Framebuffer;
+use durer::view::fit;
 use durer::view::projection::drawn_bounds;
 
 /// How far away, as a part of the model's radius, things take light from each other.

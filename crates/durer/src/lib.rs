@@ -178,6 +178,8 @@ pub mod target;
 
 pub mod scene;
 
+pub mod geometry;
+
 pub mod curve;
 
 pub mod clip;

@@ -1,11 +1,11 @@
 //! The options of `durer clip`.
 
-use super::engine::Algorithm;
 use super::window::{Window, region};
 use crate::args::RunningArgs;
 use crate::layer::{FieldArgs, SystemArgs};
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
+use durer::clip::mask::Algorithm;
 use durer::clip::polygon::{BooleanOp, FillRule};
 use durer_formats::geo::GeoFormat;
 use std::path::PathBuf;

@@ -1,15 +1,13 @@
 //! `durer clip --cells`: every feature cut by each of many cells, and told which cell each piece is in.
 
 use super::args::ClipArgs;
-use super::engine::{Cut, Cutter, Rules};
-use super::mask::Mask;
-use super::shapes::Area;
 use super::srids::Srids;
 use super::{Job, rules};
 use crate::failure::Failure;
 use crate::input::display_name;
 use crate::layer::{open, words};
 use crate::messages::Messages;
+use durer::clip::mask::{Area, Cut, Cutter, Mask, Rules};
 use durer::clip::polygon::{BooleanOp, FillRule, Shapes, coverage};
 use durer::math::Rect;
 use durer_formats::geo::{Dimensions, Feature, Geometry, Member};

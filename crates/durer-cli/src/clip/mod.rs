@@ -2,32 +2,25 @@
 
 mod args;
 mod cells;
-mod engine;
 mod mask;
-mod mean_value;
 mod report;
-mod shapes;
 mod srids;
 mod tiles;
 mod tiling;
-mod values;
 mod window;
 
 pub use args::{ClipArgs, EXAMPLES, TileCoordinates, format};
-pub use engine::Rules;
 pub use report::Counts;
-pub use shapes::Area;
 pub use window::window;
 
 use crate::failure::Failure;
 use crate::input::{display_name, is_stream};
 use crate::layer::{self, Fields, Shift, Sink, Source, failure, named_format, words};
 use crate::messages::Messages;
+use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
 use durer::clip::polygon::validity::{self, Touching};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, System, Writer};
-use engine::{Algorithm, Cutter, Made};
-use mask::Mask;
 use rayon::prelude::*;
 use report::Report;
 use srids::Srids;

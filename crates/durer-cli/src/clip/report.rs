@@ -1,7 +1,7 @@
 //! What `durer clip --json` says.
 
-use super::engine::Cut;
 use super::srids::Srids;
+use durer::clip::mask::Cut;
 use durer::clip::polygon::signed_area;
 use durer_formats::geo::{Geometry, Points};
 use serde::Serialize;

@@ -1,8 +1,7 @@
 //! Tiles of web maps as masks: features keep their coordinates, heights and measures.
 
 use super::args::TileCoordinates;
-use super::engine::{Cutter, Rules};
-use super::mask::Mask;
+use durer::clip::mask::{Cutter, Mask, Rules};
 use durer::clip::polygon::BooleanOp;
 use durer::clip::tiles::mercator::{self, HALF_WORLD};
 use durer::clip::tiles::{Content, Tile, WORLDS, count, walk};

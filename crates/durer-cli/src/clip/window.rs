@@ -1,7 +1,7 @@
 //! `--window`: a rectangle, or one across the 180th meridian.
 
-use super::mask::Mask;
 use crate::values;
+use durer::clip::mask::Mask;
 use durer::math::{DVec2, Rect};
 use durer_formats::geo::{Geometry, Points};
 

@@ -1,10 +1,11 @@
 //! `durer buffer`.
 
 use super::{FilesArgs, Job};
-use crate::clip::{Area, joined};
+use crate::clip::joined;
 use crate::failure::Failure;
 use crate::values;
 use clap::{Args, ValueEnum};
+use durer::clip::mask::Area;
 use durer::clip::polygon::{FillRule, Shapes};
 use durer::math::DVec2;
 use durer::raster::line::wide::buffer::{self, Options};

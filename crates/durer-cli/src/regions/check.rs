@@ -1,13 +1,13 @@
 //! `durer check`.
 
 use crate::args::RunningArgs;
-use crate::clip::Area;
 use crate::failure::Failure;
 use crate::input::display_name;
 use crate::layer::{open, words};
 use crate::messages::Messages;
 use crate::values;
 use clap::{Args, ValueHint};
+use durer::clip::mask::Area;
 use durer::clip::polygon::Shapes;
 use durer::clip::polygon::mismatch::misfits;
 use durer::clip::polygon::validity::flaws;

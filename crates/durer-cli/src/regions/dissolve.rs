@@ -1,10 +1,11 @@
 //! `durer dissolve`.
 
 use super::{FilesArgs, Job};
-use crate::clip::{Area, MIXED, Rules, joined};
+use crate::clip::{MIXED, joined};
 use crate::failure::Failure;
 use crate::layer;
 use clap::Args;
+use durer::clip::mask::{Area, Rules};
 use durer_formats::geo::{Feature, Geometry, Member, Points};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

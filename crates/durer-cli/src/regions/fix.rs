@@ -1,9 +1,9 @@
 //! `durer fix`.
 
 use super::{BATCH, FilesArgs, Job, Report};
-use crate::clip::{Area, Rules};
 use crate::failure::Failure;
 use clap::Args;
+use durer::clip::mask::{Area, Rules};
 use durer::clip::polygon::coverage::matched;
 use durer::clip::polygon::validity::{Touching, is_valid};
 use durer::clip::polygon::{FillRule, Shapes};

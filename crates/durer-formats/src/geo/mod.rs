@@ -46,7 +46,8 @@ mod wkb;
 mod wkt;
 mod writer;
 
-pub use feature::{Dimensions, Feature, Geometry, Member, Points};
+pub use durer::geometry::{Dimensions, Geometry, Points};
+pub use feature::{Feature, Member};
 pub use format::GeoFormat;
 pub use gzip::unzipped;
 pub use reader::{Beside, Reader, read_all};

@@ -4,6 +4,7 @@ pub mod attribute;
 pub(crate) mod exact;
 pub mod hilbert;
 pub mod line;
+pub mod mask;
 pub mod outcode;
 pub mod place;
 pub mod polygon;

@@ -63,7 +63,14 @@ impl Camera {
         let (eye, target) = (eye.into(), target.into());
         let distance = eye.distance(target);
         let projection = Projection::Perspective { fov_y: std::f64::consts::FRAC_PI_4 };
-        Self { eye, target, up: up.into(), projection, near: distance / 100.0, far: distance * 100.0 }
+        Self {
+            eye,
+            target,
+            up: up.into(),
+            projection,
+            near: distance / 100.0,
+            far: distance * 100.0,
+        }
     }
 
     /// Checks that the camera can see: finite, eye ≠ target, up not parallel, near < far.

@@ -3,6 +3,7 @@
 pub mod components;
 pub mod cull;
 pub mod explode;
+pub mod fit;
 pub mod interior_point;
 pub mod label;
 pub mod layout;

@@ -1,10 +1,11 @@
-//! What cameras have to see of a scene.
+//! Cameras for turntables, and what cameras see of a scene: its shape, its middle, its depths.
 
-use durer::math::{DVec2, DVec3};
-use durer::scene::{Camera, Mesh, Projection, Scene, UpAxis};
-use durer::view::projection::{
-    FitOptions, NamedView, ViewDirection, drawn_bounds, drawn_ends, fit_points, fit_scene,
+use super::projection::{
+    FitOptions, NamedView, ViewDirection, drawn_bounds, drawn_ends, fit_points,
 };
+use crate::Result;
+use crate::math::{DVec2, DVec3};
+use crate::scene::{Camera, Mesh, Projection, Scene, UpAxis};
 use std::f64::consts::TAU;
 
 /// A perspective near plane is at least this part of the far plane, for depth to keep its precision.
@@ -16,29 +17,24 @@ const SLABS: usize = 512;
 /// Points on the rim of each disc; at 64 the rim is at most 0.12 % outside of them.
 const AROUND: usize = 64;
 
-/// What is up for a line of sight; the back's direction where that looks along the up axis.
+/// Returns the up direction for a line of sight, world space; that of the back view if the line runs along the up
+/// axis.
 pub fn up_for(sight: DVec3, up_axis: UpAxis) -> DVec3 {
     let front = NamedView::Front.direction(up_axis);
     let sideways = sight.normalize_or_zero().cross(front.up()).length();
     if sideways < 1e-6 { -front.to_eye() } else { front.up() }
 }
 
-/// The camera that sees the model as large as can be.
-pub fn still(
-    scene: &Scene,
-    direction: &ViewDirection,
-    options: &FitOptions,
-) -> durer::Result<Camera> {
-    fit_scene(scene, direction, options)
-}
-
-/// The camera that sees the model as large as can be while it turns around the up axis: at the same
+/// Returns the camera that sees the model as large as possible while it turns around the up axis: at the same
 /// distance and height for all azimuths.
-pub fn turning(
+///
+/// # Errors
+/// As [`fit_points`].
+pub fn fit_turning(
     scene: &Scene,
     direction: &ViewDirection,
     options: &FitOptions,
-) -> durer::Result<Camera> {
+) -> Result<Camera> {
     fit_points(rims(scene, direction.to_eye(), direction.up()), direction, options)
 }
 
@@ -59,7 +55,8 @@ fn rims(scene: &Scene, to_eye: DVec3, up: DVec3) -> Vec<DVec3> {
     points
 }
 
-/// Width over height of what a camera sees of the model, or of all its frames; no number where that is nothing.
+/// Returns the ratio of width to height of the model as a camera sees it, or of all frames of a turntable; NaN if
+/// nothing is seen.
 pub fn aspect(camera: &Camera, scene: &Scene, turning: bool) -> f64 {
     let back = (camera.eye - camera.target).normalize_or_zero();
     let up = camera.up.reject_from(back).normalize_or_zero();
@@ -131,12 +128,13 @@ fn for_each_point(scene: &Scene, f: impl FnMut(DVec3)) {
     points(scene).for_each(f);
 }
 
-/// The middle of the box around what is drawn; `None` where that is nothing.
+/// Returns the middle of the box around everything drawn, world space; `None` if there is nothing.
 pub fn center(scene: &Scene) -> Option<DVec3> {
     drawn_bounds(scene).map(|bounds| bounds.center())
 }
 
-/// Near and far planes around what a camera in a given place can see of the model.
+/// Returns the distances of near and far planes around the part of the model that a camera at this position can
+/// see, world units.
 pub fn depth_range(camera: &Camera, scene: &Scene) -> (f64, f64) {
     let back = (camera.eye - camera.target).normalize_or_zero();
     let Some(ends) = drawn_ends(scene, back) else { return (0.1, 100.0) };
@@ -160,9 +158,9 @@ fn perspective_range(nearest: f64, farthest: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use durer::math::{DMat4, Vec3};
-    use durer::scene::Instance;
-    use durer::view::projection::Lens;
+    use crate::math::{DMat4, Vec3};
+    use crate::scene::Instance;
+    use crate::view::projection::{Lens, fit_scene};
 
     /// Points of a skew, flat, off-centre box.
     fn scene(scale: f32, offset: f32) -> Scene {
@@ -207,7 +205,7 @@ mod tests {
             for (azimuth, elevation) in [(0.0, 0.0), (45.0, 35.0), (-200.0, -70.0), (10.0, 90.0)] {
                 for (lens, aspect) in [(LENSES[0], 0.3), (LENSES[0], 2.5), (LENSES[1], 1.0)] {
                     let from = direction(azimuth, elevation);
-                    let camera = still(&scene, &from, &options(lens, aspect)).unwrap();
+                    let camera = fit_scene(&scene, &from, &options(lens, aspect)).unwrap();
                     let share = seen_by(&camera, &scene, aspect);
                     assert!((share - 0.94).abs() < 1e-6, "{share} at {azimuth}, {elevation}");
                 }
@@ -225,7 +223,7 @@ mod tests {
             let mut distances = Vec::new();
             for degrees in 0..360 {
                 let from = direction(f64::from(degrees), elevation);
-                let camera = turning(&scene, &from, &options(lens, 1.5)).unwrap();
+                let camera = fit_turning(&scene, &from, &options(lens, 1.5)).unwrap();
                 // What sets the scale of the picture; a parallel view's eye may be anywhere.
                 distances.push(match camera.projection {
                     Projection::Perspective { .. } => {
@@ -243,7 +241,8 @@ mod tests {
     #[test]
     fn vertices_that_nothing_uses_do_not_count() {
         let mut scene = scene(1.0, 0.0);
-        let camera = |scene: &Scene| still(scene, &direction(45.0, 35.0), &options(LENSES[0], 1.0));
+        let camera =
+            |scene: &Scene| fit_scene(scene, &direction(45.0, 35.0), &options(LENSES[0], 1.0));
         let expected = camera(&scene);
         scene.meshes[0].indices = Some((0..60).collect());
         scene.meshes[0].positions.push(Vec3::splat(1e9));
@@ -263,8 +262,8 @@ mod tests {
             for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0)] {
                 for lens in LENSES {
                     let (from, options) = (direction(azimuth, elevation), options(lens, 1.0));
-                    seen_by(&still(&scene, &from, &options).unwrap(), &scene, 1.0);
-                    seen_by(&turning(&scene, &from, &options).unwrap(), &scene, 1.0);
+                    seen_by(&fit_scene(&scene, &from, &options).unwrap(), &scene, 1.0);
+                    seen_by(&fit_turning(&scene, &from, &options).unwrap(), &scene, 1.0);
                 }
             }
         }

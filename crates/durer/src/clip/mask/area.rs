@@ -1,16 +1,17 @@
-//! Between the geometry of files and the library's polygons.
+//! The conversion between geometries and polygons with heights and measures.
 
 use super::mean_value::MeanValues;
 use super::values::{Values, Zm, between, mix};
-use durer::clip::attribute::Source;
-use durer::clip::polygon::overlay::{Operand, Output};
-use durer::clip::polygon::{Shapes, signed_area};
-use durer::math::DVec2;
-use durer_formats::geo::{Dimensions, Geometry, Points};
+use crate::clip::attribute::Source;
+use crate::clip::polygon::overlay::{Operand, Output};
+use crate::clip::polygon::{Shapes, signed_area};
+use crate::geometry::{Dimensions, Geometry, Points};
+use crate::math::DVec2;
 
 /// Polygons with the heights and measures of their vertices.
 #[derive(Debug, Clone, Default)]
 pub struct Area {
+    /// The polygons.
     pub shapes: Shapes,
     dimensions: Dimensions,
     /// One for each of the shapes' points; empty where there is neither height nor measure.
@@ -18,14 +19,14 @@ pub struct Area {
 }
 
 impl Area {
-    /// The polygons of a geometry, of collections too.
+    /// Returns the polygons of a geometry, of collections too.
     pub fn of_geometry(geometry: &Geometry) -> Self {
         let mut area = Self { dimensions: geometry.dimensions(), ..Self::default() };
         area.add(geometry);
         area
     }
 
-    /// Polygons without heights and measures.
+    /// Creates polygons without heights and measures.
     pub fn flat(shapes: Shapes) -> Self {
         Self { shapes, ..Self::default() }
     }
@@ -74,7 +75,7 @@ impl Area {
         mixed
     }
 
-    /// A polygon, or several, or nothing.
+    /// Returns a polygon, or several, or nothing.
     pub fn into_geometry(self) -> Option<Geometry> {
         let mut next = 0;
         let mut polygons: Vec<Vec<Points>> = Vec::new();
@@ -97,7 +98,7 @@ impl Area {
         }
     }
 
-    /// What became of this area, from the sources of the new vertices as far as they are known.
+    /// Returns the clipped area, with the sources of new vertices as far as they are known.
     pub fn cut(&self, shapes: Shapes, sources: &[Source]) -> Self {
         if self.zm.is_empty() {
             return Self { shapes, dimensions: self.dimensions, zm: Vec::new() };
@@ -112,7 +113,7 @@ impl Area {
         self.with_values(shapes, values)
     }
 
-    /// What became of this area, the subject of an overlay.
+    /// Returns this area after an overlay in which it was the subject.
     pub fn overlaid(&self, output: &Output) -> Self {
         let shapes = output.shapes.clone();
         if self.zm.is_empty() {
@@ -183,7 +184,7 @@ fn fill(ring: &[DVec2], known: &[Option<Zm>], otherwise: impl Fn(DVec2) -> Zm) -
 }
 
 /// The same geometry with outer rings counter-clockwise and holes clockwise, each from its first vertex.
-pub fn oriented(mut geometry: Geometry) -> Geometry {
+pub(super) fn oriented(mut geometry: Geometry) -> Geometry {
     orient_all(&mut geometry);
     geometry
 }
@@ -209,9 +210,9 @@ fn orient(rings: &mut [Points]) {
 }
 
 /// The pieces of lines, from the sources of their vertices.
-pub fn pieces(
+pub(super) fn pieces(
     lines: &[&Points],
-    cut: &durer::clip::polygon::rectangle::ClippedLines,
+    cut: &crate::clip::polygon::rectangle::ClippedLines,
 ) -> Vec<Points> {
     let any = |has: fn(Dimensions) -> bool| lines.iter().any(|line| has(line.dimensions));
     let dimensions = Dimensions::new(any(Dimensions::has_z), any(Dimensions::has_m));

@@ -5,8 +5,8 @@
 //! place among n vertices. Values are kept within the range of the polygon's own.
 
 use super::values::{Values, Zm};
-use durer::clip::polygon::signed_area;
-use durer::math::DVec2;
+use crate::clip::polygon::signed_area;
+use crate::math::DVec2;
 
 /// A ring with its values.
 struct Ring<'a> {
@@ -92,7 +92,7 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use durer::clip::polygon::Shapes;
+    use crate::clip::polygon::Shapes;
 
     #[test]
     fn planes_come_out_as_they_are_around_holes_too() {

@@ -1,53 +1,49 @@
-//! Cutting one geometry with the mask.
+//! Clipping of one geometry to a mask.
 
-use super::mask::Mask;
-use super::shapes::{Area, oriented, pieces};
-use durer::clip::line::polyline::{self, Part};
-use durer::clip::line::{LineClipper, Segment};
-use durer::clip::polygon::overlay::{self, overlay};
-use durer::clip::polygon::rectangle::{self, ClippedLines};
-use durer::clip::polygon::validity::{Touching, is_valid};
-use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, coverage, vatti};
-use durer::math::{DVec2, Rect};
-use durer::trace::NoTrace;
-use durer_formats::geo::{Geometry, Points};
+use super::area::{oriented, pieces};
+use super::segments::by_segments;
+use super::{Area, Mask, Rules};
+use crate::clip::line::LineClipper;
+use crate::clip::line::polyline::{self, Part};
+use crate::clip::polygon::rectangle;
+use crate::clip::polygon::validity::{Touching, is_valid};
+use crate::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes, coverage};
+use crate::geometry::{Geometry, Points};
+use crate::math::{DVec2, Rect};
+use crate::trace::NoTrace;
+use crate::{Error, Result};
 
-type Result<T> = durer::Result<T>;
-
-/// How a geometry is cut.
+/// Mask, operation and settings for clipping geometries.
 #[derive(Debug, Clone, Copy)]
 pub struct Cutter<'a> {
+    /// Region to clip to.
     pub mask: &'a Mask,
     /// Intersection, or difference.
     pub op: BooleanOp,
+    /// Fill rule of polygons and grid of their crossings.
     pub rules: Rules,
+    /// Algorithm to use; `None` chooses by geometry and mask.
     pub algorithm: Option<Algorithm>,
 }
 
-/// What polygons enclose, and where their crossings may lie.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Rules {
-    pub fill: FillRule,
-    /// Size of a grid cell, in units of the coordinates.
-    pub grid: Option<f64>,
-}
-
-/// An algorithm of the library by its name.
+/// Algorithm of the library, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Algorithm {
+    /// Algorithm for polygons.
     Polygon(PolygonClipper),
+    /// Algorithm for lines and axis-parallel windows.
     Line(LineClipper),
 }
 
 impl Algorithm {
-    /// All that the command can use; midpoint subdivision works on pixels only.
+    /// Returns all algorithms for geometries; midpoint subdivision works on pixels only.
     pub fn all() -> Vec<Self> {
         let polygons = PolygonClipper::ALL.iter().map(|&a| Self::Polygon(a));
         let lines = LineClipper::ALL.iter().filter(|&&a| a != LineClipper::Midpoint);
         polygons.chain(lines.map(|&a| Self::Line(a))).collect()
     }
 
-    /// Its name on the command line.
+    /// Returns its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Polygon(a) => a.name(),
@@ -82,13 +78,14 @@ impl Algorithm {
     }
 }
 
-/// What is left of a geometry.
+/// Result of clipping a geometry.
 #[derive(Debug, Default)]
 pub struct Cut {
+    /// Part that remains; `None` if nothing does.
     pub geometry: Option<Geometry>,
-    /// Whether its polygons were not valid and have been made so.
+    /// True if its polygons were not valid and have been made so.
     pub repaired: bool,
-    /// Whether a polygon of the mask was smaller than a cell of the grid there.
+    /// True if a polygon of the mask was smaller than a cell of the grid there.
     pub lost: bool,
     /// Points of polygons that stay on the grid, not where edges cross or vertices were.
     pub snapped: usize,
@@ -96,18 +93,17 @@ pub struct Cut {
     pub flat: usize,
 }
 
-/// Polygons made of others.
-#[derive(Debug, Default)]
-pub struct Made {
-    pub area: Area,
-    /// The others were not valid.
-    pub repaired: bool,
-    /// As of [`Cut`].
-    pub snapped: usize,
-}
+impl<'a> Cutter<'a> {
+    /// Creates a cutter that keeps the part of geometries inside the mask, by the even-odd rule.
+    pub fn new(mask: &'a Mask) -> Self {
+        Self { mask, op: BooleanOp::Intersection, rules: Rules::default(), algorithm: None }
+    }
 
-impl Cutter<'_> {
-    /// The wanted part of a geometry.
+    /// Clips a geometry. Polygons come out valid, outer rings counter-clockwise, holes clockwise.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for a geometry that the named algorithm does not take; [`Error::Parameter`] for
+    /// coordinates that are not finite.
     pub fn cut(&self, geometry: &Geometry) -> Result<Cut> {
         let inside = self.op == BooleanOp::Intersection;
         let Some(bounds) = geometry.bounds() else { return Ok(Cut::default()) };
@@ -274,9 +270,9 @@ impl Cut {
     }
 }
 
-/// What an algorithm that was asked for cannot do.
+/// Returns the error for a request that the chosen algorithm does not support.
 fn refused(what: &'static str) -> Result<Area> {
-    Err(durer::Error::Unsupported { what, instead: "choose another algorithm, or none" })
+    Err(Error::Unsupported { what, instead: "choose another algorithm, or none" })
 }
 
 fn one_or_many(mut lines: Vec<Points>) -> Option<Geometry> {
@@ -295,195 +291,10 @@ fn clip_area(window: &Rect, area: &Area) -> Result<Area> {
     Ok(area.cut(shapes, &sources))
 }
 
-/// Polylines cut segment by segment; pieces go on where a segment's end is inside.
-fn by_segments(
-    clipper: LineClipper,
-    window: &Rect,
-    points: &[DVec2],
-    ends: &[usize],
-) -> Result<ClippedLines> {
-    let mut out = ClippedLines::default();
-    let mut first = 0;
-    for (line, &end) in ends.iter().enumerate() {
-        // Where the piece being built begins.
-        let mut start: Option<usize> = None;
-        let finish = |out: &mut ClippedLines, start: &mut Option<usize>| {
-            let Some(from) = start.take() else { return };
-            if out.points[from..].iter().any(|p| *p != out.points[from]) {
-                out.ends.push(out.points.len());
-                out.lines.push(line);
-            } else {
-                out.points.truncate(from);
-                out.sources.truncate(from);
-            }
-        };
-        for k in first + 1..end {
-            let segment = Segment::new(points[k - 1], points[k]);
-            let Some(seen) = clipper.clip(window, segment)? else {
-                finish(&mut out, &mut start);
-                continue;
-            };
-            if seen.start != segment.start {
-                finish(&mut out, &mut start);
-            }
-            if start.is_none() {
-                start = Some(out.points.len());
-                push(&mut out, seen.start, segment, k);
-            }
-            // A segment that only touches the window has its point already.
-            if seen.start != seen.end || segment.start == segment.end {
-                push(&mut out, seen.end, segment, k);
-            }
-            if seen.end != segment.end {
-                finish(&mut out, &mut start);
-            }
-        }
-        finish(&mut out, &mut start);
-        first = end;
-    }
-    Ok(out)
-}
-
-fn push(out: &mut ClippedLines, p: DVec2, segment: Segment<DVec2>, end: usize) {
-    use durer::clip::attribute::Source;
-    let d = segment.end - segment.start;
-    let along = if d.x.abs() > d.y.abs() {
-        (p.x - segment.start.x) / d.x
-    } else {
-        (p.y - segment.start.y) / d.y
-    };
-    out.points.push(p);
-    out.sources.push(if p == segment.start {
-        Source::Vertex(end - 1)
-    } else if p == segment.end {
-        Source::Vertex(end)
-    } else {
-        Source::Cut { from: end - 1, to: end, t: along }
-    });
-}
-
-impl Rules {
-    /// Whether valid polygons enclose what they enclose by the even-odd rule, and stay where they are.
-    fn keep_valid(&self, shapes: &Shapes) -> bool {
-        let as_even_odd = match self.fill {
-            FillRule::EvenOdd => true,
-            // Holes may run the same way as the rings around them.
-            FillRule::NonZero => shapes.polygons().all(|p| p.holes().len() == 0),
-            FillRule::Positive | FillRule::Negative => false,
-        };
-        as_even_odd && self.grid.is_none()
-    }
-
-    /// Whether the grid is coarser than a polygon of the mask is large: it may be gone.
-    pub fn loses(&self, area: &Area, mask: &Shapes) -> bool {
-        let Some(cell) = self.options(area, mask, self.fill).grid else { return false };
-        let size = |ring: &[DVec2]| Rect::around(ring.iter().copied()).map(|r| r.size());
-        mask.polygons().filter_map(|p| size(p.outer())).any(|size| size.max_element() < cell)
-    }
-
-    /// The overlay's options: the finest grid that it takes, unless one is given.
-    fn options(&self, area: &Area, clip: &Shapes, subject_rule: FillRule) -> overlay::Options {
-        let fit = || coverage::finest_grid([area.shapes.bounds(), clip.bounds()]);
-        overlay::Options {
-            subject_rule,
-            clip_rule: FillRule::EvenOdd,
-            grid: self.grid.or_else(fit),
-            origins: true,
-            drop_collinear: false,
-        }
-    }
-
-    /// Any polygons with valid polygons: on the grid where one is given, else exactly.
-    pub fn overlay(
-        &self,
-        area: &Area,
-        clip: &Shapes,
-        op: BooleanOp,
-        subject_rule: FillRule,
-    ) -> Result<Made> {
-        self.join(area, clip, op, subject_rule, false)
-    }
-
-    fn join(
-        &self,
-        area: &Area,
-        clip: &Shapes,
-        op: BooleanOp,
-        subject_rule: FillRule,
-        mend: bool,
-    ) -> Result<Made> {
-        if self.grid.is_some() {
-            let area = self.snapped(area, clip, op, subject_rule)?;
-            return Ok(Made { area, ..Made::default() });
-        }
-        let options = coverage::Options { rule: subject_rule, mend, keep: false };
-        let cut = coverage::join(&area.shapes, clip, op, &options)?;
-        let snapped = cut.snapped;
-        Ok(Made { area: area.cut(cut.shapes, &cut.sources), repaired: false, snapped })
-    }
-
-    /// The same with all vertices on the grid.
-    fn snapped(
-        &self,
-        area: &Area,
-        clip: &Shapes,
-        op: BooleanOp,
-        subject_rule: FillRule,
-    ) -> Result<Area> {
-        let options = self.options(area, clip, subject_rule);
-        Ok(area.overlaid(&overlay(&area.shapes, clip, op, &options, &mut NoTrace)?))
-    }
-
-    /// The same by Vatti's sweep; all vertices are on the grid.
-    pub fn vatti(
-        &self,
-        area: &Area,
-        clip: &Shapes,
-        op: BooleanOp,
-        subject_rule: FillRule,
-    ) -> Result<Area> {
-        let options = self.options(area, clip, subject_rule);
-        let output = vatti::vatti(&area.shapes, clip, op, &options, &mut NoTrace)?;
-        Ok(area.overlaid(&output))
-    }
-
-    /// The same region by polygons that are valid, with outer rings counter-clockwise. The polygons of
-    /// a collection are sets of points, joined whatever rule each follows.
-    pub fn clean(&self, geometry: &Geometry) -> Result<Made> {
-        let Geometry::Collection(parts) = geometry else { return self.clean_polygons(geometry) };
-        let mut all = Made::default();
-        for part in parts {
-            let made = self.clean(part)?;
-            all.area.append(&made.area);
-            all.repaired |= made.repaired;
-            all.snapped += made.snapped;
-        }
-        if all.area.shapes.polygon_count() > 1 {
-            let rule = FillRule::Positive;
-            let joined = self.overlay(&all.area, &Shapes::new(), BooleanOp::Union, rule)?;
-            (all.area, all.snapped) = (joined.area, all.snapped + joined.snapped);
-        }
-        Ok(all)
-    }
-
-    fn clean_polygons(&self, geometry: &Geometry) -> Result<Made> {
-        let area = Area::of_geometry(geometry);
-        let keeps = self.keep_valid(&area.shapes);
-        if keeps && is_valid(&area.shapes, Touching::No) {
-            let area = Area::of_geometry(&oriented(geometry.clone()));
-            return Ok(Made { area, ..Made::default() });
-        }
-        let repaired =
-            self.fill == FillRule::EvenOdd && !is_valid(&area.shapes, Touching::AtPoints);
-        let made = self.join(&area, &Shapes::new(), BooleanOp::Union, self.fill, true)?;
-        Ok(Made { repaired, ..made })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use durer::clip::polygon::validity::edges_are_apart;
+    use crate::clip::polygon::validity::edges_are_apart;
 
     fn line(points: &[(f64, f64)]) -> Points {
         Points::flat(points.iter().map(|&p| DVec2::from(p)).collect())
@@ -516,11 +327,11 @@ mod tests {
         let geometry = Geometry::Polygon(vec![ring, hole]);
         for algorithm in [None].into_iter().chain(Algorithm::all().into_iter().map(Some)) {
             let area = Area::of_geometry(&cut(&geometry, algorithm).expect("a part")).shapes;
-            let size: f64 = area.rings().map(|r| durer::clip::polygon::signed_area(r).abs()).sum();
+            let size: f64 = area.rings().map(|r| crate::clip::polygon::signed_area(r).abs()).sum();
             let holes: f64 = area
                 .polygons()
                 .flat_map(|p| p.holes().collect::<Vec<_>>())
-                .map(|r| durer::clip::polygon::signed_area(r).abs())
+                .map(|r| crate::clip::polygon::signed_area(r).abs())
                 .sum();
             // Where the hole is cut open it is part of the outer ring, or a hole on the border.
             assert!((size - 2.0 * holes - 28.0).abs() < 1e-9, "{algorithm:?}: {size} {holes}");
@@ -550,7 +361,7 @@ mod tests {
             ring.push(DVec2::new(0.0, 9.0));
             let mut area = Area::default();
             area.shapes = Shapes::from_rings([ring]);
-            let far = super::super::mask::rectangle_shape(
+            let far = super::super::rectangle_shape(
                 &Rect::new(DVec2::splat(5.0), DVec2::splat(6.0)).unwrap(),
             );
             for op in BooleanOp::ALL {

@@ -1,8 +1,8 @@
 //! Heights and measures of polygons at places that are no vertices of theirs.
 
-use durer::clip::attribute::Source;
-use durer::clip::polygon::Shapes;
-use durer::math::DVec2;
+use crate::clip::attribute::Source;
+use crate::clip::polygon::Shapes;
+use crate::math::DVec2;
 
 /// Height and measure of a vertex.
 pub type Zm = [f64; 2];

@@ -1,0 +1,220 @@
+//! Points, lines and polygons of maps and plans, after the OGC's Simple Features.
+//!
+//! Source: OGC 06-103r4, *Simple Feature Access – Part 1: Common Architecture*, 2011.
+
+use crate::math::{DVec2, Rect};
+
+/// Which ordinates positions have beside x and y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Dimensions {
+    /// x and y only.
+    #[default]
+    Xy,
+    /// With a height.
+    Xyz,
+    /// With a measure.
+    Xym,
+    /// With both.
+    Xyzm,
+}
+
+impl Dimensions {
+    /// The dimensions with or without height and measure.
+    pub fn new(z: bool, m: bool) -> Self {
+        match (z, m) {
+            (false, false) => Self::Xy,
+            (true, false) => Self::Xyz,
+            (false, true) => Self::Xym,
+            (true, true) => Self::Xyzm,
+        }
+    }
+
+    /// Whether there is a height.
+    pub fn has_z(self) -> bool {
+        matches!(self, Self::Xyz | Self::Xyzm)
+    }
+
+    /// Whether there is a measure.
+    pub fn has_m(self) -> bool {
+        matches!(self, Self::Xym | Self::Xyzm)
+    }
+
+    /// The ordinates of either.
+    pub fn with(self, other: Self) -> Self {
+        Self::new(self.has_z() || other.has_z(), self.has_m() || other.has_m())
+    }
+
+    /// How many numbers a position has.
+    pub fn count(self) -> usize {
+        2 + usize::from(self.has_z()) + usize::from(self.has_m())
+    }
+}
+
+/// Positions in the units and space of their file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Points {
+    /// Which ordinates they have.
+    pub dimensions: Dimensions,
+    /// x and y of each; all are finite.
+    pub xy: Vec<DVec2>,
+    /// Height and measure of each, 0 for the one that is not there; empty where neither is.
+    pub zm: Vec<[f64; 2]>,
+}
+
+impl Points {
+    /// No position.
+    pub fn new(dimensions: Dimensions) -> Self {
+        Self { dimensions, ..Self::default() }
+    }
+
+    /// Positions without height and measure.
+    pub fn flat(xy: Vec<DVec2>) -> Self {
+        Self { dimensions: Dimensions::Xy, xy, zm: Vec::new() }
+    }
+
+    /// Adds a position; height and measure are dropped where the dimensions have neither.
+    pub fn push(&mut self, xy: DVec2, zm: [f64; 2]) {
+        self.xy.push(xy);
+        if self.dimensions != Dimensions::Xy {
+            self.zm.push(zm);
+        }
+    }
+
+    /// Gives all positions the ordinates of other dimensions too, 0 where they had none.
+    pub fn lift(&mut self, dimensions: Dimensions) {
+        self.dimensions = self.dimensions.with(dimensions);
+        if self.dimensions != Dimensions::Xy {
+            self.zm.resize(self.xy.len(), [0.0; 2]);
+        }
+    }
+
+    /// Adds all positions of others, with the ordinates that either has.
+    pub fn append(&mut self, other: &Self) {
+        if self.is_empty() {
+            self.clone_from(other);
+            return;
+        }
+        let own = self.len();
+        let dimensions = self.dimensions.with(other.dimensions);
+        if dimensions != Dimensions::Xy {
+            self.zm.resize(own, [0.0; 2]);
+            self.zm.extend((0..other.len()).map(|i| other.zm(i)));
+        }
+        self.dimensions = dimensions;
+        self.xy.extend_from_slice(&other.xy);
+    }
+
+    /// Takes the last position away.
+    pub fn pop(&mut self) {
+        self.xy.pop();
+        self.zm.pop();
+    }
+
+    /// How many positions there are.
+    pub fn len(&self) -> usize {
+        self.xy.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.xy.is_empty()
+    }
+
+    /// Height and measure of a position; zeros where there are none.
+    pub fn zm(&self, index: usize) -> [f64; 2] {
+        self.zm.get(index).copied().unwrap_or_default()
+    }
+
+    /// All numbers of a position, in the file's order: x, y, then height, then measure.
+    pub fn ordinates(&self, index: usize) -> impl Iterator<Item = f64> {
+        let (p, [z, m]) = (self.xy.get(index).copied().unwrap_or_default(), self.zm(index));
+        let z = self.dimensions.has_z().then_some(z);
+        let m = self.dimensions.has_m().then_some(m);
+        [p.x, p.y].into_iter().chain(z).chain(m)
+    }
+}
+
+/// A geometry of the OGC's Simple Features.
+///
+/// # Guarantees
+/// From readers, all coordinates are finite, rings have at least three positions and line strings
+/// at least two. Rings are open: the first position is not repeated at the end. Whether rings
+/// cross themselves or one another is not looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Geometry {
+    /// One position, or none.
+    Point(Points),
+    /// A line, or none.
+    LineString(Points),
+    /// An outer ring, then its holes; or nothing.
+    Polygon(Vec<Points>),
+    /// Positions.
+    MultiPoint(Points),
+    /// Lines.
+    MultiLineString(Vec<Points>),
+    /// Polygons, each as above.
+    MultiPolygon(Vec<Vec<Points>>),
+    /// Any geometries.
+    Collection(Vec<Geometry>),
+}
+
+impl Geometry {
+    /// Its name in GeoJSON.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Point(_) => "Point",
+            Self::LineString(_) => "LineString",
+            Self::Polygon(_) => "Polygon",
+            Self::MultiPoint(_) => "MultiPoint",
+            Self::MultiLineString(_) => "MultiLineString",
+            Self::MultiPolygon(_) => "MultiPolygon",
+            Self::Collection(_) => "GeometryCollection",
+        }
+    }
+
+    /// Calls for each run of positions: of points, of a line, of a ring.
+    pub fn for_each(&self, f: &mut impl FnMut(&Points)) {
+        match self {
+            Self::Point(points) | Self::LineString(points) | Self::MultiPoint(points) => f(points),
+            Self::Polygon(runs) | Self::MultiLineString(runs) => runs.iter().for_each(f),
+            Self::MultiPolygon(polygons) => polygons.iter().flatten().for_each(f),
+            Self::Collection(parts) => parts.iter().for_each(|part| part.for_each(f)),
+        }
+    }
+
+    /// How many positions there are.
+    pub fn len(&self) -> usize {
+        let mut count = 0;
+        self.for_each(&mut |points| count += points.len());
+        count
+    }
+
+    /// Whether there is no position at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The ordinates that any position has; `Xy` where there is none.
+    pub fn dimensions(&self) -> Dimensions {
+        let mut all = Dimensions::Xy;
+        self.for_each(&mut |points| {
+            if !points.is_empty() {
+                all = all.with(points.dimensions);
+            }
+        });
+        all
+    }
+
+    /// The smallest rectangle around it; `None` where it is empty.
+    pub fn bounds(&self) -> Option<Rect> {
+        let mut bounds: Option<Rect> = None;
+        self.for_each(&mut |points| {
+            let part = Rect::around(points.xy.iter().copied());
+            bounds = match (bounds, part) {
+                (Some(a), Some(b)) => Rect::around([a.min(), a.max(), b.min(), b.max()]),
+                (a, b) => a.or(b),
+            };
+        });
+        bounds
+    }
+}
