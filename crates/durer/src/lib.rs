@@ -202,6 +202,8 @@ pub mod annotate;
 
 pub mod plot;
 
+pub mod map;
+
 pub mod explain;
 
 pub mod pipeline;

@@ -3,6 +3,7 @@
 use crate::{color, values};
 use clap::error::Error;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum, ValueHint};
+use durer::map::{Marker, Style};
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -24,7 +25,7 @@ pub struct Priority {
 
 /// `--marker`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Marker {
+enum MarkerArg {
     /// A disk
     Circle,
     /// A square
@@ -35,41 +36,23 @@ pub enum Marker {
     Cross,
 }
 
-/// How a layer of a map looks; lengths in pixels.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Style {
-    pub fill: Option<[u8; 4]>,
-    pub stroke: Option<[u8; 4]>,
-    pub stroke_width: f64,
-    pub dashes: Vec<f64>,
-    pub opacity: f64,
-    pub marker: Marker,
-    pub marker_size: f64,
-    /// The property that labels show.
-    pub label: Option<String>,
-    pub label_priority: Option<Priority>,
-    pub label_size: f64,
-    pub label_color: [u8; 4],
-    pub label_halo: Option<[u8; 4]>,
-}
-
-impl Default for Style {
-    fn default() -> Self {
-        Self {
-            fill: Some([0xe3, 0xe7, 0xe0, 255]),
-            stroke: Some([0x55, 0x60, 0x6b, 255]),
-            stroke_width: 1.0,
-            dashes: Vec::new(),
-            opacity: 1.0,
-            marker: Marker::Circle,
-            marker_size: 6.0,
-            label: None,
-            label_priority: None,
-            label_size: 12.0,
-            label_color: [0x22, 0x22, 0x22, 255],
-            label_halo: Some([255; 4]),
+impl From<MarkerArg> for Marker {
+    fn from(marker: MarkerArg) -> Self {
+        match marker {
+            MarkerArg::Circle => Self::Circle,
+            MarkerArg::Square => Self::Square,
+            MarkerArg::Triangle => Self::Triangle,
+            MarkerArg::Cross => Self::Cross,
         }
     }
+}
+
+/// Fields that labels come from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Labels {
+    /// The property that labels show.
+    pub field: Option<String>,
+    pub priority: Option<Priority>,
 }
 
 /// A file and how it looks.
@@ -77,6 +60,7 @@ impl Default for Style {
 pub struct Layer {
     pub input: PathBuf,
     pub style: Style,
+    pub labels: Labels,
     /// Whether an option of the style was given for it.
     pub styled: bool,
 }
@@ -111,7 +95,7 @@ struct LayerArgs {
     opacity: Vec<f64>,
     /// What stands for a point [default: circle]
     #[arg(long, value_name = "SHAPE")]
-    marker: Vec<Marker>,
+    marker: Vec<MarkerArg>,
     /// The width of markers in pixels [default: 6]
     #[arg(long, value_name = "PX", allow_hyphen_values = true, value_parser = values::not_negative)]
     marker_size: Vec<f64>,
@@ -194,14 +178,16 @@ impl FromArgMatches for Layers {
             matches.get_many("input").into_iter().flatten().cloned().collect();
         let places: Vec<usize> = matches.indices_of("input").into_iter().flatten().collect();
         let first = places.first().copied().unwrap_or(usize::MAX);
-        let mut common = Style::default();
+        let mut common = (Style::default(), Labels::default());
         apply(matches, 0..first, &mut common);
         let ends = places.iter().skip(1).copied().chain([usize::MAX]);
         let layers =
             inputs.into_iter().zip(places.iter().zip(ends)).map(|(input, (start, end))| {
-                let mut style = common.clone();
-                let styled = apply(matches, *start..end, &mut style) || style != Style::default();
-                Layer { input, style, styled }
+                let mut look = common.clone();
+                let given = apply(matches, *start..end, &mut look);
+                let styled = given || look != (Style::default(), Labels::default());
+                let (style, labels) = look;
+                Layer { input, style, labels, styled }
             });
         Ok(Self(layers.collect()))
     }
@@ -213,7 +199,7 @@ impl FromArgMatches for Layers {
 }
 
 /// Sets what is said in a part of the command line; tells whether anything is.
-fn apply(matches: &ArgMatches, place: Range<usize>, style: &mut Style) -> bool {
+fn apply(matches: &ArgMatches, place: Range<usize>, (style, labels): &mut (Style, Labels)) -> bool {
     let mut any = false;
     macro_rules! set {
         ($($name:literal: $type:ty => |$value:ident| $to:expr;)+) => {
@@ -229,10 +215,10 @@ fn apply(matches: &ArgMatches, place: Range<usize>, style: &mut Style) -> bool {
         "stroke_width": f64 => |width| style.stroke_width = width;
         "dashes": Dashes => |dashes| style.dashes = dashes.0;
         "opacity": f64 => |opacity| style.opacity = opacity;
-        "marker": Marker => |marker| style.marker = marker;
+        "marker": MarkerArg => |marker| style.marker = marker.into();
         "marker_size": f64 => |size| style.marker_size = size;
-        "label": String => |field| style.label = Some(field);
-        "label_priority": Priority => |by| style.label_priority = Some(by);
+        "label": String => |field| labels.field = Some(field);
+        "label_priority": Priority => |by| labels.priority = Some(by);
         "label_size": f64 => |size| style.label_size = size;
         "label_color": [u8; 4] => |color| style.label_color = color;
         "label_halo": Ink => |ink| style.label_halo = ink.0;

@@ -1,15 +1,9 @@
 //! `durer draw`.
 
-mod along;
 mod args;
-mod block;
-mod borders;
 mod fonts;
-mod joined;
-mod label;
 mod layers;
 mod map;
-mod places;
 mod report;
 mod svg;
 

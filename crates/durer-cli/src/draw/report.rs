@@ -1,5 +1,6 @@
 //! What `durer draw --json` says.
 
+use durer::map::Counts;
 use serde::Serialize;
 
 /// The whole report.
@@ -51,4 +52,12 @@ pub struct MapCounts {
     pub labels: u64,
     /// Labels that found no room.
     pub labels_left_out: u64,
+}
+
+impl MapCounts {
+    /// Creates the counts of a layer whose labels have yet to be placed.
+    pub fn new(features: usize, counts: Counts) -> Self {
+        let Counts { points, lines, polygons, .. } = counts;
+        Self { features: features as u64, points, lines, polygons, ..Self::default() }
+    }
 }

@@ -1,6 +1,5 @@
 //! A drawing in SVG.
 
-use super::layers::Style;
 use super::{Given, Job, fonts, frame, has_folder, sides};
 use crate::failure::Failure;
 use crate::input::display_name;

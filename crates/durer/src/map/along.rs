@@ -1,7 +1,7 @@
-//! Labels that run along a line: where on it, and which way.
+//! Labels that run along a line: their positions and directions.
 
-use durer::curve::text::place_along;
-use durer::math::DVec2;
+use crate::curve::text::place_along;
+use crate::math::DVec2;
 
 /// Places on a line are looked at in steps of this share of the letters' size.
 const STEP: f64 = 0.5;
@@ -12,7 +12,7 @@ const SMOOTHED: usize = 3;
 /// Between letters so far apart as they are large a line may turn by this much, in radians.
 const BEND: f64 = 0.6;
 
-/// So many places are tried.
+/// Number of positions to try.
 const TRIED: usize = 24;
 
 /// A label's way along a line.
@@ -20,19 +20,19 @@ const TRIED: usize = 24;
 pub struct Run {
     /// The line, from the label's beginning to its end.
     pub line: Vec<DVec2>,
-    /// Where on it the label begins, in pixels.
+    /// Distance along the line at which the label begins, in pixels.
     pub start: f64,
 }
 
 impl Run {
-    /// The point so far from the label's beginning.
+    /// Returns the point at this distance from the label's beginning.
     pub fn place(&self, along: f64) -> Option<DVec2> {
         place_along(&self.line, self.start + along).map(|place| place.0)
     }
 }
 
-/// Returns where a label so long, of letters of a size, may run along a line: near its middle first, nowhere where it
-/// bends too much. Labels run from the left to the right.
+/// Returns the positions of a label of this length and size of letters along a line: those near its middle first, none
+/// where it bends too much. Labels run from the left to the right.
 pub fn runs(line: &[DVec2], length: f64, size: f64) -> Vec<Run> {
     let step = STEP * size;
     let whole: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
@@ -72,7 +72,7 @@ fn smoothed(line: &[DVec2]) -> Vec<DVec2> {
     (0..line.len()).map(mean).collect()
 }
 
-/// By how much a line turns at most over the size of a letter, from a start on over a length, in radians.
+/// Returns the largest turn of a line over the size of a letter, from a start on over a length, in radians.
 fn bend(line: &[DVec2], start: f64, length: f64, size: f64) -> f64 {
     let count = (length / size).ceil().max(1.0) as usize;
     let direction = |i: usize| place_along(line, start + length * i as f64 / count as f64);

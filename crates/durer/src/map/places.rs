@@ -1,14 +1,14 @@
-//! Where the label of an area may stand: in it if it holds the label, else where it hides least.
+//! Positions for the label of an area: inside it if the label fits, otherwise where it hides least.
 //!
 //! Names that their area holds cannot get in each other's way, so they come first. A name that would hide most of its
 //! area stands beside it in the open, as names of small islands do on maps; one that only reaches a little over the
 //! border stays where most of it is inside. No name stands on an area that is not its own without reaching into its own.
 
-use durer::clip::polygon::{Shapes, rectangle};
-use durer::curve::Contours;
-use durer::math::{DVec2, Rect};
-use durer::raster::coverage::{FillRule, Options, fill};
-use durer::trace::NoTrace;
+use crate::clip::polygon::{Shapes, rectangle};
+use crate::curve::Contours;
+use crate::math::{DVec2, Rect};
+use crate::raster::coverage::{FillRule, Options, fill};
+use crate::trace::NoTrace;
 
 /// A label is in an area that holds this share of it: corners of its box are empty.
 const HELD: f64 = 0.98;
@@ -20,7 +20,7 @@ pub const NEARLY: f64 = 0.75;
 /// A label stands on an area that holds at least this share of it.
 const MOSTLY: f64 = 0.5;
 
-/// Where there is no better place, a label reaches out of an area that holds this share of it.
+/// Smallest share of a label that an area has to hold for the label to reach out of it, if there is no better place.
 const PARTLY: f64 = 0.35;
 
 /// A label beside its area is in the open where no more than this share of it lies on land.
@@ -29,13 +29,13 @@ const OPEN: f64 = 0.02;
 /// An area is alone where all land around it is no larger than it by this.
 const ALONE: f64 = 1.5;
 
-/// So many columns and rows of places are looked at within an area.
+/// Numbers of columns and rows of candidate positions within an area.
 const GRID: (u32, u32) = (17, 13);
 
 /// The land is looked at in no more pixels than this a side.
 const LAND_SIDE: f64 = 1024.0;
 
-/// How well an area holds its label; what comes first is placed first.
+/// Quality of a label's position in its area; better ones are placed first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fit {
     /// Whole.
@@ -59,7 +59,7 @@ pub struct Places {
     pub middles: Vec<DVec2>,
 }
 
-/// How much of any rectangle is covered by areas.
+/// Index that answers which share of a rectangle is covered by areas.
 #[derive(Debug)]
 pub struct Land {
     low: DVec2,
@@ -71,8 +71,8 @@ pub struct Land {
 }
 
 impl Land {
-    /// The land of layers, of each by the even-odd rule, in a viewport.
-    pub fn new(layers: Vec<Contours>, seen: &Rect) -> durer::Result<Self> {
+    /// Creates the index of layers, each by the even-odd rule, in a viewport.
+    pub fn new(layers: Vec<Contours>, seen: &Rect) -> crate::Result<Self> {
         let size = seen.size();
         let scale = (LAND_SIDE / size.max_element().max(1.0)).min(1.0);
         let side = |length: f64| (length * scale).ceil().max(1.0) as u32;
@@ -80,8 +80,8 @@ impl Land {
         let mut land = vec![0_u8; width as usize * height as usize];
         let options = Options { rule: FillRule::EvenOdd, ..Options::default() };
         for contours in layers {
-            let map = durer::math::DAffine2::from_scale(DVec2::splat(scale))
-                * durer::math::DAffine2::from_translation(-seen.min());
+            let map = crate::math::DAffine2::from_scale(DVec2::splat(scale))
+                * crate::math::DAffine2::from_translation(-seen.min());
             let mask = fill(&contours.transformed(map), width, height, &options, &mut NoTrace)?;
             land.iter_mut().zip(mask.data()).for_each(|(land, own)| *land = (*land).max(*own));
         }
@@ -98,7 +98,7 @@ impl Land {
         Ok(Self { low: seen.min(), scale, columns, rows, sums })
     }
 
-    /// The share of a rectangle that is land, counted in whole pixels.
+    /// Returns the share of a rectangle that is land, counted in whole pixels.
     fn share(&self, rect: &Rect) -> f64 {
         let limit = DVec2::new(self.columns as f64, self.rows as f64);
         let at = |p: DVec2| ((p - self.low) * self.scale).round().clamp(DVec2::ZERO, limit);
@@ -110,7 +110,7 @@ impl Land {
         inside as f64 / (255.0 * size.x * size.y).max(1.0)
     }
 
-    /// Whether an area within these bounds has no neighbours so near.
+    /// Returns whether an area within these bounds has no neighbours within a distance.
     fn is_alone(&self, area: f64, bounds: &Rect, near: f64) -> bool {
         let around = Rect::new(bounds.min() - near, bounds.max() + near);
         around.is_ok_and(|rect| {
@@ -119,7 +119,7 @@ impl Land {
     }
 }
 
-/// The places for a label of a size, of an area of which these points are far from the border.
+/// Returns the positions for a label of a size in an area of which these points are far from the border.
 pub fn around(area: &Shapes, poles: &[DVec2], size: DVec2, gap: f64, land: &Land) -> Places {
     let Some(bounds) = area.bounds() else {
         return Places { fit: Fit::Tiny, held: 0.0, alone: false, middles: poles.to_vec() };

@@ -1,9 +1,9 @@
 //! Areas of one colour that are painted as one: neighbours that share a border leave no seam, and where
 //! they overlap nothing shows it.
 
-use durer::clip::polygon::signed_area;
-use durer::curve::Path;
-use durer::math::DVec2;
+use crate::clip::polygon::signed_area;
+use crate::curve::Path;
+use crate::math::DVec2;
 
 /// Points are moved to this part of a pixel, so that neighbours have the same border whichever way each
 /// runs along it, and points that then coincide are left out. For each edge through a pixel it changes the coverage by
@@ -41,7 +41,7 @@ impl Joined {
         true
     }
 
-    /// All of them, to be filled by the non-zero rule.
+    /// Returns all of them, to be filled by the non-zero rule.
     pub fn into_path(self) -> Path {
         let mut path = Path::new();
         self.rings.into_iter().for_each(|ring| {
@@ -51,7 +51,7 @@ impl Joined {
     }
 }
 
-/// On the grid, without points that repeat the one before, and without spikes.
+/// Returns the ring on the grid, without points that repeat the one before, and without spikes.
 fn snapped(ring: &[DVec2]) -> Vec<DVec2> {
     let mut out: Vec<DVec2> = Vec::with_capacity(ring.len());
     for p in ring {

@@ -1,7 +1,7 @@
 //! Borders of a layer's areas, each part once: where they are dashed or let light through, what two neighbours
 //! share would be seen twice.
 
-use durer::math::DVec2;
+use crate::math::DVec2;
 use std::collections::HashSet;
 
 /// The edges that have been taken, from the smaller end to the larger.
@@ -46,7 +46,7 @@ impl Borders {
     }
 }
 
-/// The same for both directions of an edge.
+/// Returns the key of an edge, the same for both directions.
 fn key(a: DVec2, b: DVec2) -> [u64; 4] {
     // −0 is 0.
     let bits = |p: DVec2| [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()];

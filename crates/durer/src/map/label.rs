@@ -1,23 +1,22 @@
-//! Labels of a map: where they go, and their outlines.
+//! Labels of a map: their positions and outlines.
 
+use super::Style;
 use super::along::{self, Run};
 use super::block::{Block, HALO, LETTERS};
-use super::layers::Style;
 use super::places::{self, Fit, Land, NEARLY, Places};
-use crate::failure::Failure;
-use durer::clip::polygon::{Polygon, Shapes, rectangle};
-use durer::curve::Path;
-use durer::curve::text::Font;
-use durer::math::{DVec2, Rect};
-use durer::raster::coverage::FillRule;
-use durer::raster::line::wide::{Join, Stroke};
-use durer::raster::paint::{Canvas, Paint};
-use durer::trace::NoTrace;
-use durer::view::interior_point::{Options, interior_point};
-use durer::view::label::Placer;
-use durer::view::window::WindowToViewport;
-use durer_formats::geo::{Geometry, Points};
-use durer_formats::svg::Fonts;
+use crate::clip::polygon::{Polygon, Shapes, rectangle};
+use crate::curve::Path;
+use crate::curve::text::Font;
+use crate::geometry::{Geometry, Points};
+use crate::math::{DVec2, Rect};
+use crate::raster::coverage::FillRule;
+use crate::raster::line::wide::{Join, Stroke};
+use crate::raster::paint::{Canvas, Paint};
+use crate::trace::NoTrace;
+use crate::view::interior_point::{Options, interior_point};
+use crate::view::label::Placer;
+use crate::view::window::WindowToViewport;
+use crate::{Error, Result};
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
@@ -34,35 +33,37 @@ const APART: f64 = 0.15;
 /// A name in two lines comes first where its area holds so much more of it than of one line.
 const BETTER: f64 = 0.1;
 
-/// What is to be written.
-#[derive(Debug)]
+/// Label of a feature.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Label {
+    /// Text in one line.
     pub text: String,
-    /// A shorter text, written where the whole finds no room.
+    /// Shorter text for when the whole finds no room.
     pub short: Option<String>,
+    /// Feature that it belongs to, on the screen.
     pub anchor: Anchor,
-    /// Those of small numbers are placed first.
+    /// Order of placing: smaller numbers first.
     pub rank: f64,
-    /// The number of its layer.
+    /// Index of its layer: upper layers are placed first.
     pub layer: usize,
 }
 
-/// Where a label belongs, in pixels.
+/// Part of a feature that a label belongs to, in pixels: its largest area, its longest line, or its first point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Anchor {
     at: DVec2,
-    /// Of a point, beside which it stands; else it stands on it.
+    /// True if the label belongs beside its point; otherwise it is centred on the point.
     beside: bool,
-    /// What is larger comes first: pixels of area or length.
+    /// Size that orders labels, largest first: pixels of area or length.
     size: f64,
-    /// The area in which there may be other places.
+    /// Area in which there may be other positions.
     area: Option<Shapes>,
     /// The line along which it may run.
     line: Vec<DVec2>,
 }
 
 impl Anchor {
-    /// Points far from the border of an area, as a label of a shape sees it: the best one, and those of its left, right,
+    /// Returns points far from the border of an area for labels of a shape: the best one, and those of its left, right,
     /// upper and lower part.
     fn poles(&self, area: &Shapes, wide: f64) -> Vec<DVec2> {
         let Some(bounds) = area.bounds() else { return vec![self.at] };
@@ -83,14 +84,14 @@ impl Anchor {
         own.into_iter().chain([self.at]).chain(others).collect()
     }
 
-    /// The middle of an area, which is to be seen.
+    /// Returns the middle of an area, which has to stay visible.
     fn heart(&self) -> Option<Rect> {
         let area = self.area.as_ref()?.bounds()?.size() / 4.0;
         Rect::new(self.at - area, self.at + area).ok()
     }
 
-    /// The place for the label of a feature, within what is seen.
-    pub fn of(geometry: &Geometry, screen: &WindowToViewport, seen: &Rect) -> Option<Self> {
+    /// Returns the part of a feature within the viewport `seen` that its label belongs to.
+    pub(super) fn of(geometry: &Geometry, screen: &WindowToViewport, seen: &Rect) -> Option<Self> {
         let parts =
             Parts { screen, seen, areas: Vec::new(), lines: Vec::new(), points: Vec::new() };
         let mut parts = parts;
@@ -137,7 +138,7 @@ impl Parts<'_> {
         self.areas.push(shapes);
     }
 
-    /// Within the largest polygon, as far as it is seen.
+    /// Returns an anchor within the largest polygon, as far as it is visible.
     fn largest_area(&self) -> Option<Anchor> {
         let cut =
             |s: &Shapes| rectangle::clip(self.seen, s, &rectangle::Options, &mut NoTrace).ok();
@@ -150,7 +151,7 @@ impl Parts<'_> {
         Some(Anchor { at, beside: false, size, area: Some(area), line: Vec::new() })
     }
 
-    /// On the longest line, in its middle.
+    /// Returns an anchor on the longest line, in its middle.
     fn longest_line(&self) -> Option<Anchor> {
         let length = |l: &[DVec2]| l.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
         let seen = self.lines.iter().filter(|l| l.iter().any(|p| self.seen.contains(*p)));
@@ -173,13 +174,13 @@ impl Parts<'_> {
     }
 }
 
-/// The polygon of the largest area.
+/// Returns the polygon of the largest area.
 fn largest(pieces: &[Shapes]) -> Option<Polygon<'_>> {
     let polygons = pieces.iter().flat_map(Shapes::polygons);
     polygons.max_by(|a, b| a.area().abs().total_cmp(&b.area().abs()))
 }
 
-/// The point of a polygon that is farthest from its border, as labels see it that are so much wider than high.
+/// Returns the point of a polygon that is farthest from its border, for labels that are `wide` times wider than high.
 fn middle(polygon: Polygon<'_>, wide: f64) -> Option<DVec2> {
     let narrow = DVec2::new(1.0 / wide, 1.0);
     let rings: Vec<Vec<DVec2>> =
@@ -189,39 +190,38 @@ fn middle(polygon: Polygon<'_>, wide: f64) -> Option<DVec2> {
     Some(found.point / narrow)
 }
 
-/// What became of labels.
-#[derive(Debug, Default)]
-pub struct Drawn {
-    /// For each layer how many found room, and how many did not.
+/// Counts of placed labels.
+#[derive(Debug, Default, Clone, PartialEq, Eq)]
+pub struct Placed {
+    /// For each layer the numbers of labels that found room, and of those that did not.
     pub counts: Vec<(u64, u64)>,
     /// Letters that the fonts of their labels do not have.
     pub missing: BTreeSet<char>,
 }
 
-/// The map that labels are put on.
-pub struct Ground<'a> {
-    /// The viewport.
+/// Map that labels are placed on.
+pub(super) struct Ground<'a> {
+    /// Viewport.
     pub seen: &'a Rect,
+    /// Areas that labels beside theirs avoid.
     pub land: &'a Land,
-    /// Boxes of markers, on which no label stands.
+    /// Boxes of markers, which no label covers.
     pub markers: &'a [Rect],
 }
 
 /// Draws as many labels as find room, each in the font that has most of its letters, the first of those.
-pub fn draw(
+pub(super) fn draw(
     canvas: &mut Canvas,
     ground: &Ground<'_>,
     labels: Vec<Label>,
     styles: &[&Style],
-    fonts: &Fonts,
-) -> Result<Drawn, Failure> {
-    let opened = fonts.iter().map(|(bytes, index)| Font::new(bytes, index));
-    let fonts = opened.collect::<durer::Result<Vec<_>>>();
-    let fonts = fonts.map_err(|e| Failure::Data(e.to_string()))?;
-    let no_font = || Failure::Data("there is no font for labels".to_owned());
+    fonts: &[Font<'_>],
+) -> Result<Placed> {
+    let no_font = || Error::parameter("fonts", 0, "at least one font for labels");
     let mut planned = Vec::new();
     for label in labels {
-        let style = styles[label.layer];
+        let unknown = || Error::Dangling { what: "style", index: label.layer, count: styles.len() };
+        let style = *styles.get(label.layer).ok_or_else(unknown)?;
         let missing = |font: &Font<'_>| label.text.chars().filter(|c| !font.has(*c)).count();
         let font = fonts.iter().min_by_key(|font| missing(font)).ok_or_else(no_font)?;
         planned.push(Planned::new(label, font, style, ground.land));
@@ -234,7 +234,7 @@ pub fn draw(
     let bits = |marker: &Rect| [marker.min(), marker.max()].map(|p| [p.x, p.y].map(f64::to_bits));
     let markers = ground.markers.iter().filter(|marker| reserved.insert(bits(marker)));
     markers.for_each(|marker| placer.reserve(*marker));
-    let mut drawn = Drawn { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
+    let mut drawn = Placed { counts: vec![(0, 0); styles.len()], missing: BTreeSet::new() };
     for layer in planned.chunk_by(|a, b| a.label.layer == b.label.layer) {
         let style = styles[layer[0].label.layer];
         let held = layer.iter().take_while(|planned| planned.fit == Fit::Held).count();
@@ -252,8 +252,7 @@ pub fn draw(
                 Some(spot) => {
                     counts.0 += 1;
                     drawn.missing.extend(&planned.missing);
-                    write(canvas, &planned.outlines(spot, style), style)
-                        .map_err(|e| Failure::Usage(e.to_string()))?;
+                    write(canvas, &planned.outlines(spot, style), style)?;
                 }
                 None => counts.1 += 1,
             }
@@ -262,25 +261,25 @@ pub fn draw(
     Ok(drawn)
 }
 
-/// A label that knows where it may stand.
+/// Label with its candidate positions.
 struct Planned {
     label: Label,
-    /// The ways to write it: in one line, then in two or shorter, where an area does not hold one.
+    /// Forms of the label: in one line, then in two or shorter, if an area does not hold one.
     blocks: Vec<Block>,
     /// Letters that its font does not have.
     missing: Vec<char>,
     fit: Fit,
-    /// True where its area holds less than half of each way to write it.
+    /// True if its area holds less than half of each form.
     tiny: bool,
     /// The share of it that its area holds.
     held: f64,
-    /// Whether its area has no neighbours.
+    /// True if its area has no neighbours.
     alone: bool,
-    /// Where it may stand, the best first.
+    /// Candidate positions, the best first.
     spots: Vec<Spot>,
 }
 
-/// A place for a label.
+/// Position of a label.
 #[derive(Debug, Clone, PartialEq)]
 enum Spot {
     /// Upright, the block of this number with its corner here.
@@ -339,7 +338,7 @@ impl Planned {
         Self { label, blocks, missing, fit, tiny, held, alone, spots: found }
     }
 
-    /// The room that it takes at a place, in boxes.
+    /// Returns its boxes at a position.
     fn taken(&self, spot: &Spot, style: &Style) -> Vec<Rect> {
         match spot {
             Spot::At(block, corner) => self.blocks[*block].taken(*corner),
@@ -357,7 +356,7 @@ impl Planned {
         }
     }
 
-    /// Its outlines at a place.
+    /// Returns its outlines at a position.
     fn outlines(&self, spot: &Spot, style: &Style) -> Path {
         match spot {
             Spot::At(block, corner) => self.blocks[*block].outlines(*corner),
@@ -369,8 +368,8 @@ impl Planned {
         }
     }
 
-    /// Upper layers first; then what its area holds, what has the smaller rank, what its area nearly holds, and what is
-    /// larger.
+    /// Compares the order of placing: upper layers first, then labels that their area holds, those of smaller rank, those
+    /// that their area nearly holds, and larger ones.
     fn order(&self, other: &Self) -> Ordering {
         let nearly = |label: &Self| label.fit == Fit::Over && label.held >= NEARLY;
         let held = |label: &Self| label.fit != Fit::Held;
@@ -382,7 +381,7 @@ impl Planned {
     }
 }
 
-/// Starts of the base line, the best first.
+/// Returns starts of the base line, the best first.
 fn beside(at: DVec2, beside: bool, block: &Block, style: &Style) -> Vec<DVec2> {
     let (size, advance) = (style.label_size, block.extent().x);
     // Capitals stand in the middle of the line.
@@ -400,7 +399,7 @@ fn beside(at: DVec2, beside: bool, block: &Block, style: &Style) -> Vec<DVec2> {
     }
 }
 
-fn write(canvas: &mut Canvas, outlines: &Path, style: &Style) -> durer::Result<()> {
+fn write(canvas: &mut Canvas, outlines: &Path, style: &Style) -> Result<()> {
     if let Some(halo) = style.label_halo {
         let width = 2.0 * HALO * style.label_size;
         let stroke = Stroke { width, join: Join::Round, ..Stroke::default() };
