@@ -4,6 +4,7 @@ use super::{Given, Job, fonts, frame, has_folder, sides};
 use crate::failure::Failure;
 use crate::input::display_name;
 use crate::resources::Folder;
+use durer::map::Style;
 use durer::math::{DAffine2, DVec2, Rect};
 use durer::raster::coverage::FillRule;
 use durer::raster::paint::Canvas;

@@ -27,7 +27,7 @@
 //! # Ok::<(), durer::Error>(())
 //! ```
 //!
-//! Cost: O(n) for n positions, and the canvas's; labels O(l · places · log l).
+//! The cost is O(n) for n positions, and the canvas's; that of l labels O(l log l).
 
 mod along;
 mod block;
