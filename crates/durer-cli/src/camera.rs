@@ -1,7 +1,7 @@
 //! The camera that the options ask for.
 
-use crate::args::{PictureArgs, ViewArgs};
 use crate::failure::Failure;
+use crate::options::{PictureArgs, ViewArgs};
 use crate::values::{Size, positive};
 use durer::math::{DQuat, DVec3};
 use durer::scene::{Camera, Projection, Scene};

@@ -1,8 +1,8 @@
 //! What surrounds the model, as `--environment` takes it.
 
-use crate::args::LookArgs;
 use crate::failure::Failure;
 use crate::input;
+use crate::options::LookArgs;
 use durer::pipeline::Surroundings;
 use durer::shade::Panorama;
 use durer::work::Work;

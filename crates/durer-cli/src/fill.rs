@@ -1,11 +1,11 @@
 //! `durer fill`.
 
-use crate::args::RunningArgs;
 use crate::encoding::{self, PictureFileArgs};
 use crate::failure::Failure;
 use crate::input::{self, display_name};
 use crate::kind::Wanted;
 use crate::messages::Messages;
+use crate::options::RunningArgs;
 use crate::output::{self, Name, Target};
 use crate::{color, report, values};
 use clap::{Args, ValueEnum, ValueHint};

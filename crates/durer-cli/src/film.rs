@@ -1,11 +1,11 @@
 //! Where the frames of a model go: each to a file, or all to one that is written while they come.
 
-use crate::args::RenderArgs;
 use crate::beside::Beside;
 use crate::encoding::EncodingArgs;
 use crate::failure::{Failure, in_words};
 use crate::kind::{Kind, Wanted};
 use crate::output::{self, Name, Target};
+use crate::render::RenderArgs;
 use durer::pipeline::Background;
 use durer::target::Pixels;
 use durer_formats::picture::PictureFormat;

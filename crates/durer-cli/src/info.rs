@@ -1,11 +1,12 @@
 //! `durer info`.
 
-use crate::args::InfoArgs;
 use crate::failure::Failure;
 use crate::input;
 use crate::layer::{self, LayerInfo};
 use crate::messages::Messages;
+use crate::options::{ReadingArgs, RunningArgs};
 use crate::report;
+use clap::{Args, ValueHint};
 use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
 use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
@@ -16,7 +17,25 @@ use durer_formats::{Model, ModelFormat};
 use serde::Serialize;
 use std::fmt::Write;
 use std::io::BufRead;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The options of `durer info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Models, or map data: GeoJSON, TopoJSON, FlatGeobuf, GeoPackage, Shapefile, CSV, KML, GPX, WKT, WKB; `-` reads a model
+    /// from standard input
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub models: Vec<PathBuf>,
+    /// Write JSON: one object, or an array of them for several files
+    #[arg(long)]
+    pub json: bool,
+    /// Reading and its limits.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+}
 
 /// What a file holds.
 #[derive(Debug, Serialize)]

@@ -1,7 +1,7 @@
 //! A model from a file or from standard input.
 
-use crate::args::ReadingArgs;
 use crate::failure::{Failure, in_words};
+use crate::options::ReadingArgs;
 use crate::resources::Folder;
 use crate::watch;
 use durer::work::Work;

@@ -1,6 +1,6 @@
 //! What is told on standard error.
 
-use crate::args::RunningArgs;
+use crate::options::RunningArgs;
 use crate::progress::Progress;
 use durer_formats::Warning;
 use durer_formats::told;

@@ -1,18 +1,53 @@
 //! `durer pick`.
 
-use crate::args::PickArgs;
 use crate::camera::{self, Shot};
 use crate::failure::Failure;
 use crate::input;
 use crate::messages::Messages;
+use crate::options::{ReadingArgs, RunningArgs, ViewArgs};
 use crate::report;
 use crate::shape;
-use durer::math::DVec2;
+use crate::sides::{Sides, sides};
+use crate::values;
+use clap::{Args, ValueHint};
+use durer::math::{DVec2, Rect};
 use durer::scene::{Scene, Topology};
 use durer::view::View;
 use durer::view::pick::{Area, Hit, objects, pick};
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::PathBuf;
+
+/// The options of `durer pick`.
+#[derive(Debug, Args)]
+pub struct PickArgs {
+    /// The model; `-` reads it from standard input
+    #[arg(value_name = "MODEL", value_hint = ValueHint::FilePath)]
+    pub model: PathBuf,
+    /// A point of the picture, in pixels from its upper left corner
+    ///
+    /// x to the right, y downwards; the middle of the first pixel is 0.5,0.5.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = values::point, required_unless_present = "rect", conflicts_with = "rect")]
+    pub at: Option<DVec2>,
+    /// A rectangle of the picture, in pixels: two opposite corners
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = values::rect)]
+    pub rect: Option<Rect>,
+    /// Width and height of the picture in pixels, as for `render`
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = sides)]
+    pub size: Sides,
+    /// Write JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Where the eye is.
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Reading and its limits.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+    /// Threads and messages.
+    #[command(flatten)]
+    pub running: RunningArgs,
+}
 
 /// What lies behind a part of the picture.
 #[derive(Debug, Serialize)]

@@ -1,6 +1,9 @@
 //! `durer render`.
 
-use crate::args::{RenderArgs, Samples, Shadows};
+mod args;
+
+pub use args::{EXAMPLES, RenderArgs};
+
 use crate::camera::{self, Shot};
 use crate::compare;
 use crate::drawing::{self, Annotated, Subject};
@@ -11,6 +14,7 @@ use crate::film::{self, Film, Sink};
 use crate::input;
 use crate::kind::Wanted;
 use crate::messages::Messages;
+use crate::options::{Samples, Shadows};
 use crate::output::{self, Name, Target};
 use crate::report::noticed::Noticed;
 use crate::report::{Failed, Growing, ModelReport, PictureReport};

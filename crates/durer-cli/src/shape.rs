@@ -1,8 +1,8 @@
 //! The shape of a picture whose size leaves a side open: that of what is seen.
 
-use crate::args::{PictureArgs, ViewArgs};
 use crate::camera::{self, Shot};
 use crate::failure::Failure;
+use crate::options::{PictureArgs, ViewArgs};
 use crate::values::Size;
 use durer::math::DVec2;
 use durer::scene::Scene;

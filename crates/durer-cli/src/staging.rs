@@ -1,7 +1,7 @@
 //! What is put around a model, and how light falls on it: floor, grid, axes, edges, occlusion.
 
-use crate::args::ViewArgs;
 use crate::failure::Failure;
+use crate::options::ViewArgs;
 use crate::values;
 use clap::{Args, ValueEnum};
 use durer::math::Vec4;

@@ -1,7 +1,7 @@
 //! The threads that share the work.
 
-use crate::args::RunningArgs;
 use crate::failure::{Failure, in_words};
+use crate::options::RunningArgs;
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,10 +1,10 @@
 //! `durer warp`.
 
-use crate::args::RunningArgs;
 use crate::encoding::{self, PictureFileArgs};
 use crate::failure::Failure;
 use crate::kind::Wanted;
 use crate::messages::Messages;
+use crate::options::RunningArgs;
 use crate::output::{self, Name};
 use crate::sides::{Sides, sides};
 use crate::values::{self, Size};

@@ -4,7 +4,7 @@
 //! then ends with an error at its next check. Work that does not check, as in a library, is ended after a while: the files
 //! that are not whole are removed, and the process exits.
 
-use crate::args::RunningArgs;
+use crate::options::RunningArgs;
 use crate::{beside, memory};
 use durer::Error;
 use durer::work::Work;

@@ -1,8 +1,8 @@
 //! The options of `durer clip`.
 
 use super::window::{Window, region};
-use crate::args::RunningArgs;
 use crate::layer::{FieldArgs, SystemArgs};
+use crate::options::RunningArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::mask::Algorithm;

@@ -1,8 +1,8 @@
 //! The options of `durer draw`.
 
 use super::layers::Layers;
-use crate::args::RunningArgs;
 use crate::encoding::PictureFileArgs;
+use crate::options::RunningArgs;
 use crate::sides::{Sides, sides};
 use crate::{color, values};
 use clap::{Args, ValueEnum, ValueHint};

@@ -1,9 +1,9 @@
 //! `--break`: views without what lies between two places on an axis.
 
 use super::sheet::Shot;
-use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::kind::Kind;
+use crate::render::RenderArgs;
 use durer::paper::Breaks;
 use durer::scene::{Camera, Projection, Scene};
 use durer_formats::drawing::DrawingFormat;

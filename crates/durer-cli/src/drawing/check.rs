@@ -2,9 +2,9 @@
 
 use super::args::{Fill, Hatch, NAMES, OF_ANNOTATIONS};
 use super::{background, broken, hatch, is_wanted, sheet, tones};
-use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::kind::Kind;
+use crate::render::RenderArgs;
 use durer::pipeline::DrawStyle;
 use durer_formats::drawing::DrawingFormat;
 

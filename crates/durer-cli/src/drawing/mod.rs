@@ -11,12 +11,13 @@ pub mod report;
 mod sheet;
 mod tones;
 
-use crate::args::{RenderArgs, ViewArgs};
 use crate::camera::{self, Ortho};
 use crate::failure::Failure;
 use crate::film::Sink;
 use crate::kind::Kind;
+use crate::options::ViewArgs;
 use crate::output;
+use crate::render::RenderArgs;
 use crate::report::{CameraReport, PictureReport};
 use crate::shape;
 use crate::values::Size;

@@ -2,9 +2,9 @@
 
 use super::Shown;
 use super::args::DetailSpec;
-use crate::args::RenderArgs;
 use crate::failure::Failure;
 use crate::kind::Kind;
+use crate::render::RenderArgs;
 use durer::math::{DVec3, Plane};
 use durer::paper::{Detail, ViewKind};
 use durer::scene::{Camera, Projection, Scene, UpAxis};

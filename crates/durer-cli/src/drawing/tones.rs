@@ -2,8 +2,8 @@
 
 use super::args::Hatch;
 use super::{CONTOUR_SPACING, usage};
-use crate::args::RenderArgs;
 use crate::failure::Failure;
+use crate::render::RenderArgs;
 use durer::paper::ViewBreaks;
 use durer::pipeline::{self, DrawOptions, DrawStyle, ToneMarks};
 use durer::scene::Scene;

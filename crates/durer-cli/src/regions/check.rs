@@ -1,10 +1,10 @@
 //! `durer check`.
 
-use crate::args::RunningArgs;
 use crate::failure::Failure;
 use crate::input::display_name;
 use crate::layer::{open, words};
 use crate::messages::Messages;
+use crate::options::RunningArgs;
 use crate::values;
 use clap::{Args, ValueHint};
 use durer::clip::mask::Area;

@@ -13,12 +13,12 @@ pub use dissolve::{DissolveArgs, EXAMPLES as DISSOLVE, run as dissolve};
 pub use fix::{EXAMPLES as FIX, FixArgs, run as fix};
 pub use simplify::{EXAMPLES as SIMPLIFY, SimplifyArgs, run as simplify};
 
-use crate::args::RunningArgs;
 use crate::clip::Counts;
 use crate::failure::Failure;
 use crate::input::{display_name, is_stream};
 use crate::layer::{self, FieldArgs, Fields, Source, failure, named_format, words};
 use crate::messages::Messages;
+use crate::options::RunningArgs;
 use clap::{Args, ValueHint};
 use durer_formats::geo::{Feature, GeoFormat, Geometry};
 use rayon::prelude::*;

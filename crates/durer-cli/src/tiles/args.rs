@@ -1,8 +1,8 @@
 //! The options of `durer tiles`.
 
-use crate::args::RunningArgs;
 use crate::clip::TileCoordinates;
 use crate::layer::FieldArgs;
+use crate::options::RunningArgs;
 use crate::values;
 use clap::{Args, ValueEnum, ValueHint};
 use durer::clip::simplify::LineSimplifier;

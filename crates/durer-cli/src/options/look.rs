@@ -1,0 +1,63 @@
+//! The options of light and surfaces.
+
+use super::{Cull, Shading, Shadows, ToneMap};
+use crate::environment::{self, Environment};
+use crate::{color, lights, values};
+use clap::{Args, ValueHint};
+use durer::pipeline::{self, Exposure};
+use durer::scene::Light;
+
+/// Light and surfaces.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Look")]
+pub struct LookArgs {
+    /// How surfaces are shaded [default: by the material]
+    #[arg(long, value_name = "MODEL")]
+    pub shading: Option<Shading>,
+    /// A light; replaces the default three-point light or the file's own
+    #[arg(long, value_name = "LIGHT", allow_hyphen_values = true, long_help = lights::SYNTAX, value_parser = lights::light)]
+    pub light: Vec<Light>,
+    /// Which faces are left out
+    #[arg(long, value_name = "WHICH", default_value = "material")]
+    pub cull: Cull,
+    /// Width of a model's lines in pixels
+    #[arg(long, value_name = "PIXELS", allow_hyphen_values = true, default_value = "1.5", value_parser = values::pixels)]
+    pub line_width: f64,
+    /// Side of a model's points in pixels
+    #[arg(long, value_name = "PIXELS", allow_hyphen_values = true, default_value = "3", value_parser = values::pixels)]
+    pub point_size: f64,
+    /// The colour of what has no material [default: light grey; of lines and points what is seen
+    /// against the background]
+    #[arg(long, value_name = "COLOR", value_parser = color::color)]
+    pub color: Option<durer::math::Vec4>,
+    /// Whether surfaces keep light from others
+    #[arg(long, value_name = "HOW", default_value = "none")]
+    pub shadows: Shadows,
+    /// Texels along the side of a shadow map
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "2048", value_parser = clap::value_parser!(u32).range(1..=16384), requires = "shadows")]
+    pub shadow_map: u32,
+    /// How often rays are reflected by mirrors and refracted by what blends
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = clap::value_parser!(u32).range(0..=32))]
+    pub bounces: u32,
+    /// Exposure of the light: `auto`, or a number of EV
+    ///
+    /// `auto` makes all lights stronger or weaker by one factor, so that white matte surfaces where much of
+    /// their light falls are nearly white. EV shows light as the file or --light gives it (at 0 one of
+    /// strength 1, or of pi lux, makes white), times two to this power, with the light of what shines by
+    /// itself. Default: auto for the file's own lights and for --environment FILE, else 0.
+    #[arg(long, value_name = "EV", allow_hyphen_values = true, value_parser = lights::exposure)]
+    pub exposure: Option<Exposure>,
+    /// Surroundings that mirrors show: `studio`, `none`, or a panorama in a Radiance file (.hdr)
+    ///
+    /// In a studio stand bright screens, which metals and what is smooth mirror; `none` leaves but a sky over
+    /// the ground. A panorama (equirectangular) lights the model too, in place of the default light and
+    /// beside the file's or --light.
+    #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment::environment)]
+    pub environment: Environment,
+    /// Tone map that brings bright light into the range of the picture
+    #[arg(long, value_name = "MAP", default_value = "none")]
+    pub tone_map: ToneMap,
+    /// The surroundings that were read for --environment.
+    #[arg(skip)]
+    pub surroundings: std::sync::OnceLock<pipeline::Surroundings>,
+}

@@ -1,0 +1,17 @@
+//! Groups of options that several subcommands share.
+
+mod choices;
+mod look;
+mod picture;
+mod planes;
+mod reading;
+mod running;
+mod view;
+
+pub use choices::{Cull, Samples, Shading, Shadows, ToneMap, UpAxis};
+pub use look::LookArgs;
+pub use picture::PictureArgs;
+pub use planes::PlaneArgs;
+pub use reading::ReadingArgs;
+pub use running::RunningArgs;
+pub use view::ViewArgs;

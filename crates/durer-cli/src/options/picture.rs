@@ -1,0 +1,60 @@
+//! The options of the picture.
+
+use super::Samples;
+use crate::color;
+use crate::encoding::EncodingArgs;
+use crate::sides::{Sides, sides};
+use crate::values::{self, Algorithm, Size};
+use clap::Args;
+use durer::pipeline::Background;
+use durer::view::layout::Layout;
+
+/// The shape of the output.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Picture")]
+pub struct PictureArgs {
+    /// Width and height in pixels, or one number for a square
+    ///
+    /// One side may be left out, `640x` or `x480`, and follows from the shape of what is seen: the model's
+    /// outline, where the view fits it; the aspect ratio of a camera of the file; square cells of --viewports.
+    #[arg(id = "size", long = "size", value_name = "WxH", allow_hyphen_values = true, default_value = "1024x1024", value_parser = sides)]
+    pub sides: Sides,
+    /// The same, found where a side was open.
+    #[arg(skip)]
+    pub size: Size,
+    /// How visible surfaces are found [default: z-buffer, or a-buffer where a material blends or
+    /// --aa is 64, or ray where --shadows rays or --bounces asks for it]
+    #[arg(long, value_name = "NAME", value_parser = values::algorithm())]
+    pub algorithm: Option<Algorithm>,
+    /// Samples per pixel, where the algorithm takes several
+    ///
+    /// The A-buffer has masks of 16 sub-pixels, or of 64 for 64.
+    #[arg(long, visible_alias = "samples", value_name = "N", default_value = "4")]
+    pub aa: Samples,
+    /// A colour, `transparent`, `gradient`, or TOP,BOTTOM
+    ///
+    /// Colours are #rgb, #rrggbb, #rrggbbaa, or a name such as white, black, silver, navy.
+    #[arg(long, value_name = "COLOR", default_value = "white", value_parser = color::background)]
+    pub background: Background,
+    /// Several views in one picture
+    ///
+    /// Views joined by commas, e.g. `front,top,right,iso`, in as square a grid as possible; columns
+    /// and rows may be given first: `3x1:front,right,iso`. Each view fits the model.
+    #[arg(long, value_name = "LAYOUT", value_parser = crate::camera::layout, conflicts_with_all = ["view", "azimuth", "elevation", "eye", "camera"])]
+    pub viewports: Option<Layout>,
+    /// N pictures around the up axis, in one animated file or in one file each
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub turntable: Option<u32>,
+    /// Frames a second, where a turntable goes into one file [default: 24]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable")]
+    pub fps: Option<f64>,
+    /// Seconds of a whole turn, where it goes into one file [default: by --fps]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::positive, requires = "turntable", conflicts_with = "fps")]
+    pub duration: Option<f64>,
+    /// Compression and quality of the file.
+    #[command(flatten)]
+    pub encoding: EncodingArgs,
+    /// Refuse pictures of more pixels; the default is 16384x16384
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
+    pub max_pixels: u64,
+}

@@ -1,0 +1,39 @@
+//! The options for reading models.
+
+use crate::values;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// What is read of a model, and how much.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Reading")]
+pub struct ReadingArgs {
+    /// Pose the model at this animation, by name or number [default: the first, given --time]
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+    /// Pose the model at this time of the animation
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = values::not_negative)]
+    pub time: Option<f64>,
+    /// Show the model in this variant of its materials, by name or number; `durer info` lists them
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Let the lights of COLLADA and FBX files shine; those of glTF always do
+    #[arg(long)]
+    pub own_lights: bool,
+    /// Let references lead to any file below this folder [default: the model's own folder]
+    ///
+    /// Textures, buffers and material libraries are read from the model's folder alone, whatever links and `..`
+    /// lead to; with this also from below another one, for example one above it. Of a model from standard input,
+    /// references start there.
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub root: Option<PathBuf>,
+    /// Read only what stands on this plate, counted from 1, of a project of Bambu Studio or OrcaSlicer [default: all plates]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub plate: Option<u32>,
+    /// Refuse models of more triangles, lines and points [default: 100 million]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = values::count)]
+    pub max_triangles: Option<u64>,
+    /// Refuse models that are, or unpack to, more bytes; k, M, G are understood [default: 4G]
+    #[arg(long, value_name = "BYTES", allow_hyphen_values = true, value_parser = values::bytes)]
+    pub max_bytes: Option<u64>,
+}
