@@ -1,12 +1,11 @@
 //! The camera that the options ask for.
 
 use crate::failure::Failure;
-use crate::options::{PictureArgs, ViewArgs};
-use crate::values::{Size, positive};
+use crate::options::{Ortho, PictureArgs, ViewArgs};
+use crate::values::Size;
 use durer::math::{DQuat, DVec3};
 use durer::scene::{Camera, Projection, Scene};
 use durer::view::fit::{self, fit_turning};
-use durer::view::layout::Layout;
 use durer::view::projection::{FitOptions, Lens, NamedView, ViewDirection, fit_scene};
 
 /// Angle of view of a fitted camera, degrees: like a lens of 70 mm on a full frame.
@@ -14,32 +13,6 @@ pub const FOV: f64 = 30.0;
 
 /// The part of the picture that a fitted model leaves free at each border.
 const MARGIN: f64 = 0.03;
-
-/// `--ortho`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ortho {
-    /// The height of the view in world units.
-    Height(f64),
-    /// As high as the model needs.
-    Fit,
-}
-
-/// `fit`, or a height above 0.
-pub fn ortho(text: &str) -> Result<Ortho, String> {
-    match text {
-        "fit" => Ok(Ortho::Fit),
-        _ => positive(text).map(Ortho::Height).map_err(|e| format!("{e}; or `fit`")),
-    }
-}
-
-/// A layout whose cells are named views.
-pub fn layout(text: &str) -> Result<Layout, String> {
-    let layout: Layout = text.parse().map_err(|e: durer::Error| e.to_string())?;
-    for name in layout.names() {
-        name.parse::<NamedView>().map_err(|e| e.to_string())?;
-    }
-    Ok(layout)
-}
 
 /// Which picture of those that the options ask for.
 #[derive(Debug, Clone, Copy)]

@@ -5,6 +5,7 @@ use crate::input;
 use crate::layer::{self, LayerInfo};
 use crate::messages::Messages;
 use crate::options::{ReadingArgs, RunningArgs};
+use crate::places::is_stream;
 use crate::report;
 use clap::{Args, ValueHint};
 use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
@@ -139,7 +140,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 
 /// Whether a file holds map data, and no model: by its first bytes, or else by its name. Standard input holds a model.
 fn is_layer(path: &Path) -> bool {
-    if input::is_stream(path) {
+    if is_stream(path) {
         return false;
     }
     let Ok(mut source) = layer::bytes(path) else { return false };

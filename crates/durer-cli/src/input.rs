@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, in_words};
 use crate::options::ReadingArgs;
+use crate::places::is_stream;
 use crate::resources::Folder;
 use crate::watch;
 use durer::work::Work;
@@ -9,18 +10,9 @@ use durer_formats::told::shown_path;
 use durer_formats::{
     Limits, Model, NoResources, Place, Pose, ReadOptions, Resources, gltf, read_model, stl,
 };
-use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-
-/// The argument that stands for standard input or output.
-pub const STREAM: &str = "-";
-
-/// Whether the argument stands for standard input or output.
-pub fn is_stream(path: &Path) -> bool {
-    path.as_os_str() == OsStr::new(STREAM)
-}
 
 /// What messages call an input.
 pub fn display_name(path: &Path) -> String {

@@ -2,9 +2,9 @@
 
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
-use crate::input::is_stream;
 use crate::kind::{Kind, Wanted};
 use crate::places::Place;
+use crate::places::is_stream;
 use durer_formats::told::shown_path;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, OpenOptions};

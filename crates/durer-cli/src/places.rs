@@ -1,11 +1,19 @@
 //! Where files are, by identity and not by spelling: `a.png`, `./a.png`, links to it and its full path are one place.
 
 use crate::failure::Failure;
-use crate::input::is_stream;
 use crate::sandbox::{self, Sandbox};
 use clap::ArgMatches;
+use std::ffi::OsStr;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
+
+/// The argument that stands for standard input or output.
+pub const STREAM: &str = "-";
+
+/// Whether the argument stands for standard input or output.
+pub fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == OsStr::new(STREAM)
+}
 
 /// Options that name what is written; all others with paths name what is read.
 const OUTPUTS: [&str; 4] = ["output", "item", "depth", "normal"];

@@ -1,8 +1,8 @@
 //! `durer thumbnailer`: what tells a desktop to let durer make the small pictures of models.
 
 use crate::failure::Failure;
-use crate::input::STREAM;
 use crate::output::{self, Target};
+use crate::places::STREAM;
 use crate::report;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -101,7 +101,7 @@ const UNKNOWN: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 /// Writes the entry, or the types.
 pub fn run(args: &ThumbnailerArgs) -> Result<(), Failure> {
     let text = if args.types { UNKNOWN.to_owned() } else { entry() };
-    if crate::input::is_stream(&args.output) {
+    if crate::places::is_stream(&args.output) {
         return report::print_text(&text);
     }
     let target: Target = output::file_or_stream("FILE", &args.output)?;

@@ -14,9 +14,10 @@ pub use report::Counts;
 pub use window::window;
 
 use crate::failure::Failure;
-use crate::input::{display_name, is_stream};
+use crate::input::display_name;
 use crate::layer::{self, Fields, Shift, Sink, Source, failure, named_format, words};
 use crate::messages::Messages;
+use crate::places::is_stream;
 use durer::clip::mask::{Algorithm, Area, Cutter, Made, Mask, Rules};
 use durer::clip::polygon::validity::{self, Touching};
 use durer::clip::polygon::{BooleanOp, FillRule, PolygonClipper, Shapes};

@@ -194,7 +194,7 @@ fn is_path(arg: &Arg) -> bool {
 
 /// A path of the file as seen from where the command runs.
 fn beside(folder: &Path, path: &str) -> String {
-    if path == crate::input::STREAM {
+    if path == crate::places::STREAM {
         path.to_owned()
     } else {
         folder.join(path).display().to_string()

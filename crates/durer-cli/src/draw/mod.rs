@@ -12,10 +12,11 @@ pub use layers::is_style;
 
 use crate::encoding;
 use crate::failure::{Failure, in_words};
-use crate::input::{self, display_name, is_stream};
+use crate::input::{self, display_name};
 use crate::kind::Wanted;
 use crate::messages::Messages;
 use crate::output::{self, Name, Target};
+use crate::places::is_stream;
 use crate::sides::Sides;
 use crate::values::Size;
 use args::Smoothing;

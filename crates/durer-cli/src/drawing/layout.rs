@@ -3,9 +3,9 @@
 use super::args::Unit;
 use super::callouts::Callouts;
 use super::{Shown, Subject, background, curve_fit, is_trapped};
-use crate::camera::Ortho;
 use crate::failure::Failure;
 use crate::kind::Kind;
+use crate::options::Ortho;
 use crate::render::RenderArgs;
 use crate::values::Size;
 use durer::paper::{self, Contents, Frame, LaidOut, Page, Scale, SheetView, TitleBlock};

@@ -11,11 +11,11 @@ pub mod report;
 mod sheet;
 mod tones;
 
-use crate::camera::{self, Ortho};
+use crate::camera;
 use crate::failure::Failure;
 use crate::film::Sink;
 use crate::kind::Kind;
-use crate::options::ViewArgs;
+use crate::options::{Ortho, ViewArgs};
 use crate::output;
 use crate::render::RenderArgs;
 use crate::report::{CameraReport, PictureReport};

@@ -14,7 +14,8 @@ pub use sink::{Sink, failure};
 pub use systems::{Shift, SystemArgs};
 
 use crate::failure::{Failure, in_words};
-use crate::input::{self, display_name, is_stream};
+use crate::input::{self, display_name};
+use crate::places::is_stream;
 use crate::watch;
 use durer::work::Work;
 use durer_formats::geo::{Beside, Feature, GeoFormat, Points, Reader, unzipped};

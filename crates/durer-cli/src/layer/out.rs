@@ -2,9 +2,9 @@
 
 use super::sink::{Sink, failure};
 use crate::failure::Failure;
-use crate::input::is_stream;
 use crate::messages::Messages;
 use crate::output::{self, Target};
+use crate::places::is_stream;
 use durer_formats::geo::{GeoFormat, Member, System, Writer};
 use std::io::IsTerminal;
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
-use crate::input::is_stream;
 use crate::output::is_special;
+use crate::places::is_stream;
 use durer_formats::Error;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};

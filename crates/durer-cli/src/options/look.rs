@@ -1,11 +1,32 @@
 //! The options of light and surfaces.
 
 use super::{Cull, Shading, Shadows, ToneMap};
-use crate::environment::{self, Environment};
 use crate::{color, lights, values};
 use clap::{Args, ValueHint};
 use durer::pipeline::{self, Exposure};
 use durer::scene::Light;
+use std::path::PathBuf;
+
+/// `--environment`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Environment {
+    /// The studio.
+    Studio,
+    /// Sky and ground alone.
+    None,
+    /// A panorama in a file.
+    File(PathBuf),
+}
+
+/// Parses a name or the name of a file.
+fn environment(text: &str) -> Result<Environment, String> {
+    match text {
+        "studio" => Ok(Environment::Studio),
+        "none" => Ok(Environment::None),
+        "" => Err("it is empty; there are `studio`, `none` and names of .hdr files".to_owned()),
+        file => Ok(Environment::File(PathBuf::from(file))),
+    }
+}
 
 /// Light and surfaces.
 #[derive(Debug, Clone, Args)]
@@ -52,7 +73,7 @@ pub struct LookArgs {
     /// In a studio stand bright screens, which metals and what is smooth mirror; `none` leaves but a sky over
     /// the ground. A panorama (equirectangular) lights the model too, in place of the default light and
     /// beside the file's or --light.
-    #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment::environment)]
+    #[arg(long, value_name = "WHAT", default_value = "studio", value_hint = ValueHint::FilePath, value_parser = environment)]
     pub environment: Environment,
     /// Tone map that brings bright light into the range of the picture
     #[arg(long, value_name = "MAP", default_value = "none")]
@@ -60,4 +81,17 @@ pub struct LookArgs {
     /// The surroundings that were read for --environment.
     #[arg(skip)]
     pub surroundings: std::sync::OnceLock<pipeline::Surroundings>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_known_and_all_else_is_a_file() {
+        assert_eq!(environment("studio"), Ok(Environment::Studio));
+        assert_eq!(environment("none"), Ok(Environment::None));
+        assert_eq!(environment("a/b.hdr"), Ok(Environment::File("a/b.hdr".into())));
+        assert!(environment("").is_err());
+    }
 }

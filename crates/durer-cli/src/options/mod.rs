@@ -9,9 +9,9 @@ mod running;
 mod view;
 
 pub use choices::{Cull, Samples, Shading, Shadows, ToneMap, UpAxis};
-pub use look::LookArgs;
+pub use look::{Environment, LookArgs};
 pub use picture::PictureArgs;
 pub use planes::PlaneArgs;
 pub use reading::ReadingArgs;
 pub use running::RunningArgs;
-pub use view::ViewArgs;
+pub use view::{Ortho, ViewArgs};

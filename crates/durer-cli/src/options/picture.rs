@@ -8,6 +8,7 @@ use crate::values::{self, Algorithm, Size};
 use clap::Args;
 use durer::pipeline::Background;
 use durer::view::layout::Layout;
+use durer::view::projection::NamedView;
 
 /// The shape of the output.
 #[derive(Debug, Clone, Args)]
@@ -40,7 +41,7 @@ pub struct PictureArgs {
     ///
     /// Views joined by commas, e.g. `front,top,right,iso`, in as square a grid as possible; columns
     /// and rows may be given first: `3x1:front,right,iso`. Each view fits the model.
-    #[arg(long, value_name = "LAYOUT", value_parser = crate::camera::layout, conflicts_with_all = ["view", "azimuth", "elevation", "eye", "camera"])]
+    #[arg(long, value_name = "LAYOUT", value_parser = layout, conflicts_with_all = ["view", "azimuth", "elevation", "eye", "camera"])]
     pub viewports: Option<Layout>,
     /// N pictures around the up axis, in one animated file or in one file each
     #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "viewports", value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -57,4 +58,13 @@ pub struct PictureArgs {
     /// Refuse pictures of more pixels; the default is 16384x16384
     #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "268435456", value_parser = values::count)]
     pub max_pixels: u64,
+}
+
+/// Parses a layout whose cells are named views.
+fn layout(text: &str) -> Result<Layout, String> {
+    let layout: Layout = text.parse().map_err(|e: durer::Error| e.to_string())?;
+    for name in layout.names() {
+        name.parse::<NamedView>().map_err(|e| e.to_string())?;
+    }
+    Ok(layout)
 }

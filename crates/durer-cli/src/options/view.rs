@@ -1,10 +1,27 @@
 //! The options of the camera.
 
 use super::UpAxis;
-use crate::values;
+use crate::values::{self, positive};
 use clap::Args;
 use durer::math::DVec3;
 use durer::view::projection::NamedView;
+
+/// `--ortho`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ortho {
+    /// Height of the view in world units.
+    Height(f64),
+    /// Extent of the model in the view.
+    Fit,
+}
+
+/// Parses `fit`, or a height above 0.
+pub fn ortho(text: &str) -> Result<Ortho, String> {
+    match text {
+        "fit" => Ok(Ortho::Fit),
+        _ => positive(text).map(Ortho::Height).map_err(|e| format!("{e}; or `fit`")),
+    }
+}
 
 /// The camera: a named view, angles, a place, or one of the file's.
 #[derive(Debug, Clone, Args)]
@@ -32,8 +49,8 @@ pub struct ViewArgs {
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = values::angle_of_view, conflicts_with_all = ["ortho", "camera"])]
     pub fov: Option<f64>,
     /// Parallel projection; the height of the view in world units, or `fit`
-    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = crate::camera::ortho, conflicts_with = "camera")]
-    pub ortho: Option<crate::camera::Ortho>,
+    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = ortho, conflicts_with = "camera")]
+    pub ortho: Option<Ortho>,
     /// Distance of the near plane [default: by the model]
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true, value_parser = values::number)]
     pub near: Option<f64>,

@@ -15,10 +15,11 @@ pub use simplify::{EXAMPLES as SIMPLIFY, SimplifyArgs, run as simplify};
 
 use crate::clip::Counts;
 use crate::failure::Failure;
-use crate::input::{display_name, is_stream};
+use crate::input::display_name;
 use crate::layer::{self, FieldArgs, Fields, Source, failure, named_format, words};
 use crate::messages::Messages;
 use crate::options::RunningArgs;
+use crate::places::is_stream;
 use clap::{Args, ValueHint};
 use durer_formats::geo::{Feature, GeoFormat, Geometry};
 use rayon::prelude::*;

@@ -3,8 +3,8 @@
 use super::args::{TileFormat, TilesArgs};
 use crate::beside::Beside;
 use crate::failure::{Failure, in_words};
-use crate::input::is_stream;
 use crate::output::{self, Target, is_special};
+use crate::places::is_stream;
 use durer::clip::tiles::Tile;
 use durer_formats::tiles::{MbTiles, Metadata, PmTiles};
 use durer_formats::{Error, Result as Made};
