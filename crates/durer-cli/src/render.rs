@@ -181,15 +181,13 @@ fn asks_for_rays(args: &RenderArgs) -> Option<&'static str> {
     }
 }
 
-/// How surfaces are found: as asked for, or as fits the scene and the other options.
-fn algorithm(args: &RenderArgs, scene: &Scene) -> Algorithm {
+/// Returns how surfaces are found: as asked for, or as fits the other options.
+fn algorithm(args: &RenderArgs) -> Algorithm {
     args.picture.algorithm.unwrap_or_else(|| {
         Algorithm::Surfaces(match args.picture.aa {
             _ if asks_for_rays(args).is_some() => SurfaceMethod::Ray,
             Samples::SixtyFour => SurfaceMethod::ABuffer,
-            // One sample is one colour per pixel: the A-buffer would smooth it.
-            Samples::One => SurfaceMethod::ZBuffer,
-            _ => SurfaceMethod::for_scene(scene),
+            _ => SurfaceMethod::ZBuffer,
         })
     })
 }
@@ -465,7 +463,7 @@ fn render_picture(
     let model = scene;
     let framed = staged.as_ref().map_or(model, |s| &s.framed);
     let scene = staged.as_ref().map_or(model, |s| &s.whole);
-    let algorithm = algorithm(args, scene);
+    let algorithm = algorithm(args);
     for cell in shots(args, picture.frame)? {
         let options = render_options(args, [model, framed, scene], picture, &cell.shot, algorithm)?;
         report.cameras.push((&options.camera).into());

@@ -23,8 +23,8 @@ pub struct PictureArgs {
     /// The same, found where a side was open.
     #[arg(skip)]
     pub size: Size,
-    /// How visible surfaces are found [default: z-buffer, or a-buffer where a material blends or
-    /// --aa is 64, or ray where --shadows rays or --bounces asks for it]
+    /// Method that finds visible surfaces [default: z-buffer, or a-buffer where --aa is 64, or ray where
+    /// --shadows rays or --bounces asks for it]
     #[arg(long, value_name = "NAME", value_parser = values::algorithm())]
     pub algorithm: Option<Algorithm>,
     /// Samples per pixel, where the algorithm takes several

@@ -145,8 +145,7 @@ pub fn encode_opaque_x16<S: Simd>(simd: S, colors: [f32x16<S>; 3]) -> u32x16<S> 
 
 /// Sixteen colours on their way to codes. Steps of several that are done one after the other need not wait for each
 /// other: vectors that are stored are then long there when their numbers are read one by one, and the other way round.
-#[derive(Clone, Copy)]
-pub(crate) struct Encoding {
+struct Encoding {
     /// By channel the buckets, each in the highest bits of 32, later the steps. Two are in one word, so half as many
     /// are read and written.
     steps: [[u64; 8]; 3],
@@ -155,12 +154,9 @@ pub(crate) struct Encoding {
 }
 
 impl Encoding {
-    /// None yet.
-    pub const NONE: Self = Self { steps: [[0; 8]; 3], below: [[0; 16]; 3] };
-
     /// The buckets of colours.
     #[inline(always)]
-    pub fn new<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> Self {
+    fn new<S: Simd>(simd: S, [r, g, b]: [f32x16<S>; 3]) -> Self {
         let (r, g, b) = (buckets_x16(simd, r), buckets_x16(simd, g), buckets_x16(simd, b));
         let two = |of: u32x16<S>| of.bitcast::<u64x8<S>>().into();
         Self {
@@ -171,7 +167,7 @@ impl Encoding {
 
     /// From buckets to steps.
     #[inline(always)]
-    pub fn look_up(&mut self) {
+    fn look_up(&mut self) {
         for steps in &mut self.steps {
             for two in steps {
                 let first = *two as u32 >> (32 - INDEX_BITS);
@@ -183,7 +179,7 @@ impl Encoding {
 
     /// The codes, from steps.
     #[inline(always)]
-    pub fn codes<S: Simd>(&self, simd: S) -> u32x16<S> {
+    fn codes<S: Simd>(&self, simd: S) -> u32x16<S> {
         let [r, g, b] = &self.steps;
         let steps = |of: &[u64; 8]| u64x8::from_slice(simd, of).bitcast::<u32x16<S>>();
         let (steps_r, steps_g, steps_b) = (steps(r), steps(g), steps(b));
@@ -213,6 +209,12 @@ fn buckets_x16<S: Simd>(simd: S, linear: f32x16<S>) -> [u32x16<S>; 2] {
 #[inline(always)]
 pub fn encode_rgba8(color: Vec4) -> [u8; 4] {
     [encode_srgb8(color.x), encode_srgb8(color.y), encode_srgb8(color.z), encode_unorm8(color.w)]
+}
+
+/// Linear RGBA, premultiplied, to 8-bit sRGB with straight 8-bit alpha.
+#[inline(always)]
+pub(crate) fn encode_premultiplied(color: Vec4) -> [u8; 4] {
+    encode_rgba8(if color.w >= 1.0 { color } else { unpremultiply(color) })
 }
 
 /// 8-bit sRGB with 8-bit alpha to linear RGBA.

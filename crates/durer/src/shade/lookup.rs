@@ -4,6 +4,9 @@
 //! Every operation is the one of [`PreparedTexture::sample`], in the same order, so the bits are the
 //! same.
 
+#[cfg(test)]
+mod tests;
+
 use super::color::premultiply;
 use super::lane::Lane;
 use super::mip::Level;
@@ -204,7 +207,7 @@ fn decode_all(codes: &[[u8; 4]], out: &mut [[f32; 4]], decode: impl Fn([u8; 4]) 
 }
 
 /// Sixteen colours, four side by side.
-pub(super) type Rows<S> = [f32x16<S>; 4];
+type Rows<S> = [f32x16<S>; 4];
 
 /// Four colours side by side: those of the points from `4 i` on, so many texels after their first.
 #[inline(always)]
@@ -221,7 +224,7 @@ fn four_near<S: Simd>(
 
 /// Four colours side by side.
 #[inline(always)]
-pub(super) fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
+fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
     let (a, b) = (f32x4::simd_from(simd, a.to_array()), f32x4::simd_from(simd, b.to_array()));
     let (c, d) = (f32x4::simd_from(simd, c.to_array()), f32x4::simd_from(simd, d.to_array()));
     simd.combine_f32x8(simd.combine_f32x4(a, b), simd.combine_f32x4(c, d))
@@ -229,7 +232,7 @@ pub(super) fn four<S: Simd>(simd: S, [a, b, c, d]: [Vec4; 4]) -> f32x16<S> {
 
 /// Each of sixteen numbers four times, for the channels of the colours in [`Rows`].
 #[inline(always)]
-pub(super) fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
+fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
     let (low, high) = (simd.zip_low_f32x16(v, v), simd.zip_high_f32x16(v, v));
     let (first, second) = (simd.zip_low_f32x16(low, low), simd.zip_high_f32x16(low, low));
     [first, second, simd.zip_low_f32x16(high, high), simd.zip_high_f32x16(high, high)]
@@ -237,7 +240,7 @@ pub(super) fn spread<S: Simd>(simd: S, v: f32x16<S>) -> Rows<S> {
 
 /// The bilinear mean of four texels, the upper two first.
 #[inline(always)]
-pub(super) fn mean<S: Simd>([a, b, c, d]: Rows<S>, [tx, ty]: [f32x16<S>; 2]) -> f32x16<S> {
+fn mean<S: Simd>([a, b, c, d]: Rows<S>, [tx, ty]: [f32x16<S>; 2]) -> f32x16<S> {
     let (left, upper) = (1.0 - tx, 1.0 - ty);
     let top = a * left + b * tx;
     let low = c * left + d * tx;
@@ -256,11 +259,7 @@ fn ends<S: Simd>(simd: S, v: i32x16<S>) -> [i32; 2] {
 
 /// Red, green, blue and alpha, straight, of sixteen texels of this usage.
 #[inline(always)]
-pub(super) fn straight_x16<S: Simd>(
-    simd: S,
-    [r, g, b, a]: [f32x16<S>; 4],
-    usage: Usage,
-) -> [f32x16<S>; 4] {
+fn straight_x16<S: Simd>(simd: S, [r, g, b, a]: [f32x16<S>; 4], usage: Usage) -> [f32x16<S>; 4] {
     if usage != Usage::ColorWithAlpha {
         return [r, g, b, a];
     }
@@ -273,7 +272,7 @@ pub(super) fn straight_x16<S: Simd>(
 
 /// The reds, greens, blues and alphas of sixteen colours.
 #[inline(always)]
-pub(super) fn columns<S: Simd>(simd: S, mut from: Rows<S>) -> [f32x16<S>; 4] {
+fn columns<S: Simd>(simd: S, mut from: Rows<S>) -> [f32x16<S>; 4] {
     // Each shuffle rotates the six bits of a number's row and lane by one; two bring its channel to the front.
     for _ in 0..2 {
         let mut to = from;
@@ -308,12 +307,7 @@ fn linear_x16<S: Simd>(
 /// The first texel of the two around each coordinate, −1 … size − 1, and the weight of the second, which may be
 /// beyond the border too.
 #[inline(always)]
-pub(super) fn fixed_x16<S: Simd>(
-    simd: S,
-    u: f32x16<S>,
-    size: i32,
-    wrap: Wrap,
-) -> (i32x16<S>, f32x16<S>) {
+fn fixed_x16<S: Simd>(simd: S, u: f32x16<S>, size: i32, wrap: Wrap) -> (i32x16<S>, f32x16<S>) {
     let fixed = (wrapped_x16(simd, u, wrap) * size as f32 + 0.5) * SUBTEXEL + 0.5;
     let fixed = simd.cvt_i32_f32x16(fixed);
     let weight = simd.cvt_f32_i32x16(fixed & ((1 << SUBTEXEL_BITS) - 1)) * (1.0 / SUBTEXEL);
@@ -345,83 +339,4 @@ fn inside_x16<S: Simd>(simd: S, i: i32x16<S>, size: i32, wrap: Wrap) -> i32x16<S
         return simd.select_i32x16(i.simd_ge(size), zero, wrapped);
     }
     simd.min_i32x16(simd.max_i32x16(i, zero), last)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{Image, Sampler};
-    use crate::simd::levels;
-    use fearless_simd::dispatch;
-
-    #[simd]
-    fn sixteen<S: Simd>(
-        simd: S,
-        texture: &PreparedTexture<'_>,
-        at: &[[f32; 16]; 6],
-    ) -> [[f32; 16]; 4] {
-        let lane = |i: usize| f32x16::from_slice(simd, &at[i]);
-        let (uv, ddx) = ([lane(0), lane(1)], [lane(2), lane(3)]);
-        let colors = PreparedTexture::sample_x16(
-            simd,
-            texture,
-            &TexCoords { uv, ddx, ddy: [lane(4), lane(5)] },
-        );
-        let [r, g, b, a] = colors;
-        [r.into(), g.into(), b.into(), a.into()]
-    }
-
-    #[test]
-    fn sixteen_look_ups_are_sixteen_times_one() {
-        let strange =
-            [f32::NAN, f32::INFINITY, f32::MIN, -0.0, 1e-40, -1e-9, 1.0, 8_388_609.0, 3e9, -2.5];
-        // Numbers from 0 to 1 that follow each other without order.
-        let mut seed = 7_u32;
-        let mut random = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (seed >> 8) as f32 / (1 << 24) as f32
-        };
-        for (width, height) in [(8, 4), (5, 7), (1, 3), (64, 64)] {
-            let data = (0..width * height).map(|_| [0; 4].map(|_: u8| (random() * 255.0) as u8));
-            let data = data.collect();
-            let image = Image { name: String::new(), width, height, data };
-            for wrap in [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge] {
-                for mip in [MipFilter::None, MipFilter::Nearest, MipFilter::Linear] {
-                    let (mag, min) = (Filter::Linear, Filter::Linear);
-                    let sampler = Sampler { mag, min, mip, wrap_u: wrap, wrap_v: wrap };
-                    for usage in [Usage::Color, Usage::ColorWithAlpha, Usage::Data] {
-                        let texture = PreparedTexture::new(&image, sampler, usage);
-                        for round in 0..40 {
-                            let mut at = [[0.0; 16]; 6];
-                            for (k, lanes) in at.iter_mut().enumerate() {
-                                let scale = if k < 2 { 5.0 } else { 0.3 };
-                                *lanes = lanes.map(|_| (random() - 0.4) * scale);
-                                lanes[k] = strange[(round + k) % strange.len()];
-                            }
-                            agrees(&texture, &at);
-                            // Near to each other, about as far apart as their derivatives say.
-                            for (k, lanes) in at.iter_mut().enumerate() {
-                                let (middle, scale) = (random(), random() * random() * 0.1);
-                                let middle = if k < 2 { middle } else { 0.0 };
-                                *lanes = lanes.map(|_| middle + (random() - 0.5) * scale);
-                            }
-                            agrees(&texture, &at);
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn agrees(texture: &PreparedTexture<'_>, at: &[[f32; 16]; 6]) {
-        for level in levels() {
-            let colors = dispatch!(level, simd => sixteen(simd, texture, at));
-            for i in 0..16 {
-                let two = |k: usize| Vec2::new(at[k][i], at[k + 1][i]);
-                let one = texture.sample(two(0), two(2), two(4)).to_array();
-                let ours = [0, 1, 2, 3].map(|c| colors[c][i].to_bits());
-                assert_eq!(ours, one.map(f32::to_bits), "{:?}", two(0));
-            }
-        }
-    }
 }

@@ -1,12 +1,18 @@
 //! Materials with their textures, ready for shading, and the one door to all shading models.
 
+mod materials;
+mod shaded;
+
+pub use materials::PreparedMaterials;
+pub use shaded::{shade, shade_seen};
+
 use super::formula::{self, Inputs};
 use super::lane::{Lane, Vec3Lane};
 use super::light::PreparedLights;
-use super::lobes::{self, Lobes};
+use super::lobes::Lobes;
 use super::lookup::TexCoords;
 use super::metallic_roughness::Substance;
-use super::normal::{Frame, face_seen, face_viewer, perturbed};
+use super::normal::{Frame, face_seen, perturbed};
 use super::phong::{Colors, Shininess, from_metallic_roughness};
 use super::plain::Points;
 use super::sample::Sample;
@@ -15,7 +21,7 @@ use super::surface::Surface;
 use super::texture::Usage;
 use super::{Shading, tone};
 use crate::math::{Vec3, Vec4};
-use crate::scene::{AlphaMode, Material, Scene, ShadingModel};
+use crate::scene::{AlphaMode, Material, ShadingModel};
 use fearless_simd::{Simd, f32x16};
 use fearless_simd_macros::simd;
 
@@ -28,48 +34,8 @@ fn by_phong(shading: Shading) -> bool {
     !matches!(shading, Shading::MetallicRoughness | Shading::Unlit)
 }
 
-/// All materials of a scene, ready for shading. Borrows the scene's images.
-#[derive(Debug, Clone)]
-pub struct PreparedMaterials<'a> {
-    materials: Vec<PreparedMaterial<'a>>,
-    default: PreparedMaterial<'a>,
-    /// For lines and points without a material.
-    ink: PreparedMaterial<'a>,
-}
-
-impl<'a> PreparedMaterials<'a> {
-    /// Filters the mip chains that the scene's materials use, each once.
-    ///
-    /// Cost: O(texels) time, a third of the images in memory.
-    pub fn new(scene: &'a Scene) -> Self {
-        let mut chains = Chains::new(scene);
-        let mut prepare = |m: &Material| PreparedMaterial::new(m, &mut chains);
-        let materials = scene.materials.iter().map(&mut prepare).collect();
-        let default = prepare(&Material::default());
-        let ink = default.clone();
-        Self { materials, default, ink }
-    }
-
-    /// The same where lines and points that have no material are drawn in a linear colour, unlit.
-    #[must_use]
-    pub fn with_ink(mut self, color: Vec3) -> Self {
-        self.ink.model = ShadingModel::Unlit;
-        self.ink.base_color = color.extend(1.0);
-        self
-    }
-
-    /// The material of lines or points: as [`Self::get`], but for `None` the ink.
-    #[inline]
-    pub fn of_marks(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
-        index.map_or(&self.ink, |_| self.get(index))
-    }
-
-    /// The material of this index; for `None`, or where there is none, the default material.
-    #[inline]
-    pub fn get(&self, index: Option<usize>) -> &PreparedMaterial<'a> {
-        index.and_then(|i| self.materials.get(i)).unwrap_or(&self.default)
-    }
-}
+/// How the directions to the eye, of the face and of the normal become a frame.
+type Framing = fn(Vec3Lane<f32>, Vec3Lane<f32>, Vec3Lane<f32>) -> Frame<f32>;
 
 /// A material with its textures.
 #[derive(Debug, Clone)]
@@ -203,26 +169,6 @@ impl<'a> PreparedMaterial<'a> {
             AlphaMode::Blend => alpha.at_most(1.0).at_least(0.0),
             _ => alpha.splat(1.0),
         }
-    }
-
-    /// Whether a display can show the base colour, and so all of its products with numbers within 0…1.
-    #[inline(always)]
-    pub(super) fn base_is_shown(&self) -> bool {
-        // By their bits, for of what is below 0, −0 too, they are more than of 1.
-        self.base_color.truncate().to_array().iter().all(|c| c.to_bits() <= 1.0_f32.to_bits())
-    }
-
-    /// The texture of the base colour.
-    #[inline(always)]
-    pub(super) fn base_color_slot(&self) -> Option<&Slot<'a>> {
-        self.base_color_slot.as_ref()
-    }
-
-    /// Whether strips may be used: textures are [looked up together](Self::looked_up_together), at one size,
-    /// and nothing but that of the base colour is asked for.
-    pub fn suits_strips(&self, shading: Shading) -> bool {
-        shading == Shading::Unlit
-            && self.base_color_slot.as_ref().is_some_and(|slot| !slot.texture.has_levels())
     }
 
     /// The formula the material was written for.
@@ -433,59 +379,4 @@ fn phong_of(m: &Material) -> Colors {
         return from_metallic_roughness(base, m.metallic, m.roughness);
     }
     Colors { diffuse: base, specular: m.specular, shininess: Shininess::new(m.shininess) }
-}
-
-/// The colour of a visible point: linear RGBA with straight alpha, all within 0…1 and never NaN.
-///
-/// Alpha is 1 for opaque materials, 0 or 1 for masked ones (the caller drops what has 0), else the
-/// surface's alpha. Both sides of a face are lit; what is brighter than white keeps its hue and is
-/// drawn towards white, all else is kept exactly. Cost: O(lights) and one sample per texture;
-/// allocates nothing.
-pub fn shade(
-    surface: &Surface<'_>,
-    material: &PreparedMaterial<'_>,
-    lights: &PreparedLights,
-    shading: Shading,
-) -> Vec4 {
-    shade_framed(surface, face_viewer, material, lights, shading)
-}
-
-/// [`shade`] of a point whose geometric normal is on the viewer's side already, or zero, which is then not asked.
-pub fn shade_seen(
-    surface: &Surface<'_>,
-    material: &PreparedMaterial<'_>,
-    lights: &PreparedLights,
-    shading: Shading,
-) -> Vec4 {
-    shade_framed(surface, face_seen, material, lights, shading)
-}
-
-/// How the directions to the eye, of the face and of the normal become a frame.
-type Framing = fn(Vec3Lane<f32>, Vec3Lane<f32>, Vec3Lane<f32>) -> Frame<f32>;
-
-#[inline]
-fn shade_framed(
-    surface: &Surface<'_>,
-    frame: Framing,
-    material: &PreparedMaterial<'_>,
-    lights: &PreparedLights,
-    shading: Shading,
-) -> Vec4 {
-    let base = material.base(surface);
-    let alpha = material.coverage(base.w);
-    if alpha == 0.0 {
-        return Vec4::ZERO;
-    }
-    let Sample { frame, position, inputs } = material.sample_with(surface, frame, base, shading);
-    if let Some(lobes) = inputs.lobes.filter(|l| l.is_glass())
-        && shading == Shading::MetallicRoughness
-    {
-        let substance = &inputs.substance;
-        let whole = lobes.reflect(&frame, position, (substance, inputs.emission), lights);
-        let shine = lobes.shine(&frame, position, substance, lights);
-        let (color, alpha) = lobes::glass(whole.into(), shine.into(), alpha);
-        return Vec3::from(tone::display(lights.tone.of(color.into()))).extend(alpha);
-    }
-    let shown = formula::display(&frame, position, &inputs, surface.lit.as_ref(), lights, shading);
-    Vec3::from(shown).extend(alpha)
 }

@@ -209,7 +209,7 @@ fn linear(u: f32, size: u32, wrap: Wrap) -> (u32, u32, f32) {
 
 /// The neighbour beyond a border: the other end where the image repeats, else the border itself.
 #[inline(always)]
-pub(super) fn inside(i: i64, size: u32, wrap: Wrap) -> u32 {
+fn inside(i: i64, size: u32, wrap: Wrap) -> u32 {
     let size = i64::from(size);
     let texel = match wrap {
         Wrap::Repeat if i < 0 => size - 1,

@@ -157,12 +157,6 @@ fn the_a_buffer_is_sorted_compositing() {
     }
 }
 
-#[test]
-fn the_method_for_a_scene_is_the_a_buffer_where_something_blends() {
-    assert_eq!(SurfaceMethod::for_scene(&half_glass(0)), SurfaceMethod::ABuffer);
-    assert_eq!(SurfaceMethod::for_scene(&scenes::soup(3, 1)), SurfaceMethod::ZBuffer);
-}
-
 /// With several samples subdivision and rays compose at each of them; more samples come nearer to a
 /// great many.
 #[test]

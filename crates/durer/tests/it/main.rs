@@ -59,7 +59,6 @@ mod shadows;
 mod smooth_outlines;
 mod staging;
 mod status;
-mod strips;
 mod surface_depth_sort;
 mod surface_fuzz;
 mod surface_methods;

@@ -2,7 +2,6 @@
 
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
-use crate::scene::{AlphaMode, Material, Scene};
 use crate::shade::{PreparedLights, Shading};
 use crate::simd::{Level, default_level};
 use crate::target::Framebuffer;
@@ -36,13 +35,6 @@ crate::info::family! {
 }
 
 impl SurfaceMethod {
-    /// The method that shows a scene best where nobody asks for another: the A-buffer where surfaces
-    /// blend, for it needs no order of them and smooths edges too, else the z-buffer.
-    pub fn for_scene(scene: &Scene) -> Self {
-        let blends = |m: &Material| m.alpha_mode == AlphaMode::Blend;
-        if scene.materials.iter().any(blends) { Self::ABuffer } else { Self::ZBuffer }
-    }
-
     /// How far from pixels' centres the method looks, in 1/256 pixel: [`Filter::sample_reach`].
     pub fn sample_reach(self) -> i32 {
         match self {

@@ -12,7 +12,6 @@ pub mod input;
 pub(crate) mod layers;
 pub(crate) mod lit;
 pub mod method;
-pub(crate) mod mixed;
 pub(crate) mod nearest;
 pub(crate) mod normal_plane;
 pub(crate) mod patch;

@@ -5,7 +5,7 @@
 //! come here do too. The module `layers` lays them over each other.
 
 use crate::math::Vec4;
-use crate::shade::color::{encode_opaque_x16, encode_rgba8};
+use crate::shade::color::{encode_opaque_x16, encode_premultiplied, encode_rgba8};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
@@ -13,7 +13,6 @@ use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit, opaque};
-use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, u32x16};
@@ -114,10 +113,10 @@ impl<'a> Picture<'a> {
     pub fn write_sums(&mut self, y: u32, sums: &[Vec4]) {
         let row = self.framebuffer.color.row_mut(y);
         // Neighbours are often alike: the background, what one colour fills.
-        let (mut last, mut code) = (Vec4::ZERO, encode(Vec4::ZERO));
+        let (mut last, mut code) = (Vec4::ZERO, encode_premultiplied(Vec4::ZERO));
         for (to, &sum) in row.iter_mut().zip(sums) {
             if sum != last {
-                (last, code) = (sum, encode(sum));
+                (last, code) = (sum, encode_premultiplied(sum));
             }
             *to = code;
         }
@@ -125,7 +124,7 @@ impl<'a> Picture<'a> {
 
     /// Writes one pixel of the colour plane from a linear, premultiplied colour.
     pub fn set_color(&mut self, x: u32, y: u32, sum: Vec4) {
-        self.framebuffer.color.set(x, y, encode(sum));
+        self.framebuffer.color.set(x, y, encode_premultiplied(sum));
     }
 
     /// Writes depth, item and normal, as far as the framebuffer has them; no colour.

@@ -36,7 +36,7 @@ use crate::visibility::surface::Background;
 use crate::visibility::surface::active::ActiveList;
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::Lit;
-use crate::visibility::surface::mixed::Mixed;
+use crate::visibility::surface::lit::{PointQueue, ShadingPoint};
 use crate::visibility::surface::nearest::{DepthRow, Masked};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
@@ -171,7 +171,7 @@ pub fn render(
         level,
         faces: Faces::new(input, height),
         pool: Pool::new(&table, width, options.max_fragments),
-        mixed: Mixed::new(width as usize),
+        queue: PointQueue::new(width as usize),
         pixel: Pixel::default(),
     };
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
@@ -218,7 +218,7 @@ struct Rows<'a> {
     level: Level,
     faces: Faces<'a>,
     pool: Pool<'a>,
-    mixed: Mixed,
+    queue: PointQueue,
     pixel: Pixel,
 }
 
@@ -237,7 +237,7 @@ impl Rows<'_> {
                 parts.extend([[middle, x1], [x0, middle]]);
             }
         }
-        picture.write_sums(y as u32, &self.mixed.sums);
+        picture.write_sums(y as u32, &self.queue.sums);
     }
 
     /// Collects the fragments of a part of a row; says whether there was room.
@@ -282,47 +282,52 @@ impl Rows<'_> {
         lit: &mut Lit<'_>,
         t: &mut impl Tracer<Step>,
     ) {
-        let Self { input, table, faces, pool, mixed, pixel, .. } = self;
+        let Self { input, table, faces, pool, queue, pixel, .. } = self;
         let mut x = x0;
         while x < x1 {
             let filled = pool.next_filled([x, x1]);
             if x < filled {
-                mixed.sums[x as usize..filled as usize].fill(Vec4::ZERO + behind);
+                queue.sums[x as usize..filled as usize].fill(Vec4::ZERO + behind);
                 (x..filled).for_each(|x| t.step(|| Step::Background { x, share: 1.0 }));
                 x = filled;
                 continue;
             }
             let place = Place { triangles: &input.triangles, table, x, y };
-            mixed.sums[x as usize] = Vec4::ZERO;
+            queue.sums[x as usize] = Vec4::ZERO;
             if let Some(only) = pool.only(x).filter(|f| !f.blended) {
                 // Most pixels.
                 if only.area > 0.0 {
                     t.step(|| Step::Share { x, item: only.item, share: only.area });
-                    mixed.add(simd, lit, only.item, x as u32, only.area, [x, y]);
+                    queue.add(simd, lit, point_at(only.item, [x, y], only.area), None);
                 }
                 pixel.background = 1.0 - only.area;
             } else {
                 pixel.begin(pool, x, table.full(), faces.in_pieces);
                 if pixel.is_blended() {
-                    mixed.sums[x as usize] = blended(pixel, &place, lit, t);
+                    queue.sums[x as usize] = blended(pixel, &place, lit, t);
                 } else {
                     pixel.resolve_opaque(&place);
                     for (f, &share) in pixel.fragments.iter().zip(&pixel.shares) {
                         if share > 0.0 {
                             t.step(|| Step::Share { x, item: f.item, share });
-                            mixed.add(simd, lit, f.item, x as u32, share, [x, y]);
+                            queue.add(simd, lit, point_at(f.item, [x, y], share), None);
                         }
                     }
                 }
             }
             if pixel.background > 0.0 {
                 t.step(|| Step::Background { x, share: pixel.background });
-                mixed.sums[x as usize] += behind * pixel.background;
+                queue.sums[x as usize] += behind * pixel.background;
             }
             x += 1;
         }
-        Mixed::flush(simd, mixed, lit);
+        PointQueue::flush(simd, queue, lit);
     }
+}
+
+/// A point of an item at a pixel of a row, whose sums are numbered by columns.
+fn point_at(item: u32, at: [i32; 2], weight: f32) -> ShadingPoint {
+    ShadingPoint { item, at, pixel: at[0] as u32, weight }
 }
 
 /// Makes a part of a row; says whether there was room for its fragments.

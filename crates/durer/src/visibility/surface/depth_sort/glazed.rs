@@ -1,7 +1,7 @@
 //! Blended surfaces on their way over what was painted before: painter's order does the sorting.
 
 use crate::math::Vec4;
-use crate::shade::color::premultiply;
+use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::target::Framebuffer;
 use crate::visibility::surface::background::background_rows;
 use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
@@ -58,7 +58,7 @@ impl<'a> Glazed<'a> {
         write(&self.opaque, self.lighting, self.look, &mut colors);
         for (color, sum) in colors.color.data_mut().iter_mut().zip(&self.sums) {
             if let Some(sum) = sum {
-                *color = crate::visibility::surface::mixed::encode(*sum);
+                *color = encode_premultiplied(*sum);
             }
         }
         framebuffer.color = colors.color;

@@ -1,47 +1,102 @@
 //! Normals that were found before anybody asked for them by items: where triangles were sampled while they were set up.
+//!
+//! Where pixels have one sample each has room for a normal of its own; where they have four, the samples of a pixel share
+//! those that were found.
 
 use crate::shade::lane::Vec3Lane;
 use crate::target::NO_ITEM;
-use crate::visibility::surface::gather::columns;
+use crate::visibility::surface::gather::{Gathered, columns};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, mask32x8, mask32x16, u32x8, u32x16};
+use fearless_simd::{Simd, f32x4, f32x16, i32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16};
 
-/// Normals at the pixels of a tile, of the side that is seen, settled, of any length.
+/// Normals at the samples of a tile, of the side that is seen, settled, of any length.
 pub struct KnownNormals {
     any: bool,
-    /// Whose normal each pixel has here; [`NO_ITEM`] where there is none.
+    /// Whose normal each sample has here; [`NO_ITEM`] where there is none.
     items: Vec<u32>,
-    /// The normals, and a number that means nothing.
+    /// Where pixels have several samples: which of the normals each has.
+    places: Vec<u32>,
+    /// The normals, and a number that means nothing: by pixel where pixels have one sample.
     normals: Vec<[f32; 4]>,
+    /// Samples of a pixel.
+    samples: usize,
 }
 
 /// Which of sixteen pixels' normals are known, and the normals.
 pub type Known<S> = (mask32x16<S>, Vec3Lane<f32x16<S>>);
 
 impl KnownNormals {
-    /// Room for so many pixels.
-    pub fn new(pixels: usize) -> Self {
-        Self { any: false, items: vec![NO_ITEM; pixels], normals: vec![[0.0; 4]; pixels] }
+    /// Makes room for so many pixels of one sample or four, and none of other pixels, of which nothing is known.
+    pub fn new(pixels: usize, samples: usize) -> Self {
+        let (rooms, of_pixels) = match samples {
+            1 => (pixels, pixels),
+            4 => (4 * pixels, 0),
+            _ => (0, 0),
+        };
+        let (items, normals) = (vec![NO_ITEM; rooms], vec![[0.0; 4]; of_pixels]);
+        Self { any: false, items, places: vec![0; rooms - of_pixels], normals, samples }
     }
 
     /// Forgets all.
     pub fn clear(&mut self) {
         if std::mem::take(&mut self.any) {
             self.items.fill(NO_ITEM);
+            if self.samples > 1 {
+                self.normals.clear();
+            }
         }
     }
 
-    /// Sets the normal of an item at a pixel, and a number that means nothing; NaN where it is not known.
+    /// Sets the normal of an item at a pixel of one sample; NaN where it is not known.
     #[inline(always)]
-    pub fn set(&mut self, pixel: usize, item: u32, normal: [f32; 4]) {
+    pub fn set(&mut self, pixel: usize, item: u32, [x, y, z]: [f32; 3]) {
         self.any = true;
-        self.items[pixel] = if normal[0].is_nan() { NO_ITEM } else { item };
-        self.normals[pixel] = normal;
+        self.items[pixel] = if x.is_nan() { NO_ITEM } else { item };
+        self.normals[pixel] = [x, y, z, 0.0];
+    }
+
+    /// The same at those of a pixel's four samples where all bits are set.
+    #[inline(always)]
+    pub fn set_four<S: Simd>(
+        &mut self,
+        simd: S,
+        (pixel, seen): (usize, i32x4<S>),
+        item: u32,
+        [x, y, z]: [f32; 3],
+    ) {
+        if x.is_nan() {
+            // What is there is of other items, and so not taken for that of this one.
+            return;
+        }
+        self.any = true;
+        let (seen, place): (u32x4<S>, u32) = (seen.bitcast(), self.normals.len() as u32);
+        self.normals.push([x, y, z, 0.0]);
+        for (of_pixel, new) in [(&mut self.items, item), (&mut self.places, place)] {
+            let of_pixel = &mut of_pixel[4 * pixel..4 * pixel + 4];
+            let old = u32x4::from_slice(simd, of_pixel);
+            (old ^ ((old ^ new) & seen)).store_slice(of_pixel);
+        }
     }
 
     /// Whether there are any.
     pub fn any(&self) -> bool {
         self.any
+    }
+
+    /// Returns the normal of an item at a sample, counted through the pixels, if it is known there.
+    #[inline(always)]
+    pub fn of_sample(&self, sample: usize, item: u32) -> Option<&[f32; 4]> {
+        if !self.any || self.items[sample] != item {
+            return None;
+        }
+        let place = if self.samples == 1 { sample } else { self.places[sample] as usize };
+        self.normals.get(place)
+    }
+
+    /// Returns which of sixteen samples side by side show an item whose normal is known.
+    #[inline(always)]
+    pub fn of_sixteen<S: Simd>(&self, simd: S, sample: usize, shown: u32x16<S>) -> mask32x16<S> {
+        shown.simd_eq(u32x16::from_slice(simd, &self.items[sample..sample + 16]))
     }
 
     /// Of eight pixels in a row those whose normals of the items that they show are known.
@@ -61,6 +116,9 @@ impl KnownNormals {
         if !self.any {
             return None;
         }
+        if self.samples > 1 {
+            return self.of_first_samples(simd, [first, second], shown);
+        }
         let above = u32x8::from_slice(simd, &self.items[first..first + 8]);
         let below = u32x8::from_slice(simd, &self.items[second..second + 8]);
         let none = u32x16::splat(simd, NO_ITEM);
@@ -71,5 +129,26 @@ impl KnownNormals {
         let (above, below) = (&self.normals[first..first + 8], &self.normals[second..second + 8]);
         let [x, y, z, _] = columns(simd, above.as_flattened(), below.as_flattened());
         Some((known, Vec3Lane::new(x, y, z)))
+    }
+
+    /// [`Self::of_patch`] by the first samples of the pixels.
+    #[inline(always)]
+    fn of_first_samples<S: Simd>(
+        &self,
+        simd: S,
+        places: [usize; 2],
+        shown: u32x16<S>,
+    ) -> Option<Known<S>> {
+        let (shown, mut normals): ([u32; 16], _) = (shown.into(), Gathered::default());
+        let mut known = [0; 16];
+        for (lane, &item) in shown.iter().enumerate().filter(|(_, item)| **item != NO_ITEM) {
+            let pixel = places[lane / 8] + lane % 8;
+            if let Some(normal) = self.of_sample(self.samples * pixel, item) {
+                normals.set(lane, f32x4::from_slice(simd, normal));
+                known[lane] = 1;
+            }
+        }
+        let known = u32x16::from_slice(simd, &known).simd_ne(u32x16::splat(simd, 0));
+        known.any_true().then(|| (known, normals.vectors(simd)))
     }
 }

@@ -1,62 +1,137 @@
-//! Items at pixels from anywhere, that are lit when there are enough of them.
+//! Points of items from anywhere in a picture: lit when there are enough of them, and added to the pixels that show them.
 
 use super::Lit;
+use crate::math::Vec4;
 use crate::shade::shade_points;
-use fearless_simd::Simd;
+use crate::visibility::surface::gather::Gathered;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x4};
+use fearless_simd_macros::simd;
 
-/// Whether an item has been queued.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Queued {
-    /// It has.
-    Done,
-    /// Not yet: what waits is of another run and has to be shaded first.
-    OtherRun,
-    /// Its pixels have to be shaded one by one.
-    Never,
+/// As many points wait as are lit together.
+const LANES: usize = 16;
+
+/// A point of an item, seen at the centre of a pixel.
+#[derive(Debug, Clone, Copy)]
+pub struct ShadingPoint {
+    /// The item.
+    pub item: u32,
+    /// The pixel on the screen.
+    pub at: [i32; 2],
+    /// The number of the pixel whose sum the colour is added to.
+    pub pixel: u32,
+    /// How much the colour weighs there.
+    pub weight: f32,
 }
 
-/// Up to so many pixels wait.
-pub const QUEUE: usize = 16;
-
-/// Pixels of one plain run.
-#[derive(Default)]
-pub struct Queue {
-    items: [u32; QUEUE],
-    pixels: [[i32; 2]; QUEUE],
-    /// How many pixels there are.
-    pub count: usize,
-    /// The first item of their run.
+/// The points of one plain run that wait to be lit, and the sums of the colours of pixels so far.
+pub struct PointQueue {
+    /// The pixels that were begun, for a caller that needs to find them again.
+    pub pixels: Vec<u32>,
+    /// Linear, premultiplied; by pixel.
+    pub sums: Vec<Vec4>,
+    count: usize,
+    /// The first item of the run.
     first_item: u32,
+    items: [u32; LANES],
+    at: [[i32; 2]; LANES],
+    /// Where each colour goes, and how much it weighs there.
+    shares: [(u32, f32); LANES],
+    /// The points whose normals are in `normals`, as bits.
+    known: u64,
+    normals: Gathered,
 }
 
-impl Lit<'_> {
-    /// Adds a pixel of an item to a queue that is not full.
-    #[inline(always)]
-    pub fn queue(&mut self, item: u32, at: [i32; 2], queue: &mut Queue) -> Queued {
-        let info = self.run_info(item);
-        if !info.plain {
-            return Queued::Never;
+impl PointQueue {
+    /// Makes an empty queue for pixels that are numbered from 0.
+    pub fn new(pixels: usize) -> Self {
+        Self {
+            pixels: Vec::new(),
+            sums: vec![Vec4::ZERO; pixels],
+            count: 0,
+            first_item: 0,
+            items: [0; LANES],
+            at: [[0; 2]; LANES],
+            shares: [(0, 0.0); LANES],
+            known: 0,
+            normals: Gathered::default(),
         }
-        if queue.count > 0 && queue.first_item != info.first_item {
-            return Queued::OtherRun;
-        }
-        queue.first_item = info.first_item;
-        let place = queue.count % QUEUE;
-        (queue.items[place], queue.pixels[place]) = (item, at);
-        queue.count += 1;
-        Queued::Done
     }
 
-    /// Linear red, green and blue of the pixels that [`Self::queue`] has added.
+    /// Begins a pixel, to which nothing has been added yet.
     #[inline(always)]
-    pub fn shade_queue<S: Simd>(&mut self, simd: S, queue: &Queue) -> [[f32; QUEUE]; 3] {
-        let info = self.run_info(queue.first_item);
-        let items = &queue.items[..queue.count.min(QUEUE)];
-        items.iter().for_each(|&item| self.expect(item));
-        self.make_ready();
-        let (there, pixels) = ((1 << items.len()) - 1, &queue.pixels);
-        let view = self.sight.towards_eye_of(simd, pixels);
-        let points = self.points_by_pixel(simd, info.run, &queue.items, there, (pixels, view));
-        shade_points(simd, &points, info.material, self.shared.lights, info.shading)
+    pub fn begin(&mut self, pixel: u32) {
+        self.pixels.push(pixel);
+        self.sums[pixel as usize] = Vec4::ZERO;
+    }
+
+    /// Adds a colour's share of a pixel.
+    #[inline(always)]
+    pub fn add_color(&mut self, pixel: u32, color: Vec4, weight: f32) {
+        self.sums[pixel as usize] += color * weight;
+    }
+
+    /// Adds a point of an item, which is lit now or at the latest by [`Self::flush`]; its normal is given where it is
+    /// known, settled, and all that lighting asks for.
+    #[inline(always)]
+    pub fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        lit: &mut Lit<'_>,
+        point: ShadingPoint,
+        normal: Option<&[f32; 4]>,
+    ) {
+        let info = lit.run_info(point.item);
+        if !info.plain {
+            let color = lit.color(point.item, point.at[0], point.at[1]);
+            return self.add_color(point.pixel, color.truncate().extend(1.0), point.weight);
+        }
+        if self.count > 0 && self.first_item != info.first_item {
+            Self::flush(simd, self, lit);
+        }
+        self.first_item = info.first_item;
+        let lane = self.count % LANES;
+        self.items[lane] = point.item;
+        self.at[lane] = point.at;
+        self.shares[lane] = (point.pixel, point.weight);
+        if let Some(normal) = normal {
+            self.normals.set(lane, f32x4::from_slice(simd, normal));
+            self.known |= 1 << lane;
+        }
+        self.count += 1;
+        if self.count == LANES {
+            Self::flush(simd, self, lit);
+        }
+    }
+
+    /// Lights the points that wait.
+    #[simd]
+    pub fn flush<S: Simd>(simd: S, this: &mut Self, lit: &mut Lit<'_>) {
+        if this.count == 0 {
+            return;
+        }
+        let [r, g, b] = this.shade(simd, lit);
+        for (i, (pixel, weight)) in this.shares.into_iter().take(this.count).enumerate() {
+            this.add_color(pixel, Vec4::new(r[i], g[i], b[i], 1.0), weight);
+        }
+        (this.count, this.known) = (0, 0);
+    }
+
+    /// Returns linear red, green and blue of the points that wait.
+    #[inline(always)]
+    fn shade<S: Simd>(&self, simd: S, lit: &mut Lit<'_>) -> [[f32; LANES]; 3] {
+        let info = lit.run_info(self.first_item);
+        let there = (1 << self.count.min(LANES)) - 1;
+        let mut unknown = there & !self.known;
+        while unknown != 0 {
+            lit.expect(self.items[unknown.trailing_zeros() as usize % LANES]);
+            unknown &= unknown - 1;
+        }
+        lit.make_ready();
+        let view = lit.sight.towards_eye_of(simd, &self.at);
+        let known = (self.known, self.normals);
+        let points =
+            lit.points_by_pixel(simd, info.run, &self.items, (there, known), (&self.at, view));
+        shade_points(simd, &points, info.material, lit.shared.lights, info.shading)
     }
 }

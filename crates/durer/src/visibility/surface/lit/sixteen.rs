@@ -4,14 +4,11 @@ use super::known::Known;
 use super::{Lit, LookedUp, RunInfo};
 use crate::math::{Vec3, Vec4};
 use crate::shade::lane::Vec3Lane;
-use crate::shade::{
-    Faces, Points, PreparedMaterial, Sample, Samples, Shading, TexCoords, shade_points,
-};
+use crate::shade::{Faces, Points, PreparedMaterial, Sample, Samples, Shading, shade_points};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::gather::Gathered;
 use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::patch::Patch;
-use crate::visibility::surface::textured::{CoordsOfOne, GatheredCoords};
 use crate::visibility::surface::triangles::Part;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
@@ -99,26 +96,6 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// Linear red, green and blue of one item at the pixels of a patch; `None` where its material asks for more than
-    /// [`shade_points`].
-    #[inline(always)]
-    pub fn colors_of_one_x16<S: Simd>(
-        &mut self,
-        simd: S,
-        item: u32,
-        patch: Patch,
-    ) -> Option<[[f32; 16]; 3]> {
-        let info = self.run_info(item);
-        if !info.plain {
-            return None;
-        }
-        let view = self.sight.towards_eye_x16(simd, patch);
-        let shown = (u32x16::splat(simd, item), &[item; 16]);
-        let points = self.points_by_triangle(simd, info.run, shown, 0xffff, (patch, view));
-        let lights = self.shared.lights;
-        Some(shade_points(simd, &points, info.material, lights, info.shading))
-    }
-
     /// Colours as in [`Self::colors_x16`] of the pixels of a set, all of a run whose textures are looked up together.
     #[inline(always)]
     fn looked_up_x16<S: Simd>(
@@ -182,58 +159,6 @@ impl<'a> Lit<'a> {
         })
     }
 
-    /// The texture coordinates at the pixels of a set, all of one run.
-    #[inline(always)]
-    fn coords_by_pixel<S: Simd>(
-        &mut self,
-        simd: S,
-        (run, LookedUp { coords, changing, .. }): (usize, LookedUp<'a>),
-        items: &[u32; 16],
-        mut left: u64,
-        patch: Patch,
-    ) -> TexCoords<f32x16<S>> {
-        let mut gathered = GatheredCoords::default();
-        while left != 0 {
-            let i = left.trailing_zeros() as usize % 16;
-            left &= left - 1;
-            let t = self.triangles.get(items[i], run);
-            gathered.set(i, t, patch.pixel(i), t.corners.map(|c| coords[c as usize]));
-        }
-        gathered.coordinates(simd, changing)
-    }
-
-    /// The same: at all sixteen pixels of each triangle, of which those that show it are taken. Pixels not in
-    /// the set have coordinates near to the others'.
-    #[inline(always)]
-    fn coords_by_triangle<S: Simd>(
-        &mut self,
-        simd: S,
-        (run, LookedUp { coords, changing, .. }): (usize, LookedUp<'a>),
-        (shown, items): (u32x16<S>, &[u32; 16]),
-        there: u64,
-        patch: Patch,
-    ) -> TexCoords<f32x16<S>> {
-        let first = items[there.trailing_zeros() as usize % 16];
-        let t = self.triangles.get(first, run);
-        let corners = t.corners.map(|c| coords[c as usize]);
-        let mut all = CoordsOfOne::new(simd, t, corners).at(simd, patch, changing);
-        let mut left = there & !shown.simd_eq(u32x16::splat(simd, first)).to_bitmask();
-        while left != 0 {
-            let item = items[left.trailing_zeros() as usize % 16];
-            let same = shown.simd_eq(u32x16::splat(simd, item));
-            left &= !same.to_bitmask();
-            let t = self.triangles.get(item, run);
-            let corners = t.corners.map(|c| coords[c as usize]);
-            let of_t = CoordsOfOne::new(simd, t, corners).at(simd, patch, changing);
-            for k in 0..2 {
-                all.uv[k] = same.select(of_t.uv[k], all.uv[k]);
-                all.ddx[k] = same.select(of_t.ddx[k], all.ddx[k]);
-                all.ddy[k] = same.select(of_t.ddy[k], all.ddy[k]);
-            }
-        }
-        all
-    }
-
     /// The normals of an item, where they are settled and nobody asks for more.
     #[inline(always)]
     pub(super) fn settled_plane(&mut self, item: u32, run: usize) -> Option<&NormalPlane> {
@@ -269,7 +194,8 @@ impl<'a> Lit<'a> {
         if patch.shows_few(simd, shown.0) {
             self.points_by_triangle(simd, run, shown, there, (patch, view))
         } else {
-            self.points_by_pixel(simd, run, shown.1, there, (&patch.pixels(), view))
+            let none = (0, Gathered::default());
+            self.points_by_pixel(simd, run, shown.1, (there, none), (&patch.pixels(), view))
         }
     }
 
@@ -302,19 +228,19 @@ impl<'a> Lit<'a> {
         points
     }
 
-    /// The points: each gathered from its triangle.
+    /// The points, each gathered from its triangle; of some, as bits, the normals may be known, which are settled then.
     #[inline(always)]
     pub(super) fn points_by_pixel<S: Simd>(
         &mut self,
         simd: S,
         run: usize,
         items: &[u32; 16],
-        there: u64,
+        (there, (known, mut normals)): (u64, (u64, Gathered)),
         (pixels, view): (&[[i32; 2]; 16], Vec3Lane<f32x16<S>>),
     ) -> Points<f32x16<S>> {
-        let (mut normals, mut positions) = (Gathered::default(), Gathered::default());
+        let mut positions = Gathered::default();
         let (with_positions, with_shadows) = (self.with_positions(), self.with_shadows());
-        let (mut faces, mut unsettled, mut left) = (Gathered::default(), 0, there);
+        let (mut faces, mut unsettled, mut left) = (Gathered::default(), 0, there & !known);
         while left != 0 {
             let i = left.trailing_zeros() as usize % 16;
             left &= left - 1;

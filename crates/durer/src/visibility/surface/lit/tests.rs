@@ -121,6 +121,13 @@ fn middle(lit: &mut Lit<'_>, item: u32) -> [i32; 2] {
     [at.x / at.w, at.y / at.w].map(|v| v as i32)
 }
 
+/// An item at all pixels of a patch.
+fn of_one<S: Simd>(simd: S, lit: &mut Lit<'_>, item: u32, patch: Patch) -> [[f32; 16]; 4] {
+    let mut colors = [[0.0; 16]; 4];
+    Lit::colors_x16(simd, lit, u32x16::splat(simd, item), patch, &mut colors);
+    colors
+}
+
 /// What pixels show whose samples show several items, as the sum of these by their weights; gives for how many patches
 /// that was found.
 fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
@@ -134,7 +141,7 @@ fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> 
         let [x, y] = middle(lit, kinds[0]);
         let patch = Patch::block([x - numbers.below(8) as i32, y]);
         let mut samples = [[0; 16]; 4];
-        let colors = kinds.map(|item| lit.colors_of_one_x16(simd, item, patch).expect("plain"));
+        let colors = kinds.map(|item| of_one(simd, lit, item, patch));
         for pixel in 0..16 {
             let (a, b) = (numbers.below(3) as usize, numbers.below(3) as usize);
             let of_b = numbers.below(5) as usize;
@@ -169,7 +176,7 @@ fn light_samples<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> 
 fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usize {
     let (mut batch, mut settled) = (Batch::default(), 0);
     let (mut codes, mut expected) = ([0; 16 * 64], [0; 16 * 64]);
-    let mut known = KnownNormals::new(16 * 64);
+    let mut known = KnownNormals::new(16 * 64, 1);
     for k in 0..64 {
         // As many triangles as a patch may show, of one run or of both.
         let (kinds, runs) = (1 + numbers.below(12), 1 + numbers.below(2));
@@ -211,8 +218,8 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                     let normals = lit.triangle(items[i]).normals;
                     // Of some the normals are known, of others that they are not, or those of another.
                     let normal = match numbers.below(3) {
-                        0 => [f32::NAN; 4],
-                        _ => normals.at([x, y]).extend(0.0).to_array(),
+                        0 => [f32::NAN; 3],
+                        _ => normals.at([x, y]).to_array(),
                     };
                     match numbers.below(4) {
                         0 => known.set(16 * k + i, items[i] + 1, normal),
@@ -221,23 +228,26 @@ fn light_all<S: Simd>(simd: S, lit: &mut Lit<'_>, numbers: &mut Numbers) -> usiz
                     }
                 }
                 // The whole patch of its triangle.
-                let of_one = lit.colors_of_one_x16(simd, items[i], patch).expect("plain");
-                let of_one = [of_one[0], of_one[1], of_one[2], [1.0; 16]];
+                let of_one = of_one(simd, lit, items[i], patch);
                 let mut only = [NO_ITEM; 16];
                 only[i] = items[i];
                 assert_eq!(bits(&of_one, &only), bits(&one_by_one, &only));
             }
             assert_eq!(bits(&together, &items), bits(&one_by_one, &items), "{items:?} {patch:?}");
-            let mut queue = Queue::default();
+            let mut queue = PointQueue::new(16);
             for i in (0..16).filter(|&i| items[i] != NO_ITEM) {
-                if lit.queue(items[i], patch.pixel(i), &mut queue) == Queued::OtherRun {
-                    continue;
-                }
-                let queued = lit.shade_queue(simd, &queue);
-                let last = queue.count - 1;
-                let color = [0, 1, 2].map(|k| queued[k][last].to_bits());
-                assert_eq!(color, [0, 1, 2].map(|k| one_by_one[k][i].to_bits()));
+                let (item, at) = (items[i], patch.pixel(i));
+                queue.begin(i as u32);
+                let point = ShadingPoint { item, at, pixel: i as u32, weight: 1.0 };
+                let normals = lit.triangle(item).normals;
+                let is_known = normals.settled && !lit.with_positions() && numbers.below(2) == 0;
+                let normal = normals.at(at).extend(0.0).to_array();
+                queue.add(simd, lit, point, is_known.then_some(&normal));
             }
+            PointQueue::flush(simd, &mut queue, lit);
+            let sums = queue.pixels.iter().map(|&i| queue.sums[i as usize].to_array());
+            let sums: Bits = sums.map(|[r, g, b, _]| [r, g, b].map(f32::to_bits)).collect();
+            assert_eq!(sums, bits(&one_by_one, &items));
             if patch == Patch::block(at) {
                 let shown = (shown, &known);
                 batch.light(simd, lit, shown, patch, [16 * k, 16 * k + 8], &mut codes);

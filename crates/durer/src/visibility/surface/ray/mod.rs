@@ -18,13 +18,13 @@ mod world;
 
 use crate::info::{Class, Info};
 use crate::shade::PreparedLights;
+use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::Samples;
 use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::layers::mean;
 use crate::visibility::surface::lit::Lighting;
-use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::Coverage;
 use crate::visibility::surface::visible::{
@@ -268,6 +268,6 @@ impl Caster<'_> {
         report: &mut impl FnMut(RayKind, u32, Option<u32>),
     ) -> [u8; 4] {
         let behind = background_at(&self.options.look, self.input.view.height(), at[1]);
-        encode(mean(&mut stacks, |stack| whitted.at_pixel(stack, at, behind, report)))
+        encode_premultiplied(mean(&mut stacks, |stack| whitted.at_pixel(stack, at, behind, report)))
     }
 }

@@ -21,8 +21,8 @@ pub struct Rules {
     pub behind: Behind,
     /// Whether these are left out.
     pub cull_back: bool,
-    /// Whether small ones are sampled at once, at the centres of pixels, where alone samples are then.
-    pub sampled: bool,
+    /// The samples, as offsets from pixels' centres, at which small ones are sampled at once; none where they are not.
+    pub sampled: &'static [[i32; 2]],
 }
 
 /// Eight triangles after set-up. Bit i of a mask is triangle i's.
@@ -158,10 +158,10 @@ pub fn set_up<S: Simd>(
 
     let negative = narrowed(simd, area).simd_lt(simd.splat_f32x8(0.0));
     let (b, c) = (c.where_set(negative, b), b.where_set(negative, c));
-    if rules.sampled {
+    if !rules.sampled.is_empty() {
         let small = (columns.is_small() & rows.is_small()).to_bitmask() & eight.seen;
         if small != 0 {
-            cover(simd, [a, b, c], [columns.first, rows.first], rules.size, &mut eight.sampled);
+            cover(simd, [a, b, c], [columns.first, rows.first], rules, &mut eight.sampled);
             eight.sampled.which &= small;
             eight.seen &= !small | eight.sampled.which;
             if eight.seen == 0 {

@@ -8,20 +8,21 @@
 //! (1978); the guard band as in graphics hardware. Cost: O(vertices + triangles).
 
 mod eight;
+mod part;
 mod runs;
 mod sampled;
+mod triangle;
 mod vertex;
 
 pub(crate) use eight::EIGHT;
 pub use runs::{Coverage, Run, runs};
 pub use sampled::Sampled;
 pub(crate) use sampled::{PIXELS, place_in_box};
+pub use triangle::ScreenTriangle;
 pub(crate) use vertex::ScreenVertex;
 
 use crate::clip::volume::{ClipVertex, clip_polygon, clip_segment};
 use crate::math::{DVec2, Vec3};
-use crate::raster::fixed::{SUBPIXEL_BITS, first_center};
-use crate::raster::triangle::SnappedTriangle;
 use crate::scene::{Mesh, Scene, Topology};
 use crate::simd::Level;
 use crate::trace::NoTrace;
@@ -31,67 +32,9 @@ use eight::{Eight, Rules};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, dispatch, u32x16};
 use fearless_simd_macros::simd;
+use part::Part;
 use std::ops::Range;
 use vertex::{Behind, Transform};
-
-/// A triangle on the screen: snapped vertices and the plane of its depth.
-///
-/// # Guarantees
-/// Twice the area in grid units is above 0 in the order of the vertices (clockwise on the screen,
-/// whatever way the face is turned), all numbers are finite, coordinates lie in the guard band.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScreenTriangle {
-    /// x of the vertices, 24.8 fixed point, pixels.
-    pub x: [i32; 3],
-    /// y of the vertices, 24.8 fixed point, pixels, downwards.
-    pub y: [i32; 3],
-    /// Depth at the centre of the pixel that holds vertex 0.
-    pub depth: f32,
-    /// Change of depth per pixel to the right.
-    pub depth_dx: f32,
-    /// Change of depth per pixel downwards.
-    pub depth_dy: f32,
-    /// Smallest depth of a vertex, at least 0.
-    pub depth_min: f32,
-    /// Largest depth of a vertex.
-    pub depth_max: f32,
-    /// Item index: the place of the triangle in the scene.
-    pub item: u32,
-}
-
-impl ScreenTriangle {
-    /// The pixel that holds vertex 0; depths are counted from its centre.
-    #[inline]
-    pub fn origin(&self) -> [i32; 2] {
-        [self.x[0] >> SUBPIXEL_BITS, self.y[0] >> SUBPIXEL_BITS]
-    }
-
-    /// The corners alone, for the rasterizers of triangles.
-    #[inline]
-    pub fn snapped(&self) -> SnappedTriangle {
-        let ([x0, x1, x2], [y0, y1, y2]) = (self.x, self.y);
-        SnappedTriangle::within_guard_band([[x0, y0], [x1, y1], [x2, y2]])
-    }
-
-    /// The depth at a point of the screen, `dx, dy` pixels from the centre of [`Self::origin`].
-    ///
-    /// Everyone who compares depths computes them by this formula, in this order of operations.
-    #[inline]
-    pub fn depth_at(&self, dx: f32, dy: f32) -> f32 {
-        let depth = self.depth + (self.depth_dx * dx + self.depth_dy * dy);
-        depth.max(self.depth_min).min(self.depth_max)
-    }
-
-    /// First and last column and row of pixels whose centres lie in the bounding box; `None` where
-    /// there are none.
-    #[inline]
-    pub fn pixel_bounds(&self, margin: i32) -> Option<[i32; 4]> {
-        let min = |v: &[i32; 3]| first_center(v[0].min(v[1]).min(v[2]) - margin);
-        let max = |v: &[i32; 3]| first_center(v[0].max(v[1]).max(v[2]) + margin + 1) - 1;
-        let bounds = [min(&self.x), min(&self.y), max(&self.x), max(&self.y)];
-        (bounds[0] <= bounds[2] && bounds[1] <= bounds[3]).then_some(bounds)
-    }
-}
 
 /// Counts of what happened to triangles.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -150,9 +93,10 @@ pub trait Sink {
     /// Takes one.
     fn take(&mut self, triangle: ScreenTriangle);
 
-    /// Whether small triangles are to be sampled at once, at the centres of pixels, and go to [`Self::take_sampled`].
-    fn takes_sampled(&self) -> bool {
-        false
+    /// Returns the samples, as offsets from pixels' centres in 1/256 pixel, at which small triangles are sampled at once
+    /// and go to [`Self::take_sampled`]; none where they are not.
+    fn takes_sampled(&self) -> &'static [[i32; 2]] {
+        &[]
     }
 
     /// Takes what those of eight triangles cover whose bits are set in `which`. Of each `primitive` gives the item and
@@ -315,7 +259,7 @@ impl<'a> Assembler<'a> {
         transform: Option<&Transform>,
         sink: &mut impl Sink,
     ) {
-        let (rules, mut eight) = (self.rules(transform, false), Eight::default());
+        let (rules, mut eight) = (self.rules(transform, &[]), Eight::default());
         let mut drawn = 0;
         for corners in triangles {
             let of = corners.each_ref().map(|v| [v; EIGHT]);
@@ -330,7 +274,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// What is without sides has no transform here.
-    fn rules(&self, transform: Option<&Transform>, sampled: bool) -> Rules {
+    fn rules(&self, transform: Option<&Transform>, sampled: &'static [[i32; 2]]) -> Rules {
         let size = [self.view.width(), self.view.height()];
         let behind = transform.map_or(Behind::Positive, Transform::behind);
         let cull_back = transform.is_some_and(|transform| transform.cull_back);
@@ -380,66 +324,6 @@ fn least_and_largest<S: Simd>(simd: S, numbers: &[u32]) -> (u32, u32) {
     let (low, high): ([u32; 16], [u32; 16]) = (low.into(), high.into());
     let least = low.iter().chain(rest).fold(u32::MAX, |least, &v| least.min(v));
     (least, high.iter().chain(rest).fold(0, |largest, &v| largest.max(v)))
-}
-
-/// Triangles of a run, and their vertices.
-struct Part<'p> {
-    mesh: &'p Mesh,
-    transform: &'p Transform,
-    /// Triangles of the mesh.
-    triangles: Range<u32>,
-    /// The item of the first.
-    first_item: u32,
-    vertices: &'p [ScreenVertex],
-    /// Where triangles share vertices: the index of the first of `vertices` in the mesh, and the corners.
-    shared: Option<(u32, &'p [[u32; 3]])>,
-}
-
-impl Part<'_> {
-    /// Where the vertices of the i-th triangle are.
-    #[inline(always)]
-    fn corners(&self, i: usize) -> [usize; 3] {
-        match self.shared {
-            Some((first, corners)) => corners[i].map(|corner| (corner - first) as usize),
-            None => [3 * i, 3 * i + 1, 3 * i + 2],
-        }
-    }
-
-    /// The vertices of eight triangles from the i-th on, by corner. Where there are fewer than eight left, the last stands
-    /// for those missing.
-    #[inline(always)]
-    fn eight(&self, i: usize) -> [[&ScreenVertex; EIGHT]; 3] {
-        let mut vertices = [[&self.vertices[0]; EIGHT]; 3];
-        let [first, second, third] = &mut vertices;
-        let lanes = first.iter_mut().zip(second).zip(third);
-        let eight =
-            self.shared.and_then(|(first, corners)| Some((first, corners[i..].first_chunk()?)));
-        if let Some((first, eight)) = eight {
-            let eight: &[[u32; 3]; EIGHT] = eight;
-            for (((a, b), c), of) in lanes.zip(eight) {
-                *a = &self.vertices[(of[0] - first) as usize];
-                *b = &self.vertices[(of[1] - first) as usize];
-                *c = &self.vertices[(of[2] - first) as usize];
-            }
-        } else {
-            for (lane, ((a, b), c)) in lanes.enumerate() {
-                let of = self.corners((i + lane).min(self.triangles.len() - 1));
-                (*a, *b, *c) =
-                    (&self.vertices[of[0]], &self.vertices[of[1]], &self.vertices[of[2]]);
-            }
-        }
-        vertices
-    }
-
-    /// The item of the i-th triangle, and its vertices in the mesh.
-    #[inline(always)]
-    fn primitive(&self, i: usize) -> (u32, [u32; 3]) {
-        let corners = match self.shared {
-            Some((_, corners)) => corners[i],
-            None => self.mesh.triangle(self.triangles.start as usize + i),
-        };
-        (self.first_item + i as u32, corners)
-    }
 }
 
 /// Sets up triangles, eight at a time; those that must be cut first one by one.

@@ -5,7 +5,7 @@
 //! SIGGRAPH 1987; here they are sampled by the same integers as other triangles, eight side by side, in a few
 //! operations each.
 
-use super::eight::{Corner, EIGHT};
+use super::eight::{Corner, EIGHT, Rules};
 use crate::raster::fixed::{HALF_PIXEL, SUBPIXEL_BITS, SUBPIXELS};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x8, mask32x8, u32x8};
@@ -13,20 +13,23 @@ use fearless_simd::{Simd, i32x8, mask32x8, u32x8};
 /// Pixels on a side of the boxes of triangles that are sampled at once.
 const SIDE: i32 = 4;
 
+/// Pixels have at most as many samples where triangles are sampled at once.
+const MOST_SAMPLES: usize = 4;
+
 /// Pixels in such a box, row by row.
 pub const PIXELS: usize = (SIDE * SIDE) as usize;
 
 /// What the small ones of eight triangles cover, by pixel of their boxes.
 #[derive(Default)]
 pub struct Sampled {
-    /// Those that cover any pixel's centre on the screen, as bits.
+    /// Those that cover any sample on the screen, as bits.
     pub which: u64,
     /// Those whose backs are seen, as bits.
     pub from_behind: u64,
     /// Columns and rows of the upper left pixels of their boxes, by triangle.
     pub first: [[i32; EIGHT]; 2],
-    /// Which pixels of its box each covers, as bits.
-    pub covered: [u32; EIGHT],
+    /// By sample which pixels of its box each covers, as bits.
+    pub covered: [[u32; EIGHT]; MOST_SAMPLES],
     /// Columns and rows of the pixels that depths are counted from.
     pub origin: [[i32; EIGHT]; 2],
     /// The depths at the centres of these, their changes per pixel, the least and the largest.
@@ -73,46 +76,69 @@ pub fn place_in_box(pixel: usize) -> [i32; 2] {
     [pixel as i32 % SIDE, pixel as i32 / SIDE]
 }
 
-/// Finds which pixels of their boxes triangles cover, whose corners go clockwise. Of those whose boxes are larger
-/// it finds nothing that means anything.
+/// Finds which pixels of their boxes triangles cover at each of the given samples, whose corners go clockwise. Of those
+/// whose boxes are larger it finds nothing that means anything.
 #[inline(always)]
 pub fn cover<S: Simd>(
     simd: S,
     corners: [Corner<S>; 3],
     first: [i32x8<S>; 2],
-    size: [u32; 2],
+    rules: &Rules,
     sampled: &mut Sampled,
 ) {
     let x = (first[0] << SUBPIXEL_BITS) + HALF_PIXEL;
     let y = (first[1] << SUBPIXEL_BITS) + HALF_PIXEL;
-    let mut outside = [i32x8::splat(simd, 0); PIXELS];
-    for i in 0..3 {
+    let mut edges = [Edge { at: x, dx: x, dy: x }; 3];
+    for (i, edge) in edges.iter_mut().enumerate() {
         let (from, to) = (&corners[i], &corners[(i + 1) % 3]);
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         // −1 where the edge is a top or left one, whose points belong to the triangle: dy < 0, or it is 0 and dx > 0. A
         // small triangle's edges are shorter than 2¹¹.
         let top_left = ((dy << 11u32) - dx) >> 31u32;
-        let mut row = dx * (y - from.y) - dy * (x - from.x) - (top_left + 1);
-        let (right, down) = (dy * -SUBPIXELS, dx * SUBPIXELS);
+        *edge = Edge { at: dx * (y - from.y) - dy * (x - from.x) - (top_left + 1), dx, dy };
+    }
+    let on_screen = on_screen(simd, first, rules.size);
+    let mut any = i32x8::splat(simd, 0);
+    for (offset, to) in rules.sampled.iter().zip(&mut sampled.covered) {
+        let covered = covered_at(simd, &edges, *offset) & on_screen;
+        any |= covered;
+        covered.bitcast::<u32x8<S>>().store_slice(to);
+    }
+    sampled.which = any.simd_ne(i32x8::splat(simd, 0)).to_bitmask();
+    first[0].store_slice(&mut sampled.first[0]);
+    first[1].store_slice(&mut sampled.first[1]);
+}
+
+/// An edge function of eight triangles at the centres of the first pixels of their boxes, at least 0 inside, and how the
+/// edge runs.
+#[derive(Clone, Copy)]
+struct Edge<S: Simd> {
+    at: i32x8<S>,
+    dx: i32x8<S>,
+    dy: i32x8<S>,
+}
+
+/// Which pixels of their boxes triangles cover at a sample that lies so far from pixels' centres, as bits.
+#[inline(always)]
+fn covered_at<S: Simd>(simd: S, edges: &[Edge<S>; 3], [right, down]: [i32; 2]) -> i32x8<S> {
+    let mut outside = [i32x8::splat(simd, 0); PIXELS];
+    for Edge { at, dx, dy } in edges {
+        let mut row = *at + *dx * down - *dy * right;
+        let (beside, below) = (*dy * -SUBPIXELS, *dx * SUBPIXELS);
         for pixels in outside.as_chunks_mut::<{ SIDE as usize }>().0 {
             let mut at = row;
             for pixel in pixels {
                 *pixel |= at;
-                at += right;
+                at += beside;
             }
-            row += down;
+            row += below;
         }
     }
     let mut covered = i32x8::splat(simd, 0);
     for (pixel, outside) in outside.into_iter().enumerate() {
         covered |= !(outside >> 31u32) & (1 << pixel);
     }
-    covered &= on_screen(simd, first, size);
-    let covered: u32x8<S> = covered.bitcast();
-    sampled.which = covered.simd_ne(u32x8::splat(simd, 0)).to_bitmask();
-    first[0].store_slice(&mut sampled.first[0]);
-    first[1].store_slice(&mut sampled.first[1]);
-    covered.store_slice(&mut sampled.covered);
+    covered
 }
 
 /// Which pixels of boxes lie on the screen, as bits; others may be set too.

@@ -4,6 +4,7 @@
 //! Most pixels ask for normals alone; then a [`NormalPlane`] is all that is made of a triangle.
 
 mod prepare;
+mod read;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +19,8 @@ use crate::visibility::surface::setup::Run;
 use fearless_simd::{Simd, dispatch};
 use prepare::{normal_planes, prepare, prepare_normals};
 
-pub use prepare::{NormalPlanes, Read};
+pub use prepare::NormalPlanes;
+pub use read::Read;
 
 /// What all triangles of a run share.
 #[derive(Debug, Clone, Copy)]

@@ -1,65 +1,15 @@
 //! Making eight primitives of a mesh ready, side by side.
 
+use super::read::{AtCorners, Corners, Read, Vectors, all_widened, at_corners};
 use super::{RunTransform, place};
 use crate::math::{DMat4, Vec3};
 use crate::scene::{Mesh, Topology};
 use crate::visibility::surface::attributes::VisibleTriangle;
-use crate::visibility::surface::gather::{
-    MAGIC, four_columns, low_bits, narrowed, transpose, widened,
-};
+use crate::visibility::surface::gather::{MAGIC, low_bits, narrowed, transpose};
 use crate::visibility::surface::normal_plane::NormalPlane;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4, f32x8, f64x8, i32x8, mask32x8};
+use fearless_simd::{Simd, f32x8, f64x8, i32x8, mask32x8};
 use fearless_simd_macros::simd;
-
-/// Of eight vectors, by axis.
-type Vectors<S> = [f32x8<S>; 3];
-
-/// Numbers of three corners of eight triangles, by corner.
-type Corners<S> = [f64x8<S>; 3];
-
-/// What eight triangles have at their corners, by corner.
-type AtCorners<S> = [Vectors<S>; 3];
-
-/// Positions and normals at the corners of eight primitives, as they are read from a mesh: before they are needed, for they
-/// have to be waited for.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Read {
-    /// By corner and primitive; the fourth numbers mean nothing.
-    positions: [[[f32; 4]; 8]; 3],
-    /// The same; without meaning where the mesh has none.
-    normals: [[[f32; 4]; 8]; 3],
-}
-
-impl Read {
-    /// Reads those of one.
-    #[inline(always)]
-    pub fn set(&mut self, lane: usize, mesh: &Mesh, corners: [u32; 3]) {
-        for (to, corner) in self.positions.iter_mut().zip(corners) {
-            to[lane] = mesh.positions[corner as usize].extend(0.0).to_array();
-        }
-        if !mesh.normals.is_empty() {
-            for (to, corner) in self.normals.iter_mut().zip(corners) {
-                to[lane] = mesh.normals[corner as usize].extend(0.0).to_array();
-            }
-        }
-    }
-}
-
-/// Side by side what was read.
-#[inline(always)]
-fn at_corners<S: Simd>(simd: S, read: &[[[f32; 4]; 8]; 3]) -> AtCorners<S> {
-    let mut at = [[simd.splat_f32x8(0.0); 3]; 3];
-    for (to, from) in at.iter_mut().zip(read) {
-        let mut rows = [simd.splat_f32x4(0.0); 8];
-        for (row, from) in rows.iter_mut().zip(from) {
-            *row = f32x4::from_slice(simd, from);
-        }
-        let [x, y, z, _] = four_columns(simd, rows);
-        *to = [x, y, z];
-    }
-    at
-}
 
 /// Makes the normals of eight primitives of a mesh ready; gives whether all are settled.
 #[simd]
@@ -138,17 +88,6 @@ pub(super) fn prepare<S: Simd>(
             row.store_slice(&mut kept[place(item, kept)].rows[i]);
         }
     }
-}
-
-/// The positions.
-#[inline(always)]
-fn all_widened<S: Simd>(simd: S, read: &Read) -> [Corners<S>; 3] {
-    let mut all = [[simd.splat_f64x8(0.0); 3]; 3];
-    let positions = at_corners(simd, &read.positions);
-    for (to, from) in all.as_flattened_mut().iter_mut().zip(positions.as_flattened()) {
-        *to = widened(simd, *from);
-    }
-    all
 }
 
 /// The mesh's normals at the corners, world axes, on the side of the front.

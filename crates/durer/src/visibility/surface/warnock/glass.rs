@@ -2,14 +2,13 @@
 
 use super::{BAND, Options, Solver, Step, pixel_mean};
 use crate::math::Vec4;
-use crate::shade::color::premultiply;
+use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{SampleGrid, Window};
 use crate::visibility::surface::input::{SurfaceInput, TriangleSet};
 use crate::visibility::surface::layers::{Layer, compose, mean, sort_layers};
 use crate::visibility::surface::lit::{Lighting, Lit};
-use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture::Picture;
 use crate::visibility::surface::visible::{Visible, background_at, nearer, pixels_of};
 
@@ -75,7 +74,7 @@ pub fn render(
             for (x, y) in (y0..y1).flat_map(|y| (0..x1).map(move |x| (x, y))) {
                 let behind = background_at(&options.look, input.view.height(), y);
                 let color = of_samples(visible, glass, &mut lit, grid, [x, y], behind);
-                framebuffer.color.set(x as u32, y as u32, encode(color));
+                framebuffer.color.set(x as u32, y as u32, encode_premultiplied(color));
             }
         });
     }

@@ -18,13 +18,13 @@ use crate::info::{Class, Info};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::PreparedLights;
+use crate::shade::color::encode_premultiplied;
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::cover::{Cover, Relation, SampleGrid, Window};
 use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::layers::{below_color, mean};
 use crate::visibility::surface::lit::{Lighting, Lit};
-use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::picture;
 use crate::visibility::surface::setup::{Coverage, ScreenTriangle};
 use crate::visibility::surface::visible::{
@@ -168,7 +168,7 @@ fn anti_aliased(
         let visible = solve(input, lighting, options.division, grid, window, t);
         for (x, y) in (top..bottom).flat_map(|y| (0..x1).map(move |x| (x, y))) {
             let behind = background_at(&options.look, input.view.height(), y);
-            let color = encode(pixel_mean(&visible, &mut lit, n, [x, y], behind));
+            let color = encode_premultiplied(pixel_mean(&visible, &mut lit, n, [x, y], behind));
             framebuffer.color.set(x as u32, y as u32, color);
         }
     }

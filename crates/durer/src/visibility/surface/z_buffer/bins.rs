@@ -55,9 +55,6 @@ pub fn jobs(runs: &[Run]) -> Vec<Job> {
     jobs
 }
 
-/// Triangles that touch fewer tiles are not asked whether one of them lies within: beside it are those of the corners.
-const FEWEST_TILES_OF_WALL: usize = 3;
-
 /// The triangles of one job and the tiles that they touch.
 pub struct Bins {
     /// What the job's triangles do with their fragments.
@@ -65,8 +62,6 @@ pub struct Bins {
     /// What happened on the way.
     pub counts: Counts,
     triangles: Vec<ScreenTriangle>,
-    /// Whether a tile may lie within one of them.
-    pub wide: bool,
     /// Of each tile which triangles touch it, in item order.
     touching: ByTile,
 }
@@ -104,7 +99,15 @@ impl Scratch {
 
 impl Bins {
     /// Sets up the triangles of a job and sorts them into tiles.
-    pub fn new(job: &Job, lighting: &Lighting<'_>, filter: Filter, scratch: &mut Scratch) -> Self {
+    ///
+    /// Small opaque ones are sampled at once where `early` says at which samples, one or four.
+    pub fn new(
+        job: &Job,
+        lighting: &Lighting<'_>,
+        filter: Filter,
+        early: &'static [[i32; 2]],
+        scratch: &mut Scratch,
+    ) -> Self {
         let Lighting { scene, view, runs, level, .. } = *lighting;
         let Scratch { touched, fragments, vertices, .. } = scratch;
         touched.clear();
@@ -112,25 +115,25 @@ impl Bins {
         assembler = assembler.with_memory(std::mem::take(vertices));
         let most = job.pieces.iter().map(|(_, range)| range.len()).sum();
         let screen = TileGrid::new(view.width(), view.height());
-        let at_centers = filter.sample_reach == 0 && screen.count() <= MOST_TILES;
+        let is_early = job.coverage == Coverage::Opaque && screen.count() <= MOST_TILES;
+        let early = if is_early { early } else { &[] };
         let mut sorter = Sorter {
             screen,
             reach: filter.sample_reach,
             triangles: Vec::with_capacity(most),
             touched,
-            wide: false,
-            samples: at_centers && job.coverage == Coverage::Opaque,
-            micropolygons: Micropolygons::new(screen, fragments),
+            early,
+            micropolygons: Micropolygons::new(screen, early, fragments),
             normals: None,
         };
         for (run, range) in &job.pieces {
-            let normals = sorter.samples && lighting.asks_for_normals(*run);
+            let normals = !early.is_empty() && lighting.asks_for_normals(*run);
             sorter.normals =
                 normals.then(|| RunNormals::new(scene, view, runs, (*run, lighting.reach)));
             assembler.primitives(&runs[*run], range.clone(), &mut sorter);
             sorter.micropolygons.finish(level, sorter.normals.as_ref());
         }
-        let Sorter { mut triangles, wide, .. } = sorter;
+        let mut triangles = sorter.triangles;
         if triangles.len() < most / 2 {
             // Most were sampled or left out, and what was reserved for them would stay.
             triangles.shrink_to_fit();
@@ -138,7 +141,7 @@ impl Bins {
         let (coverage, counts) = (job.coverage, assembler.counts);
         *vertices = assembler.into_memory();
         let touching = sort_by_tile(touched, screen.count());
-        Self { coverage, counts, triangles, wide, touching }
+        Self { coverage, counts, triangles, touching }
     }
 
     /// What they take, bytes.
@@ -161,10 +164,8 @@ struct Sorter<'s> {
     triangles: Vec<ScreenTriangle>,
     /// Tile and triangle.
     touched: &'s mut Vec<(u32, u32)>,
-    /// As [`Bins::wide`].
-    wide: bool,
-    /// Whether small triangles are sampled at once.
-    samples: bool,
+    /// The samples at which small triangles are sampled at once.
+    early: &'static [[i32; 2]],
     micropolygons: Micropolygons<'s>,
     /// Of the run whose triangles come, where they are asked for.
     normals: Option<RunNormals<'s>>,
@@ -176,17 +177,15 @@ impl Sink for Sorter<'_> {
         let index = self.triangles.len();
         // First to its place: from there its numbers are read sooner than from the pieces it comes in.
         self.triangles.push(triangle);
-        let before = self.touched.len();
         let touched = &mut self.touched;
         self.screen.touched(&self.triangles[index], self.reach, |tile| {
             touched.push((tile, index as u32));
         });
-        self.wide |= touched.len() - before >= FEWEST_TILES_OF_WALL;
     }
 
     #[inline(always)]
-    fn takes_sampled(&self) -> bool {
-        self.samples
+    fn takes_sampled(&self) -> &'static [[i32; 2]] {
+        self.early
     }
 
     #[inline(always)]

@@ -150,7 +150,7 @@ mod tests {
             let lighting =
                 Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
             let (jobs, mut scratch) = (jobs(&runs), Default::default());
-            let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &mut scratch));
+            let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &[], &mut scratch));
             let bins: Vec<Bins> = bins.collect();
             let area = [[0, 0], [64, 64]];
             let mut order = FrontToBack::default();

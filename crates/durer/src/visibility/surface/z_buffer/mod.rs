@@ -9,6 +9,7 @@
 //! triangle once per pixel. Equal depths are won by the lower item. Blended surfaces are sorted per
 //! pixel.
 
+mod band;
 mod bins;
 mod blended;
 mod front_to_back;
@@ -16,22 +17,21 @@ mod micropolygon;
 mod rasterize;
 mod resolve;
 mod tile;
-mod wall;
 
 use crate::info::{Class, Info};
 use crate::math::Vec4;
 use crate::scene::Scene;
-use crate::shade::color::premultiply;
+use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
 use crate::simd::{Level, default_level};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
-use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit};
-use crate::visibility::surface::mixed::{Mixed, encode};
+use crate::visibility::surface::lit::{Batch, KnownNormals, Lighting, Lit, PointQueue};
 use crate::visibility::surface::setup::{Counts, Coverage, Filter, ScreenTriangle, runs};
 use crate::visibility::surface::{Background, Cull, Marks, Samples};
 use crate::work::{Charge, Work};
+use band::{Band, bands};
 use bins::{Bins, TileGrid, jobs};
 use blended::{Blended, light_blended};
 use fearless_simd::dispatch;
@@ -40,7 +40,6 @@ use micropolygon::Fragments;
 use rasterize::{AllPass, FragmentTest, rasterize};
 use resolve::{Area, Codes, MaskTest, resolve};
 use tile::{SamplePlane, TILE, TILE_PIXELS};
-use wall::Wall;
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -128,10 +127,11 @@ pub fn render(
     };
     let prepared = start.elapsed().as_secs_f64();
     let make = bins::Scratch::default;
+    let early = early_samples(options.samples, framebuffer);
     let work = &options.work;
     let (bins, mut scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
         work.check()?;
-        let bins = Bins::new(&job, &lighting, filter, scratch);
+        let bins = Bins::new(&job, &lighting, filter, early, scratch);
         scratch.charge(work)?;
         let charge = work.charge(bins::STAGE, bins.bytes())?;
         Ok((bins, charge))
@@ -161,48 +161,16 @@ pub fn render(
     Ok(report)
 }
 
-/// A row of tiles of the framebuffer's planes.
-struct Band<'a> {
-    row: i32,
-    width: usize,
-    color: &'a mut [[u8; 4]],
-    depth: Option<&'a mut [f32]>,
-    item: Option<&'a mut [u32]>,
-    normal: Option<&'a mut [[f32; 3]]>,
-}
-
-impl Band<'_> {
-    /// The rows of the colour plane from a column on, as far as a tile's pixels across and down.
-    fn rows_of(
-        &mut self,
-        column: i32,
-        size: [i32; 2],
-    ) -> impl Iterator<Item = (i32, &mut [[u8; 4]])> {
-        let (start, end) = (column as usize, (column + size[0]) as usize);
-        let rows = self.color.chunks_mut(self.width.max(1));
-        (0..size[1]).zip(rows.map(move |row| &mut row[start..end]))
+/// Returns the samples at which small triangles are sampled while they are set up; none where there are too many, or
+/// where others are looked at too, as at pixels' centres for the planes besides colour.
+fn early_samples(samples: Samples, framebuffer: &Framebuffer) -> &'static [[i32; 2]] {
+    let Framebuffer { depth, item, normal, .. } = framebuffer;
+    let with_planes = depth.is_some() || item.is_some() || normal.is_some();
+    match samples {
+        Samples::Four if with_planes => &[],
+        Samples::One | Samples::Four => samples.offsets(),
+        Samples::Sixteen => &[],
     }
-}
-
-/// Divides the planes into rows of tiles that threads can write at the same time.
-fn bands(framebuffer: &mut Framebuffer) -> Vec<Band<'_>> {
-    let width = framebuffer.width() as usize;
-    let size = width * TILE as usize;
-    let mut depth = framebuffer.depth.as_mut().map(|p| p.data_mut().chunks_mut(size));
-    let mut item = framebuffer.item.as_mut().map(|p| p.data_mut().chunks_mut(size));
-    let mut normal = framebuffer.normal.as_mut().map(|p| p.data_mut().chunks_mut(size));
-    let color = framebuffer.color.data_mut().chunks_mut(size);
-    color
-        .enumerate()
-        .map(|(row, color)| Band {
-            row: row as i32,
-            width,
-            color,
-            depth: depth.as_mut().and_then(Iterator::next),
-            item: item.as_mut().and_then(Iterator::next),
-            normal: normal.as_mut().and_then(Iterator::next),
-        })
-        .collect()
 }
 
 /// What all tiles share.
@@ -227,7 +195,7 @@ struct Scratch<'a> {
     known: KnownNormals,
     blended: Blended,
     batch: Batch,
-    mixed: Mixed,
+    queue: PointQueue,
     codes: Box<Codes>,
     lit: Lit<'a>,
     order: FrontToBack<'a>,
@@ -239,10 +207,10 @@ impl<'a> Scratch<'a> {
         Self {
             planes: SamplePlane::of(offsets),
             center: Vec::new(),
-            known: KnownNormals::new(TILE_PIXELS),
+            known: KnownNormals::new(TILE_PIXELS, offsets.len()),
             blended: Blended::new(offsets),
             batch: Batch::default(),
-            mixed: Mixed::new(TILE_PIXELS),
+            queue: PointQueue::new(TILE_PIXELS),
             codes: Box::new([0; TILE_PIXELS]),
             lit: Lit::new(frame.lighting),
             order: FrontToBack::default(),
@@ -297,10 +265,11 @@ impl<'a> Frame<'a> {
         index: u32,
     ) -> bool {
         let mut any = false;
-        // There are none where pixels have several samples.
+        // There are none where pixels have more samples than a plane holds.
         let [plane] = planes else { return any };
         for fragments in self.fragments {
-            fragments.draw(plane, known.as_deref_mut(), index);
+            dispatch!(self.options.level, simd =>
+                Fragments::draw(simd, fragments, plane, known.as_deref_mut(), index));
             any |= !fragments.nothing_in(index);
         }
         any
@@ -336,7 +305,7 @@ impl<'a> Frame<'a> {
     fn empty_tile(&self, band: &mut Band<'_>, [tile, size]: [[i32; 2]; 2]) {
         let background = background_rows(self.options.background, self.view.height());
         for (y, row) in band.rows_of(tile[0], size) {
-            row.fill(encode(premultiply(background(tile[1] + y))));
+            row.fill(encode_premultiplied(premultiply(background(tile[1] + y))));
         }
     }
 
@@ -348,30 +317,22 @@ impl<'a> Frame<'a> {
         index: u32,
     ) {
         let [tile, size] = area;
-        let Scratch { planes, known, blended, batch, mixed, codes, lit, order, .. } = scratch;
-        let wall = Wall::of_tile(self.bins, planes, area, index);
-        let has_fragments = !self.fragments.iter().all(|fragments| fragments.nothing_in(index));
-        let alone = wall.filter(|_| !has_fragments).and_then(|wall| wall.alone(self.bins, index));
+        let Scratch { planes, known, blended, batch, queue, codes, lit, order, .. } = scratch;
         known.clear();
         blended.clear();
-        if let Some(item) = alone {
-            planes.iter_mut().for_each(|plane| plane.item.fill(item));
-        } else {
-            let farthest = wall.map(|wall| wall.farthest);
-            planes.iter_mut().for_each(|plane| plane.clear(farthest));
-            self.rasterize_opaque(order, (planes, known), area, index);
-            let mut mask = MaskTest { lit, tile };
-            self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
-            let nearest_first = order.nearest_first(self.bins, index);
-            if !nearest_first.is_empty() {
-                dispatch!(self.options.level, simd =>
-                    light_blended(simd, blended, nearest_first, planes, area, lit));
-            }
+        planes.iter_mut().for_each(SamplePlane::clear);
+        self.rasterize_opaque(order, (planes, known), area, index);
+        let mut mask = MaskTest { lit, tile };
+        self.rasterize(Coverage::Masked, planes, area, index, Some(&mut mask));
+        let nearest_first = order.nearest_first(self.bins, index);
+        if !nearest_first.is_empty() {
+            dispatch!(self.options.level, simd =>
+                light_blended(simd, blended, nearest_first, planes, area, lit));
         }
         let background = background_rows(self.options.background, self.view.height());
-        let area = Area { tile, size, alone, background: &background };
+        let area = Area { tile, size, background: &background };
         dispatch!(self.options.level, simd =>
-            resolve(simd, (planes, known), blended, (batch, mixed), lit, &area, codes));
+            resolve(simd, (planes, known), blended, (batch, queue), lit, &area, codes));
         for (y, row) in band.rows_of(tile[0], size) {
             let codes = &codes[(y * TILE) as usize..];
             for (to, code) in row.iter_mut().zip(codes) {
@@ -393,7 +354,7 @@ impl<'a> Frame<'a> {
         if center.is_empty() {
             *center = SamplePlane::of(&[[0; 2]]);
         }
-        center.iter_mut().for_each(|plane| plane.clear(None));
+        center.iter_mut().for_each(SamplePlane::clear);
         self.draw_fragments(center, None, index);
         for coverage in [Coverage::Opaque, Coverage::Blended] {
             self.rasterize(coverage, center, area, index, None::<&mut AllPass>);

@@ -5,21 +5,19 @@ use super::blended::{Blended, resolve_blended};
 use super::rasterize::{FragmentTest, one_by_one};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
-use crate::shade::color::{encode_opaque_x16, premultiply};
+use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::target::NO_ITEM;
-use crate::visibility::surface::lit::{Batch, KnownNormals, Lit, MOST_SAMPLES, Shares};
-use crate::visibility::surface::mixed::{Mixed, encode};
+use crate::visibility::surface::lit::{
+    Batch, KnownNormals, Lit, MOST_SAMPLES, PointQueue, ShadingPoint,
+};
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, mask32x16, u32x8, u32x16};
+use fearless_simd::{Simd, mask32x16, u32x8, u32x16};
 use fearless_simd_macros::simd;
 
 /// Rows of a tile, and one more: rows are taken in pairs.
 const ROWS: usize = TILE as usize + 1;
-
-/// Fewer patches that show one item are lit like others.
-pub(super) const FEWEST_OF_STRIP: usize = 4;
 
 /// What is behind each row of a tile, linear and encoded, apart: pairs of them would be copied piece by piece.
 struct Behind {
@@ -33,8 +31,11 @@ impl Behind {
         for (y, row) in (0..area.size[1]).zip(0..ROWS) {
             linear[row] = premultiply((area.background)(area.tile[1] + y));
             let as_above = row > 0 && linear[row] == linear[row - 1];
-            encoded[row] =
-                if as_above { encoded[row - 1] } else { u32::from_le_bytes(encode(linear[row])) };
+            encoded[row] = if as_above {
+                encoded[row - 1]
+            } else {
+                u32::from_le_bytes(encode_premultiplied(linear[row]))
+            };
         }
         Self { linear, encoded }
     }
@@ -68,8 +69,6 @@ pub struct Area<'b> {
     pub tile: [i32; 2],
     /// Pixels across and down.
     pub size: [i32; 2],
-    /// The item that all samples show, where it is known.
-    pub alone: Option<u32>,
     /// Linear with straight alpha, by row of the picture.
     pub background: &'b (dyn Fn(i32) -> Vec4 + Sync),
 }
@@ -85,12 +84,12 @@ pub fn resolve<S: Simd>(
     simd: S,
     (planes, known): (&[SamplePlane], &KnownNormals),
     blended: &Blended,
-    (batch, mixed): (&mut Batch, &mut Mixed),
+    (batch, queue): (&mut Batch, &mut PointQueue),
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     codes: &mut Codes,
 ) {
-    resolve_opaque(simd, (planes, known), (batch, mixed), lit, area, codes);
+    resolve_opaque(simd, (planes, known), (batch, queue), lit, area, codes);
     if blended.any() {
         resolve_blended(simd, planes, blended, lit, area, codes);
     }
@@ -101,47 +100,32 @@ pub fn resolve<S: Simd>(
 fn resolve_opaque<S: Simd>(
     simd: S,
     (planes, known): (&[SamplePlane], &KnownNormals),
-    (batch, mixed): (&mut Batch, &mut Mixed),
+    (batch, queue): (&mut Batch, &mut PointQueue),
     lit: &mut Lit<'_>,
     area: &Area<'_>,
     codes: &mut Codes,
 ) {
-    let mut behind_rows = None;
+    let Behind { linear: behind, encoded } = Behind::new(area);
     // Filled anew for each block, but not cleared.
     let mut samples = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
     // Two rows of eight pixels at a time, and then those below: they show mostly the same triangles.
     for x in (0..area.size[0]).step_by(8) {
         let width = 8.min(area.size[0] - x) as usize;
-        let (mut y, mut strips, mut expected) = (0, true, false);
-        while y < area.size[1] {
+        expect_column(simd, (planes, known), x, area.size[1], lit);
+        for y in (0..area.size[1]).step_by(2) {
             let at = [area.tile[0] + x, area.tile[1] + y];
-            if strips {
-                let place = ([x, y], area.size[1], area.alone);
-                match light_strip(simd, planes, place, lit, at, codes) {
-                    Some(0) => {}
-                    Some(count) => {
-                        y += 2 * count as i32;
-                        continue;
-                    }
-                    None => strips = false,
-                }
-            }
-            if !expected {
-                expect_column(simd, (planes, known), x, area.size[1], lit);
-                expected = true;
-            }
-            let Behind { linear: behind, encoded } =
-                behind_rows.get_or_insert_with(|| Behind::new(area));
             let patch = Patch::block(at);
             let [first, second] = [y, y + 1].map(|y| (y * TILE + x) as usize);
             let row = y as usize % TILE as usize;
             let count = samples_of_block(simd, planes, first, &mut samples);
-            let both = [behind[row], behind[row + 1]];
             // Of the last row there may be none below; then what is written there is not copied.
             let places = [first, second];
             let samples = &samples[..count];
-            if resolve_block(simd, samples, (batch, lit), both, patch, places, codes) {
-                y += 2;
+            let few = samples.first().is_some_and(|first| patch.shows_few(simd, *first));
+            if few
+                && !knows_any(simd, planes, known, places)
+                && batch.light_samples(simd, lit, samples, patch, places, codes)
+            {
                 continue;
             }
             let (above, above_differs) = whole_pixels(simd, planes, first);
@@ -157,70 +141,18 @@ fn resolve_opaque<S: Simd>(
                 if differs[i] != [0; 8] {
                     let behind = behind[row + i];
                     let (differs, at) = (&differs[i][..width], [at[0], at[1] + i as i32]);
-                    add_mixed(simd, planes, [first, second][i], differs, mixed, lit, behind, at);
+                    let row = Row { planes, known, index: places[i], differs, behind, at };
+                    add_mixed(simd, &row, queue, lit);
                 }
             }
-            y += 2;
         }
     }
     Batch::flush(simd, batch, lit, codes);
-    Mixed::flush(simd, mixed, lit);
-    for pixel in mixed.pixels.drain(..) {
-        codes[pixel as usize] = u32::from_le_bytes(encode(mixed.sums[pixel as usize]));
+    PointQueue::flush(simd, queue, lit);
+    for pixel in queue.pixels.drain(..) {
+        codes[pixel as usize] =
+            u32::from_le_bytes(encode_premultiplied(queue.sums[pixel as usize]));
     }
-}
-
-/// Lights the patches from a place in a column on that show one item at all samples, if they are several and its material
-/// suits that: how many they are. `None` where too many texels are between them, so that there is no use in asking again.
-#[inline(always)]
-fn light_strip<S: Simd>(
-    simd: S,
-    planes: &[SamplePlane],
-    ([x, y], height, alone): ([i32; 2], i32, Option<u32>),
-    lit: &mut Lit<'_>,
-    at: [i32; 2],
-    codes: &mut Codes,
-) -> Option<usize> {
-    let first = (y * TILE + x) as usize;
-    let item = planes.first().map_or(NO_ITEM, |plane| plane.items(first)[0]);
-    if item == NO_ITEM || !lit.suits_strips(item) {
-        return Some(0);
-    }
-    let count = match alone {
-        Some(_) => (height - y + 1) as usize / 2,
-        None => patches_of_one(simd, planes, [x, y], height, item),
-    };
-    if count < FEWEST_OF_STRIP {
-        return Some(0);
-    }
-    let place = (&mut codes[first..], TILE as usize);
-    Lit::strip(simd, lit, item, (at, count), place).then_some(count)
-}
-
-/// How many patches from a place on one below another show an item at all samples.
-#[inline(always)]
-fn patches_of_one<S: Simd>(
-    simd: S,
-    planes: &[SamplePlane],
-    [x, first]: [i32; 2],
-    height: i32,
-    item: u32,
-) -> usize {
-    let mut last = height;
-    for plane in planes {
-        for y in first..last {
-            let mut differs = u32x8::splat(simd, 0);
-            for eight in plane.items_of_eight((y * TILE + x) as usize).as_chunks::<8>().0 {
-                differs |= u32x8::from_slice(simd, eight) ^ item;
-            }
-            if differs.simd_ne(u32x8::splat(simd, 0)).any_true() {
-                last = y;
-                break;
-            }
-        }
-    }
-    // Of the last patch of a picture there may be but one row.
-    if last == height { (last - first + 1) as usize / 2 } else { (last - first) as usize / 2 }
 }
 
 /// Makes what a column of eight pixels shows ready to be lit.
@@ -250,6 +182,10 @@ fn expect_column<S: Simd>(
                     let shown = u32x16::from_slice(simd, &items[half..half + 16]);
                     new = first_shown(simd, shown, before_that).to_bitmask();
                     (before_that, before) = (before, shown);
+                    if any_known {
+                        let sample = 4 * (first + quarter / 2 * TILE as usize) + half;
+                        new &= !known.of_sixteen(simd, sample, shown).to_bitmask();
+                    }
                 } else {
                     // Eight pixels, and those below them.
                     let upper = first + 2 * quarter * TILE as usize;
@@ -323,82 +259,55 @@ fn samples_of_block<S: Simd>(
     count
 }
 
-/// Sixteen pixels with the given samples each, where they show few items of plain materials on something
-/// opaque: each item is lit at all of them, now or with others, and weighted by its samples. Not true where it is not so.
+/// Returns whether the normal of anything that a block shows is known, in rows of pixels that begin at these places.
 #[inline(always)]
-fn resolve_block<S: Simd>(
-    simd: S,
-    samples: &[u32x16<S>],
-    (batch, lit): (&mut Batch, &mut Lit<'_>),
-    [above, below]: [Vec4; 2],
-    patch: Patch,
-    places: [usize; 2],
-    codes: &mut Codes,
-) -> bool {
-    let Some(first) = samples.first() else { return false };
-    if above.w < 1.0 || below.w < 1.0 || !patch.shows_few(simd, *first) {
-        return false;
-    }
-    // All bits of NO_ITEM are set.
-    let mut all = *first;
-    for items in samples {
-        all &= *items;
-    }
-    if all.simd_eq(u32x16::splat(simd, NO_ITEM)).all_true() {
-        return false;
-    }
-    if batch.light_samples(simd, lit, samples, patch, places, codes) {
-        return true;
-    }
-    let (above, below) = (above.to_array(), below.to_array());
-    let mut behind = [f32x16::splat(simd, 0.0); 3];
-    for (i, to) in behind.iter_mut().enumerate() {
-        *to = simd.combine_f32x8(simd.splat_f32x8(above[i]), simd.splat_f32x8(below[i]));
-    }
-    let mut sums = [f32x16::splat(simd, 0.0); 3];
-    let mut shares = Shares::new(simd, samples);
-    while let Some((item, weight)) = shares.next(simd) {
-        let mut colors = behind;
-        if item != NO_ITEM {
-            let Some(shaded) = lit.colors_of_one_x16(simd, item, patch) else { return false };
-            for (to, from) in colors.iter_mut().zip(&shaded) {
-                *to = f32x16::from_slice(simd, from);
-            }
-        }
-        for (sum, color) in sums.iter_mut().zip(colors) {
-            *sum += color * weight;
-        }
-    }
-    let (above, below) = simd.split_u32x16(encode_opaque_x16(simd, sums));
-    above.store_slice(&mut codes[places[0]..places[0] + 8]);
-    below.store_slice(&mut codes[places[1]..places[1] + 8]);
-    true
-}
-
-/// Of eight pixels in a row, those that show several items, or one and the background: each item is
-/// lit once and weighted by its samples.
-#[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one call, all of it a tile's state")]
-fn add_mixed<S: Simd>(
+fn knows_any<S: Simd>(
     simd: S,
     planes: &[SamplePlane],
+    known: &KnownNormals,
+    places: [usize; 2],
+) -> bool {
+    let [plane] = planes else { return false };
+    known.any()
+        && places.into_iter().any(|pixel| {
+            let (sixteens, _) = plane.items_of_eight(pixel).as_chunks::<16>();
+            sixteens.iter().enumerate().any(|(i, items)| {
+                let shown = u32x16::from_slice(simd, items);
+                let sample = (pixel << plane.shift) + 16 * i;
+                let known = known.of_sixteen(simd, sample, shown);
+                (known & shown.simd_ne(u32x16::splat(simd, NO_ITEM))).any_true()
+            })
+        })
+}
+
+/// Pixels side by side.
+struct Row<'r> {
+    planes: &'r [SamplePlane],
+    known: &'r KnownNormals,
+    /// The place of the first in the tile, and on the screen.
     index: usize,
-    differs: &[u32],
-    mixed: &mut Mixed,
-    lit: &mut Lit<'_>,
+    at: [i32; 2],
+    /// For each a number that is 0 only where all its samples show the same.
+    differs: &'r [u32],
+    /// What is behind them, linear and premultiplied.
     behind: Vec4,
-    [x, y]: [i32; 2],
-) {
+}
+
+/// Adds the pixels of a row that show several items, or one and the background: each item is lit once and weighted by
+/// its samples.
+#[inline(always)]
+fn add_mixed<S: Simd>(simd: S, row: &Row<'_>, queue: &mut PointQueue, lit: &mut Lit<'_>) {
+    let Row { planes, index, at: [x, y], differs, .. } = *row;
     for i in (0..differs.len()).filter(|&i| differs[i] != 0) {
-        let (pixel, at) = ((index + i) as u32, [x + i as i32, y]);
-        mixed.begin(pixel);
+        let (pixel, at) = (index + i, [x + i as i32, y]);
+        queue.begin(pixel as u32);
         if let [plane] = planes
-            && let Ok(items) = <&[u32; 4]>::try_from(plane.items(index + i))
+            && let Ok(items) = <&[u32; 4]>::try_from(plane.items(pixel))
         {
-            add_shares(simd, items, mixed, lit, behind, pixel, at);
+            add_shares(simd, items, (pixel, at), row, queue, lit);
         } else {
-            let (items, _) = sample_items(planes, index + i);
-            add_shares(simd, &items, mixed, lit, behind, pixel, at);
+            let (items, _) = sample_items(planes, pixel);
+            add_shares(simd, &items, (pixel, at), row, queue, lit);
         }
     }
 }
@@ -408,15 +317,15 @@ fn add_mixed<S: Simd>(
 fn add_shares<S: Simd, const N: usize>(
     simd: S,
     items: &[u32; N],
-    mixed: &mut Mixed,
+    (pixel, at): (usize, [i32; 2]),
+    row: &Row<'_>,
+    queue: &mut PointQueue,
     lit: &mut Lit<'_>,
-    behind: Vec4,
-    pixel: u32,
-    at: [i32; 2],
 ) {
     let mut left = (1u32 << N) - 1;
     while left != 0 {
-        let item = items[left.trailing_zeros() as usize % N];
+        let sample = left.trailing_zeros() as usize % N;
+        let item = items[sample];
         let mut same = 0u32;
         for (i, other) in items.iter().enumerate() {
             same |= u32::from(*other == item) << i;
@@ -424,9 +333,10 @@ fn add_shares<S: Simd, const N: usize>(
         left &= !same;
         let weight = same.count_ones() as f32 * (1.0 / N as f32);
         if item == NO_ITEM {
-            mixed.add_color(pixel, behind, weight);
+            queue.add_color(pixel as u32, row.behind, weight);
         } else {
-            mixed.add(simd, lit, item, pixel, weight, at);
+            let normal = row.known.of_sample(N * pixel + sample, item);
+            queue.add(simd, lit, ShadingPoint { item, at, pixel: pixel as u32, weight }, normal);
         }
     }
 }

@@ -84,9 +84,9 @@ impl SamplePlane {
         }
     }
 
-    /// Forgets all; where it is known that nothing farther is seen, that depth is given.
-    pub fn clear(&mut self, farthest: Option<f32>) {
-        self.farthest.fill(farthest.map_or(FAR, |depth| depth.to_bits() as i32));
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.farthest.fill(FAR);
         self.depth.fill(FAR);
         self.item.fill(NO_ITEM);
     }

@@ -120,22 +120,6 @@ impl Layers {
         [self.tile[0] + x, self.tile[1] + y]
     }
 
-    /// Whether something comes through at a pixel of a block.
-    #[inline(always)]
-    pub fn is_open<S: Simd>(&self, simd: S, block: usize) -> bool {
-        let closed = u32x16::from_slice(simd, &self.closed[block * LANES..][..LANES]);
-        closed.simd_eq(u32x16::splat(simd, 0)).any_true()
-    }
-
-    /// Adds a layer of a block that shows one item at all samples, by its colours, straight.
-    #[inline(always)]
-    pub fn add_whole<S: Simd>(&mut self, simd: S, block: usize, colors: [f32x16<S>; 4]) {
-        let closed = u32x16::from_slice(simd, &self.closed[block * LANES..][..LANES]);
-        let there = closed.simd_eq(u32x16::splat(simd, 0));
-        let all = u32x16::splat(simd, (1 << self.count) - 1);
-        self.add(simd, block, (there, all), colors);
-    }
-
     /// Adds a layer of a block: colours, straight, which mean something at the pixels that are `there`, and the samples
     /// that it covers.
     #[inline(always)]

@@ -11,14 +11,13 @@ mod sheet;
 mod tests;
 
 use super::rasterize::rasterize;
-use super::resolve::{Area, Codes, FEWEST_OF_STRIP};
+use super::resolve::{Area, Codes};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS, block_of};
 use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
-use crate::shade::color::{encode_opaque_x16, premultiply};
+use crate::shade::color::{encode_opaque_x16, encode_premultiplied, premultiply};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::lit::{Lit, MOST_SAMPLES, opaque};
-use crate::visibility::surface::mixed::encode;
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::ScreenTriangle;
 use fearless_simd::prelude::*;
@@ -142,23 +141,12 @@ fn light_sheet<S: Simd>(
     let none = u32x16::splat(simd, NO_ITEM);
     let mut samples = [none; MOST_SAMPLES];
     let samples = &mut samples[..layers.count];
-    let mut strips = true;
-    for place in 0..sheet.begun().len() {
-        let block = sheet.begun()[place] as usize;
-        if sheet.is_done(block) {
-            continue;
-        }
+    for &block in sheet.begun() {
+        let block = block as usize;
         sheet.block(simd, block, samples);
         for items in samples.iter_mut() {
             *items = items.simd_eq(over).select(none, *items);
         }
-        if strips {
-            strips = light_strip(simd, (&mut *sheet, block), samples, layers, lit);
-            if sheet.is_done(block) {
-                continue;
-            }
-        }
-        sheet.set_done(block);
         // Each item at a time of those that the samples of a pixel show, which are no more than samples.
         for _ in 0..layers.count {
             let mut items = none;
@@ -178,52 +166,6 @@ fn light_sheet<S: Simd>(
         }
     }
     Ok(taken)
-}
-
-/// Lights the blocks from one on one below another that show one item, if they are several and its material suits that. Not
-/// true where too many texels are between them, so that there is no use in asking again.
-#[inline(always)]
-fn light_strip<S: Simd>(
-    simd: S,
-    (sheet, first): (&mut Sheet, usize),
-    samples: &[u32x16<S>],
-    layers: &mut Layers,
-    lit: &mut Lit<'_>,
-) -> bool {
-    let item = <[u32; 16]>::from(samples[0])[0];
-    if item == NO_ITEM || !is_only(simd, samples, item) || !lit.suits_strips(item) {
-        return true;
-    }
-    let mut below = [u32x16::splat(simd, NO_ITEM); MOST_SAMPLES];
-    let below = &mut below[..samples.len()];
-    let mut count = 0;
-    for block in (first..BLOCKS).step_by(BLOCKS_ACROSS) {
-        sheet.block(simd, block, below);
-        let is_last = sheet.is_done(block) || !layers.is_open(simd, block);
-        if is_last || !is_only(simd, below, item) {
-            break;
-        }
-        count += 1;
-    }
-    if count < FEWEST_OF_STRIP {
-        return true;
-    }
-    let place = layers.place(first);
-    Lit::blended_strip(simd, lit, item, (place, count), |i, colors| {
-        let block = first + i * BLOCKS_ACROSS;
-        layers.add_whole(simd, block, colors);
-        sheet.set_done(block);
-    })
-}
-
-/// Whether all samples of a block show an item.
-#[inline(always)]
-fn is_only<S: Simd>(simd: S, samples: &[u32x16<S>], item: u32) -> bool {
-    let mut differs = u32x16::splat(simd, 0);
-    for items in samples {
-        differs |= *items ^ item;
-    }
-    differs.simd_eq(u32x16::splat(simd, 0)).all_true()
 }
 
 /// Whether the box of a triangle takes more than a quarter of a tile.
@@ -273,7 +215,9 @@ pub fn resolve_blended<S: Simd>(
             let code = if a[lane] >= 1.0 {
                 opaque[lane]
             } else {
-                u32::from_le_bytes(encode(Vec4::new(r[lane], g[lane], b[lane], a[lane])))
+                u32::from_le_bytes(encode_premultiplied(Vec4::new(
+                    r[lane], g[lane], b[lane], a[lane],
+                )))
             };
             let (x, y) = (x as usize + lane % 8, y as usize + lane / 8);
             codes[y * TILE as usize + x] = code;

@@ -57,18 +57,6 @@ impl Sheet {
         &self.begun
     }
 
-    /// Whether a block was [set done](Self::set_done).
-    #[inline(always)]
-    pub fn is_done(&self, block: usize) -> bool {
-        !self.is_begun[block % BLOCKS]
-    }
-
-    /// Notes that a block is lit; until the sheet is cleared nothing may come to it.
-    #[inline(always)]
-    pub fn set_done(&mut self, block: usize) {
-        self.is_begun[block % BLOCKS] = false;
-    }
-
     /// The items of a block by sample.
     #[inline(always)]
     pub fn block<S: Simd>(&self, simd: S, block: usize, samples: &mut [u32x16<S>]) {

@@ -1,5 +1,6 @@
 //! Fragments beside what the triangles give that they are made of.
 
+use super::fragment::ITEM_BITS;
 use super::*;
 use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
@@ -7,12 +8,13 @@ use crate::shade::{PreparedLights, PreparedMaterials};
 use crate::simd::levels;
 use crate::target::NO_ITEM;
 use crate::view::View;
-use crate::visibility::surface::Cull;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Filter, runs};
 use crate::visibility::surface::triangles::{OF_ROWS, Triangles};
 use crate::visibility::surface::z_buffer::bins::{Bins, Scratch, jobs};
 use crate::visibility::surface::z_buffer::rasterize::{AllPass, rasterize};
+use crate::visibility::surface::z_buffer::tile::SamplePlane;
+use crate::visibility::surface::{Cull, Samples};
 
 const COUNT: usize = 6_000;
 
@@ -43,21 +45,60 @@ fn scene() -> Scene {
     Scene { meshes: vec![mesh], instances: vec![instance], ..Scene::default() }
 }
 
-/// By pixel of a tile the nearest item and the bits of its depth.
+/// By sample of a tile the nearest item and the bits of its depth.
 fn nearest(
-    level: Level,
+    (level, samples): (Level, Samples),
     (bins, fragments): (&Bins, &Fragments),
     (tile, at): (u32, [i32; 2]),
 ) -> Vec<(u32, i32)> {
-    let mut planes = SamplePlane::of(&[[0; 2]]);
-    planes[0].clear(None);
-    fragments.draw(&mut planes[0], None, tile);
+    let mut planes = SamplePlane::of(samples.offsets());
+    planes[0].clear();
     let size = [0, 1].map(|axis| TILE.min(SIZE[axis] - at[axis]));
-    dispatch!(level, simd =>
-        rasterize(simd, &mut planes, [at, size], bins.of_tile(tile), None::<&mut AllPass>));
+    dispatch!(level, simd => {
+        Fragments::draw(simd, fragments, &mut planes[0], None, tile);
+        rasterize(simd, &mut planes, [at, size], bins.of_tile(tile), None::<&mut AllPass>);
+    });
     // What is beyond the border means nothing.
     let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (y * TILE + x) as usize));
-    pixels.map(|pixel| (planes[0].item[pixel], planes[0].depth[pixel])).collect()
+    let count = samples.offsets().len();
+    let samples = pixels.flat_map(|pixel| count * pixel..count * (pixel + 1));
+    samples.map(|sample| (planes[0].item[sample], planes[0].depth[sample])).collect()
+}
+
+/// What was found of fragments with normals.
+#[derive(Default)]
+struct Found {
+    known: usize,
+    unsettled: usize,
+    /// By the upper bits of their items.
+    uppers: [usize; 2],
+}
+
+impl Found {
+    /// Compares the normals of the fragments in a tile with those of their triangles.
+    fn add<const N: usize>(
+        &mut self,
+        store: &Store<N>,
+        triangles: &mut Triangles<'_>,
+        (tile, at): (u32, [i32; 2]),
+    ) {
+        for (upper, block) in store.with_normals.of(tile) {
+            self.uppers[(upper >> ITEM_BITS) as usize] += block.len();
+            for fragment in block {
+                let (pixel, item) = fragment.sample.seen.pixel_and_item(upper);
+                let [x, y] = [pixel as i32 % TILE, pixel as i32 / TILE];
+                let plane = triangles.normals(item, 0);
+                assert_eq!(fragment.normal[0].is_nan(), !plane.settled, "{item}");
+                if plane.settled {
+                    let expected = plane.at([at[0] + x, at[1] + y]).to_array();
+                    assert_eq!(fragment.normal.map(f32::to_bits), expected.map(f32::to_bits));
+                    self.known += 1;
+                } else {
+                    self.unsettled += 1;
+                }
+            }
+        }
+    }
 }
 
 #[test]
@@ -71,47 +112,33 @@ fn fragments_are_what_rasterizing_and_normal_planes_give() {
     // Blocks of items whose upper bits differ.
     runs[0].first_item = (1 << ITEM_BITS) - COUNT as u32 / 2;
     let (materials, lights) = (PreparedMaterials::new(&scene), PreparedLights::auto(&camera));
-    for level in levels() {
+    for (level, samples) in
+        levels().into_iter().flat_map(|level| [(level, Samples::One), (level, Samples::Four)])
+    {
+        let (reach, offsets) = (samples.reach(), samples.offsets());
         let drawn = (&scene, &view, runs.as_slice());
-        let lighting = Lighting::by_material(drawn, (&materials, &lights), 0, level);
-        let bins_for = |sample_reach: i32| {
-            let (mut scratch, filter) = (Scratch::default(), Filter::new(Cull::None, sample_reach));
-            (Bins::new(&jobs(&runs)[0], &lighting, filter, &mut scratch), scratch.fragments)
+        let lighting = Lighting::by_material(drawn, (&materials, &lights), reach, level);
+        let bins_for = |early: &'static [[i32; 2]]| {
+            let (mut scratch, filter) = (Scratch::default(), Filter::new(Cull::None, reach));
+            let bins = Bins::new(&jobs(&runs)[0], &lighting, filter, early, &mut scratch);
+            (bins, scratch.fragments)
         };
-        // Where samples lie off pixels' centres nothing is sampled before its time.
-        let ((bins, fragments), (all, none)) = (bins_for(0), bins_for(1));
-        let mut triangles = Triangles::new(&scene, &view, &runs, level, (OF_ROWS, 0));
+        let ((bins, fragments), (all, none)) = (bins_for(offsets), bins_for(&[]));
+        let mut triangles = Triangles::new(&scene, &view, &runs, level, (OF_ROWS, reach));
         let grid = TileGrid::new(view.width(), view.height());
-        let (mut shown, mut with_normals, mut unsettled, mut uppers) = (0, 0, 0, [0; 2]);
+        let (mut shown, mut found) = (0, Found::default());
         for tile in 0..grid.count() {
             assert!(none.nothing_in(tile));
             let at = [tile as i32 % grid.columns * TILE, tile as i32 / grid.columns * TILE];
-            let ours = nearest(level, (&bins, &fragments), (tile, at));
-            assert_eq!(ours, nearest(level, (&all, &none), (tile, at)), "{level:?}, tile {tile}");
+            let how = (level, samples);
+            let ours = nearest(how, (&bins, &fragments), (tile, at));
+            assert_eq!(ours, nearest(how, (&all, &none), (tile, at)), "{how:?}, tile {tile}");
             shown += ours.iter().filter(|(item, _)| *item != NO_ITEM).count();
-            for (upper, block) in fragments.with_normals.of(tile) {
-                uppers[(upper >> ITEM_BITS) as usize] += block.len();
-                for fragment in block {
-                    let (pixel, item) = fragment.seen.pixel_and_item(upper);
-                    let [x, y] = [pixel as i32 % TILE, pixel as i32 / TILE];
-                    let plane = triangles.normals(item, 0);
-                    let [a, b, c, _] = fragment.found;
-                    assert_eq!(a.is_nan(), !plane.settled, "{item}");
-                    if plane.settled {
-                        let expected = plane.at([at[0] + x, at[1] + y]).to_array();
-                        assert_eq!(
-                            [a, b, c].map(f32::to_bits),
-                            expected.map(f32::to_bits),
-                            "{item}"
-                        );
-                        with_normals += 1;
-                    } else {
-                        unsettled += 1;
-                    }
-                }
-            }
+            found.add(&fragments.one, &mut triangles, (tile, at));
+            found.add(&fragments.four, &mut triangles, (tile, at));
         }
-        assert!(shown > 5_000 && with_normals > 1_000, "{shown} {with_normals}");
+        let Found { known, unsettled, uppers } = found;
+        assert!(shown > 5_000 * offsets.len() && known > 1_000, "{shown} {known}");
         assert!(unsettled > 0 && uppers.iter().all(|n| *n > 500), "{unsettled} {uppers:?}");
     }
 }

@@ -1,0 +1,126 @@
+//! What is the same for all points that are lit: for a picture, and for the items of a run.
+
+use super::TEX_COORD_SETS;
+use crate::math::{DMat3, Vec2, Vec3};
+use crate::scene::{Mesh, Scene, Topology};
+use crate::shade::{PreparedLights, PreparedMaterial, PreparedMaterials, Shading};
+use crate::simd::Level;
+use crate::view::View;
+use crate::visibility::surface::setup::Run;
+use crate::visibility::surface::triangles::Part;
+
+/// What all threads share.
+#[derive(Clone, Copy)]
+pub struct Lighting<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub runs: &'a [Run],
+    pub materials: &'a PreparedMaterials<'a>,
+    pub lights: &'a PreparedLights,
+    pub shading: Option<Shading>,
+    /// How far from pixels' centres items may be found that are then lit there, in 1/256 pixel.
+    pub reach: i32,
+    /// The SIMD level to work at; all give the same bytes.
+    pub level: Level,
+}
+
+impl<'a> Lighting<'a> {
+    /// Of tests: by the formula of each material.
+    #[cfg(test)]
+    pub fn by_material(
+        (scene, view, runs): (&'a Scene, &'a View, &'a [Run]),
+        (materials, lights): (&'a PreparedMaterials<'a>, &'a PreparedLights),
+        reach: i32,
+        level: Level,
+    ) -> Self {
+        Self { scene, view, runs, materials, lights, shading: None, reach, level }
+    }
+
+    /// What lighting several pixels of plain materials asks of their triangles.
+    pub fn part(&self) -> Part {
+        // Lights ask where points lie, or shadows which way their faces look.
+        let more = !self.lights.shadows.is_empty() || !self.lights.points.is_empty();
+        if more { Part::All } else { Part::Normals }
+    }
+
+    /// Whether of triangles of a run nothing but normals is asked for, where these are settled.
+    pub fn asks_for_normals(&self, run: usize) -> bool {
+        self.part() == Part::Normals && self.run_info(run).plain
+    }
+
+    pub fn run_info(&self, index: usize) -> RunInfo<'a> {
+        let run = &self.runs[index];
+        let mesh = &self.scene.meshes[run.mesh];
+        let is_marks = mesh.topology != Topology::Triangles;
+        let material = if is_marks && mesh.colors.is_empty() {
+            self.materials.of_marks(run.material)
+        } else {
+            self.materials.get(run.material)
+        };
+        let without_sides = is_marks && mesh.normals.is_empty();
+        let shading = match self.shading {
+            _ if without_sides => Shading::Unlit,
+            Some(shading) => shading,
+            None => material.shading(),
+        };
+        let per_pixel = !matches!(shading, Shading::Flat | Shading::Gouraud);
+        let plain = material.is_plain() && mesh.colors.is_empty() && per_pixel;
+        let together = !plain && material.is_lit_together(shading);
+        let looked_up = material
+            .looked_up_together(shading)
+            .filter(|set| mesh.colors.is_empty() && *set < TEX_COORD_SETS)
+            .and_then(|set| mesh.tex_coords.get(set))
+            .map(|coords| LookedUp { coords, changing: material.has_levels() });
+        RunInfo {
+            run: index,
+            first_item: run.first_item,
+            count: run.range.len() as u32,
+            mesh,
+            material,
+            shading,
+            plain,
+            together,
+            looked_up,
+        }
+    }
+
+    /// A direction of a run's mesh along world axes.
+    pub fn world_axes(&self, run: usize, direction: Vec3) -> Vec3 {
+        let world_from_mesh = self.scene.instances[self.runs[run].instance].world_from_mesh;
+        DMat3::from_mat4(world_from_mesh).as_mat3() * direction
+    }
+}
+
+/// What is the same for all items of a run.
+#[derive(Clone, Copy)]
+pub struct RunInfo<'a> {
+    pub run: usize,
+    pub first_item: u32,
+    pub count: u32,
+    pub mesh: &'a Mesh,
+    pub material: &'a PreparedMaterial<'a>,
+    pub shading: Shading,
+    /// Whether sixteen pixels can be shaded at a time.
+    pub plain: bool,
+    /// Whether several pixels can be lit at a time, after their textures were looked up one by one.
+    pub together: bool,
+    /// By what sixteen pixels can also be looked up at a time.
+    pub looked_up: Option<LookedUp<'a>>,
+}
+
+impl RunInfo<'_> {
+    /// Whether an item is of the run.
+    #[inline(always)]
+    pub fn has(&self, item: u32) -> bool {
+        item.wrapping_sub(self.first_item) < self.count
+    }
+}
+
+/// The one set of texture coordinates that a run's material uses.
+#[derive(Clone, Copy)]
+pub struct LookedUp<'a> {
+    /// Of the mesh's vertices.
+    pub coords: &'a [Vec2],
+    /// Whether it matters how they change over the screen.
+    pub changing: bool,
+}
