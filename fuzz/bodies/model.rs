@@ -3,9 +3,10 @@
 //! the tests call as well.
 
 use arbitrary::{Result, Unstructured};
+use durer::scene::Scene;
 use durer_formats::{
-    Limits, ModelFormat, NoResources, Pose, ReadOptions, Resources, collada, e57, fbx, gltf, image,
-    las, obj, off, ply, stl, threemf, xyz,
+    Error, Limits, Model, ModelFormat, NoResources, Pieces, Pose, ReadOptions, Resources, collada,
+    e57, fbx, gltf, image, las, obj, off, ply, stl, threemf, xyz,
 };
 use std::io::{Cursor, Write};
 
@@ -34,10 +35,62 @@ impl Resources for Same<'_> {
 }
 
 /// A model that is read can be drawn.
-fn check(model: durer_formats::Result<durer_formats::Model>) {
+fn check(model: durer_formats::Result<Model>) {
     if let Ok(model) = model {
         let sound = model.scene.check();
         assert!(sound.is_ok(), "{sound:?}");
+    }
+}
+
+/// The bits of positions and colours of all corners of a scene's first mesh.
+fn corners(scene: &Scene) -> Vec<[u32; 7]> {
+    let Some(mesh) = scene.meshes.first() else { return Vec::new() };
+    let vertex = |i: usize| mesh.indices.as_ref().map_or(i, |indices| indices[i] as usize);
+    let bits = |v: usize| {
+        let (p, c) = (mesh.positions[v], mesh.colors.get(v).copied().unwrap_or_default());
+        [p.x, p.y, p.z, c.x, c.y, c.z, c.w].map(f32::to_bits)
+    };
+    (0..mesh.index_count()).map(|i| bits(vertex(i))).collect()
+}
+
+/// A model in pieces is that of the whole, where it can be read in pieces at all.
+fn check_pieces(mut pieces: impl Pieces, whole: durer_formats::Result<Model>) {
+    let Ok(whole) = whole else { return };
+    let facts = match pieces.facts() {
+        Ok(facts) => facts,
+        Err(e) => return assert!(matches!(e, Error::Unsupported { .. }), "{e}"),
+    };
+    assert_eq!(facts.model.warnings, whole.warnings);
+    assert_eq!(facts.model.format, whole.format);
+    let expected = corners(&whole.scene);
+    let mut found = Vec::new();
+    let passed = pieces.primitives(&mut |piece| {
+        found.extend(corners(piece));
+        piece.check()
+    });
+    assert!(passed.is_ok(), "{passed:?}");
+    let place = |corner: &[u32; 7]| [corner[0], corner[1], corner[2]];
+    assert!(found.iter().map(place).eq(expected.iter().map(place)));
+    let count = facts.triangles + facts.points;
+    let all: Vec<u32> = (0..count as u32).collect();
+    let (scene, _) = pieces.only(&all).expect("it was read before");
+    assert!(scene.check().is_ok() && corners(&scene) == expected);
+    let every_third: Vec<u32> = all.iter().copied().step_by(3).collect();
+    let (scene, _) = pieces.only(&every_third).expect("it was read before");
+    let each = expected.len() / all.len().max(1);
+    let third = expected.chunks(each.max(1)).step_by(3).flatten();
+    assert!(corners(&scene).iter().eq(third));
+    // The box is there for vertices that nothing is drawn with, too.
+    assert!(pieces.bounds().is_ok() && pieces.vertices(&mut |piece| piece.check()).is_ok());
+}
+
+/// PLY as a whole and in pieces.
+fn check_ply(bytes: &[u8], resources: &dyn Resources) {
+    let whole = ply::read(bytes, resources, &options());
+    let pieces = ply::Pieces::new(Cursor::new(bytes), bytes.len() as u64, 1, &options());
+    match pieces {
+        Ok(Some(pieces)) => check_pieces(pieces, whole),
+        _ => check(whole),
     }
 }
 
@@ -287,6 +340,12 @@ pub fn stl(bytes: &[u8]) {
     binary.extend(((bytes.len() / 50) as u32).to_le_bytes());
     binary.extend(bytes);
     check(stl::read(&binary, &NoResources, &options()));
+    binary.truncate(stl::HEADER + bytes.len() / stl::RECORD * stl::RECORD);
+    let whole = stl::read(&binary, &NoResources, &options());
+    if let Some(head) = binary.first_chunk().filter(|_| bytes.len() >= stl::RECORD) {
+        let pieces = stl::Pieces::new(head, Cursor::new(&binary), 1, &options());
+        check_pieces(pieces.expect("few triangles"), whole);
+    }
 }
 
 const PLY: &[&str] = &[
@@ -324,14 +383,21 @@ const PLY: &[&str] = &[
 
 /// PLY.
 pub fn ply(bytes: &[u8]) {
-    check(ply::read(bytes, &Same(bytes), &options()));
+    check_ply(bytes, &Same(bytes));
     if let Ok(text) = text(bytes, PLY) {
-        check(ply::read(&text, &NoResources, &options()));
-        let mut whole = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty \
-            float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-            .to_vec();
-        whole.extend(bytes);
-        check(ply::read(&whole, &NoResources, &options()));
+        check_ply(&text, &NoResources);
+    }
+    let vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let faces = "element face 3\nproperty list uchar uchar vertex_indices\n";
+    for (order, elements) in [
+        ("little", [vertices, faces, ""]),
+        ("big", [vertices, "", ""]),
+        ("little", [vertices, colors, faces]),
+    ] {
+        let elements = elements.concat();
+        let head = format!("ply\nformat binary_{order}_endian 1.0\n{elements}end_header\n");
+        check_ply(&[head.as_bytes(), bytes].concat(), &NoResources);
     }
 }
 

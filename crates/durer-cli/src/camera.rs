@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::options::{Ortho, PictureArgs, ViewArgs};
 use crate::values::Size;
 use durer::math::{DQuat, DVec3};
-use durer::scene::{Camera, Projection, Scene};
+use durer::scene::{Camera, NamedCamera, Projection, Scene, UpAxis};
 use durer::view::fit::{self, fit_turning};
 use durer::view::projection::{FitOptions, Lens, NamedView, ViewDirection, fit_scene};
 
@@ -66,12 +66,68 @@ pub fn check(args: &ViewArgs) -> Result<(), Failure> {
     }
 }
 
+/// Model that cameras are fitted to: a scene in memory, or one that is read in pieces.
+pub trait Sights {
+    /// Returns the axis that points up.
+    fn up_axis(&self) -> UpAxis;
+
+    /// Returns the cameras of the file.
+    fn cameras(&self) -> &[NamedCamera];
+
+    /// Returns the middle of the box around everything drawn; the origin if there is nothing.
+    fn center(&mut self) -> Result<DVec3, Failure>;
+
+    /// Returns the distances of near and far planes around the part that a camera can see.
+    fn depth_range(&mut self, camera: &Camera) -> Result<(f64, f64), Failure>;
+
+    /// Returns the camera that sees all of it; with `turning`, also while it turns.
+    fn fitted(
+        &mut self,
+        direction: &ViewDirection,
+        options: &FitOptions,
+        turning: bool,
+    ) -> Result<Camera, Failure>;
+}
+
+impl Sights for &Scene {
+    fn up_axis(&self) -> UpAxis {
+        self.up_axis
+    }
+
+    fn cameras(&self) -> &[NamedCamera] {
+        &self.cameras
+    }
+
+    fn center(&mut self) -> Result<DVec3, Failure> {
+        Ok(fit::center(self).unwrap_or(DVec3::ZERO))
+    }
+
+    fn depth_range(&mut self, camera: &Camera) -> Result<(f64, f64), Failure> {
+        Ok(fit::depth_range(camera, self))
+    }
+
+    fn fitted(
+        &mut self,
+        direction: &ViewDirection,
+        options: &FitOptions,
+        turning: bool,
+    ) -> Result<Camera, Failure> {
+        let fit = if turning { fit_turning } else { fit_scene };
+        fit(self, direction, options).map_err(|e| Failure::Data(e.to_string()))
+    }
+}
+
 /// The camera of one picture of a scene.
-pub fn camera(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+pub fn camera(args: &ViewArgs, mut scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+    camera_by(args, &mut scene, shot)
+}
+
+/// The camera of one picture.
+pub fn camera_by(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let mut camera = if let Some(name) = &args.camera {
         of_file(name, scene, shot)?
     } else if let Some(eye) = args.eye {
-        at(eye, args, scene, shot)
+        at(eye, args, scene, shot)?
     } else {
         fitted(args, scene, shot)?
     };
@@ -96,30 +152,43 @@ fn keep_order(args: &ViewArgs, camera: &mut Camera) {
 }
 
 /// A camera of the file, turned around the middle of the model.
-fn of_file(name: &str, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
-    let found = scene.cameras.iter().find(|c| c.name == name).ok_or_else(|| {
-        let names: Vec<&str> = scene.cameras.iter().map(|c| c.name.as_str()).collect();
+fn of_file(name: &str, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
+    let found = scene.cameras().iter().find(|c| c.name == name).ok_or_else(|| {
+        let names: Vec<&str> = scene.cameras().iter().map(|c| c.name.as_str()).collect();
         let there = match names[..] {
             [] => "the file has no cameras".to_owned(),
             _ => format!("there are {}", names.join(", ")),
         };
         Failure::Data(format!("--camera: no camera `{name}`; {there}"))
     })?;
-    Ok(turned(found.camera, || fit::center(scene).unwrap_or(DVec3::ZERO), scene, shot))
+    let camera = found.camera;
+    if shot.turned() == 0.0 {
+        return Ok(camera);
+    }
+    let pivot = scene.center()?;
+    Ok(turned(camera, pivot, scene.up_axis(), shot))
 }
 
 /// A camera in a given place, turned around its target.
-fn at(eye: DVec3, args: &ViewArgs, scene: &Scene, shot: &Shot) -> Camera {
-    let front = NamedView::Front.direction(scene.up_axis);
-    let target = args.target.unwrap_or_else(|| {
-        let center = fit::center(scene).unwrap_or(DVec3::ZERO);
-        if center == eye { eye - front.to_eye() } else { center }
-    });
-    let up = args.up.unwrap_or_else(|| fit::up_for(target - eye, scene.up_axis));
+fn at(
+    eye: DVec3,
+    args: &ViewArgs,
+    scene: &mut impl Sights,
+    shot: &Shot,
+) -> Result<Camera, Failure> {
+    let front = NamedView::Front.direction(scene.up_axis());
+    let target = match args.target {
+        Some(target) => target,
+        None => {
+            let center = scene.center()?;
+            if center == eye { eye - front.to_eye() } else { center }
+        }
+    };
+    let up = args.up.unwrap_or_else(|| fit::up_for(target - eye, scene.up_axis()));
     let camera = Camera { eye, target, up, projection: projection(args), near: 1.0, far: 2.0 };
-    let camera = turned(camera, || target, scene, shot);
-    let (near, far) = fit::depth_range(&camera, scene);
-    Camera { near, far, ..camera }
+    let camera = turned(camera, target, scene.up_axis(), shot);
+    let (near, far) = scene.depth_range(&camera)?;
+    Ok(Camera { near, far, ..camera })
 }
 
 fn projection(args: &ViewArgs) -> Projection {
@@ -130,14 +199,13 @@ fn projection(args: &ViewArgs) -> Projection {
 }
 
 /// The camera after the share of a full turn around the up axis through the pivot.
-fn turned(camera: Camera, pivot: impl FnOnce() -> DVec3, scene: &Scene, shot: &Shot) -> Camera {
+fn turned(camera: Camera, pivot: DVec3, up_axis: UpAxis, shot: &Shot) -> Camera {
     let half = shot.turned().to_radians() * 0.5;
     if half == 0.0 {
         return camera;
     }
-    let pivot = pivot();
     let (sin, cos) = libm::sincos(half);
-    let axis = NamedView::Front.direction(scene.up_axis).up() * sin;
+    let axis = NamedView::Front.direction(up_axis).up() * sin;
     let turn = DQuat::from_xyzw(axis.x, axis.y, axis.z, cos);
     let around = |p: DVec3| pivot + turn * (p - pivot);
     let (eye, target) = (around(camera.eye), around(camera.target));
@@ -145,22 +213,21 @@ fn turned(camera: Camera, pivot: impl FnOnce() -> DVec3, scene: &Scene, shot: &S
 }
 
 /// A camera that sees the whole model; the same distance for all frames of a turntable.
-fn fitted(args: &ViewArgs, scene: &Scene, shot: &Shot) -> Result<Camera, Failure> {
+fn fitted(args: &ViewArgs, scene: &mut impl Sights, shot: &Shot) -> Result<Camera, Failure> {
     let (azimuth, elevation) = match (shot.view, args.azimuth, args.elevation) {
         (Some(view), ..) => view.angles(),
         (None, None, None) => args.view.angles(),
         (None, azimuth, elevation) => (azimuth.unwrap_or(0.0), elevation.unwrap_or(0.0)),
     };
     let azimuth = azimuth + shot.turned();
-    let direction = ViewDirection::from_angles(azimuth, elevation, scene.up_axis)
+    let direction = ViewDirection::from_angles(azimuth, elevation, scene.up_axis())
         .map_err(|e| Failure::Usage(format!("--{e}")))?;
     let lens = match args.ortho {
         Some(_) => Lens::Orthographic,
         None => Lens::Perspective { fov_y: args.fov.unwrap_or(FOV).to_radians() },
     };
     let options = FitOptions { lens, aspect: shot.aspect(), margin: MARGIN };
-    let fit = if shot.turn.is_some() { fit_turning } else { fit_scene };
-    let mut camera = fit(scene, &direction, &options).map_err(|e| Failure::Data(e.to_string()))?;
+    let mut camera = scene.fitted(&direction, &options, shot.turn.is_some())?;
     if let Some(Ortho::Height(height)) = args.ortho {
         camera.projection = Projection::Orthographic { height };
     }

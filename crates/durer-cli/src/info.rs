@@ -1,20 +1,20 @@
 //! `durer info`.
 
 use crate::failure::Failure;
-use crate::input;
+use crate::input::{self, InPieces};
 use crate::layer::{self, LayerInfo};
 use crate::messages::Messages;
 use crate::options::{ReadingArgs, RunningArgs};
 use crate::places::is_stream;
 use crate::report;
 use clap::{Args, ValueHint};
-use durer::scene::{Instance, LightKind, Material, Scene, ShadingModel};
+use durer::scene::{Aabb, Instance, LightKind, Material, Mesh, Scene, ShadingModel};
 use durer::view::cull::triangle_area;
 use durer::view::topology::written_topology;
 use durer::visibility::object::{Edges, Faces};
 use durer::work::Work;
 use durer_formats::told::{cut, escaped};
-use durer_formats::{Model, ModelFormat};
+use durer_formats::{Facts, Model, ModelFormat, Place};
 use serde::Serialize;
 use std::fmt::Write;
 use std::io::BufRead;
@@ -121,9 +121,12 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         } else {
             // What a model has kept of the budget goes with it.
             let options = input::read_options(&args.reading, &args.running.work.part());
-            let model = input::read(path, &options)?;
             let name = input::given_name(path);
-            infos.push(Told::Model(Box::new(of_model(name, &model, &args.running.work)?)));
+            let info = match input::in_pieces(path, &options) {
+                Some(pieces) => of_pieces(name, &mut pieces?)?,
+                None => of_model(name, &input::read(path, &options)?, &args.running.work)?,
+            };
+            infos.push(Told::Model(Box::new(info)));
         }
         messages.progress.advance();
     }
@@ -174,7 +177,7 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
         points: count(durer::scene::Topology::Points),
         meshes: scene.meshes.len(),
         instances: scene.instances.len(),
-        bounds: bounds(scene),
+        bounds: scene.bounds().map(told_bounds),
         area: area(scene),
         closed,
         up_axis: scene.up_axis.name(),
@@ -190,30 +193,84 @@ fn of_model(name: String, model: &Model, work: &Work) -> Result<Info, Failure> {
     })
 }
 
+/// What is told of a model that is larger than its budget.
+fn of_pieces(name: String, read: &mut InPieces) -> Result<Info, Failure> {
+    let bounds = read.pieces.bounds().map_err(|e| read.failure(&e))?;
+    let (mut area, facts) = (0.0, read.facts()?);
+    if facts.triangles > 0 {
+        let passed = read.pieces.primitives(&mut |piece| {
+            add_areas(piece, &mut area);
+            Ok(())
+        });
+        passed.map_err(|e| read.failure(&e))?;
+    }
+    let Facts { mut model, triangles, points, vertices } = facts;
+    let why = "whether it is closed is not looked for: it is read in pieces, for it is larger than its budget";
+    if triangles > 0 {
+        model.warn(Place::Whole, why);
+    }
+    Ok(Info {
+        model: name,
+        format: model.format.clone(),
+        triangles,
+        vertices,
+        lines: 0,
+        points,
+        meshes: 1,
+        instances: 1,
+        bounds: bounds.map(told_bounds),
+        area: (triangles > 0).then_some(area),
+        closed: None,
+        up_axis: model.scene.up_axis.name(),
+        materials: model.scene.materials.iter().map(material).collect(),
+        textures: Vec::new(),
+        cameras: Vec::new(),
+        lights: Vec::new(),
+        animations: Vec::new(),
+        variants: Vec::new(),
+        plates: Vec::new(),
+        extensions: Vec::new(),
+        warnings: model.warnings.iter().map(ToString::to_string).collect(),
+    })
+}
+
+/// Adds the areas of a scene's triangles, one by one.
+fn add_areas(scene: &Scene, sum: &mut f64) {
+    for instance in &scene.instances {
+        let Some(mesh) = scene.meshes.get(instance.mesh) else { continue };
+        let areas = areas(mesh, instance);
+        areas.for_each(|area| *sum += area);
+    }
+}
+
 /// A name of the file, not too long.
 fn short(name: impl AsRef<str>) -> String {
     cut(name.as_ref()).into_owned()
 }
 
-fn bounds(scene: &Scene) -> Option<Bounds> {
-    let b = scene.bounds()?;
-    Some(Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() })
+fn told_bounds(b: Aabb) -> Bounds {
+    Bounds { min: b.min.to_array(), max: b.max.to_array(), size: b.size().to_array() }
 }
 
 /// The sum of the triangles' areas, instance by instance.
 fn area(scene: &Scene) -> Option<f64> {
     let of_instance = |instance: &Instance| {
         let mesh = scene.meshes.get(instance.mesh)?;
-        let corner = |v: u32| {
-            let p = mesh.positions.get(v as usize).copied().unwrap_or_default();
-            instance.world_from_mesh.transform_point3(p.as_dvec3())
-        };
-        let area = |i| triangle_area(mesh.triangle(i).map(corner)).length();
-        Some((0..mesh.triangle_count()).map(area).filter(|area| area.is_finite()).sum::<f64>())
+        Some(areas(mesh, instance).sum::<f64>())
     };
     // A sum of nothing is -0.
     let sum = scene.instances.iter().filter_map(of_instance).sum::<f64>() + 0.0;
     (scene.triangle_count() > 0).then_some(sum)
+}
+
+/// The areas of an instance's triangles, of those that are finite.
+fn areas(mesh: &Mesh, instance: &Instance) -> impl Iterator<Item = f64> {
+    let corner = |v: u32| {
+        let p = mesh.positions.get(v as usize).copied().unwrap_or_default();
+        instance.world_from_mesh.transform_point3(p.as_dvec3())
+    };
+    let area = move |i| triangle_area(mesh.triangle(i).map(corner)).length();
+    (0..mesh.triangle_count()).map(area).filter(|area| area.is_finite())
 }
 
 /// Whether all meshes of triangles that are shown are closed, each or together.

@@ -1,5 +1,9 @@
 //! A model from a file or from standard input.
 
+mod in_pieces;
+
+pub use in_pieces::{InPieces, in_pieces};
+
 use crate::failure::{Failure, in_words};
 use crate::options::ReadingArgs;
 use crate::places::is_stream;
@@ -52,6 +56,8 @@ pub fn check_streams(models: &[impl AsRef<Path>]) -> Result<(), Failure> {
 pub struct Reading {
     options: ReadOptions,
     root: Option<PathBuf>,
+    /// `--max-triangles` and `--max-bytes`, where they are given.
+    given: [Option<u64>; 2],
 }
 
 /// How models are read.
@@ -71,16 +77,23 @@ pub fn read_options(args: &ReadingArgs, work: &Work) -> Reading {
         plate: args.plate,
         own_lights: args.own_lights,
     };
-    Reading { options, root: args.root.clone() }
+    let given = [args.max_triangles, args.max_bytes];
+    Reading { options, root: args.root.clone(), given }
 }
 
 /// Reads a model.
 pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
-    let Reading { options, root } = reading;
+    let Reading { options, root, .. } = reading;
     watch::of_file(display_name(path));
     let resources = resources(path, root.as_deref())?;
     let streamed = streamed(path, &*resources, options);
     let mut model = streamed.unwrap_or_else(|| read_whole(path, &*resources, options))?;
+    tell_ignored(&mut model, options);
+    Ok(model)
+}
+
+/// Says which options do nothing for a model of its format.
+fn tell_ignored(model: &mut Model, options: &ReadOptions) {
     // Of a format that has them the reader says so itself.
     if !model.format.starts_with("glTF") {
         for (given, what) in [
@@ -97,7 +110,6 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Model, Failure> {
         let message = format!("{} has no plates; --plate does nothing", model.format);
         model.warn(Place::Whole, message);
     }
-    Ok(model)
 }
 
 /// Reads a model from all of its bytes.

@@ -1,6 +1,7 @@
 //! `durer render`.
 
 mod args;
+mod streamed;
 
 pub use args::{EXAMPLES, RenderArgs};
 
@@ -24,12 +25,12 @@ use crate::values::{Algorithm, Size};
 use crate::watch;
 use durer::math::{DVec2, Vec4};
 use durer::pipeline::{self, Lighting, Marks, Mask, RenderOptions, SurfaceMethod};
-use durer::scene::{AlphaMode, Material, Scene};
+use durer::scene::{AlphaMode, Camera, Material, Scene};
 use durer::target::Framebuffer;
 use durer::view::components::components;
 use durer::view::layout::Layout;
 use durer::view::objects::divided;
-use durer_formats::png;
+use durer_formats::{Model, png};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -298,7 +299,16 @@ fn render_model(
     let start = Instant::now();
     // What the model has kept of the budget goes with it.
     let part = args.running.work.part();
-    let mut model = input::read(job.model, &input::read_options(&args.reading, &part))?;
+    let reading = input::read_options(&args.reading, &part);
+    if let Some(pieces) = input::in_pieces(job.model, &reading)
+        && !streamed::needs_whole(args)
+    {
+        let pieces = pieces?;
+        if streamed::suits(args, job, &*pieces.pieces) {
+            return streamed::render_model(args, job, pieces, messages, told);
+        }
+    }
+    let mut model = input::read(job.model, &reading)?;
     let read_seconds = start.elapsed().as_secs_f64();
     if let Some(axis) = args.view.up_axis {
         model.scene.up_axis = axis.into();
@@ -357,27 +367,42 @@ fn render_model(
         } else {
             render_picture(args, &model.scene, picture, &mut sink)
         };
-        let (report, unseen) = report
+        let made = report
             .map_err(|failure| input::blamed(&name, &model.scene, with_file(&name, failure)))?;
-        if let Some(why) = unseen {
-            messages.warning(&name, &why);
-            noticed.unseen.get_or_insert(why);
-        }
-        tell_differing(&name, &report, messages);
-        messages.detail(|| describe(&report));
-        messages.progress.advance();
-        noticed.add(&report);
-        told.picture(&report);
+        tell_picture(&name, made, &mut noticed, messages, told);
     }
     film.map_or(Ok(()), Film::finish)?;
     noticed.tell(&name, &mut model, messages);
+    tell_model(job, model, read_seconds, told);
+    Ok(())
+}
+
+/// Tells of a picture, and why nothing of the model is seen in it, where that is so.
+fn tell_picture(
+    name: &str,
+    (report, unseen): (PictureReport, Option<String>),
+    noticed: &mut Noticed,
+    messages: &Messages,
+    told: &mut Growing,
+) {
+    if let Some(why) = unseen {
+        messages.warning(name, &why);
+        noticed.unseen.get_or_insert(why);
+    }
+    tell_differing(name, &report, messages);
+    messages.detail(|| describe(&report));
+    messages.progress.advance();
+    noticed.add(&report);
+    told.picture(&report);
+}
+
+fn tell_model(job: &Job, model: Model, read_seconds: f64, told: &mut Growing) {
     told.model(&ModelReport {
         model: input::given_name(job.model),
         format: model.format,
         read_seconds,
         warnings: model.warnings.iter().map(ToString::to_string).collect(),
     });
-    Ok(())
 }
 
 /// The default material in another colour.
@@ -489,6 +514,19 @@ fn render_picture(
         cells.push((cell, framebuffer));
     }
     let unseen = report.set_status(&statuses);
+    deliver(args, picture, cells, algorithm, &mut report, sink)?;
+    Ok((report, unseen))
+}
+
+/// Puts the cells of a picture together and writes its files.
+fn deliver(
+    args: &RenderArgs,
+    picture: &Picture,
+    cells: Vec<(Cell, Framebuffer)>,
+    algorithm: Algorithm,
+    report: &mut PictureReport,
+    sink: &mut Sink,
+) -> Result<(), Failure> {
     report.algorithm = match algorithm {
         Algorithm::Surfaces(method) => method.name().to_owned(),
         Algorithm::Wireframe => durer::visibility::wireframe::INFO.name.to_owned(),
@@ -503,7 +541,7 @@ fn render_picture(
     report.flattened = sink.put(&framebuffer.color, format, &args.picture.encoding)?;
     report.files.push(sink.name());
     report.encode_seconds = start.elapsed().as_secs_f64();
-    Ok((report, unseen))
+    Ok(())
 }
 
 /// Options that the renderer refuses.
@@ -520,11 +558,28 @@ fn render_options(
     algorithm: Algorithm,
 ) -> Result<RenderOptions, Failure> {
     let camera = camera::camera(&args.view, framed, shot)?;
+    let camera = match std::ptr::eq(framed, scene) {
+        true => camera,
+        false => staging::with_depths(&args.view, &camera, scene),
+    };
+    let ambient_occlusion = staging::occlusion(&args.stage, model);
+    let options = picture_options(args, camera, picture, shot, algorithm);
+    Ok(RenderOptions { ambient_occlusion, ..options })
+}
+
+/// The options for the picture from a camera.
+fn picture_options(
+    args: &RenderArgs,
+    camera: Camera,
+    picture: &Picture,
+    shot: &Shot,
+    algorithm: Algorithm,
+) -> RenderOptions {
     let lighting = match &args.look.light[..] {
         [] => Lighting::Auto,
         lights => Lighting::Given(lights.to_vec()),
     };
-    Ok(RenderOptions {
+    RenderOptions {
         algorithm: match algorithm {
             Algorithm::Surfaces(method) => method,
             Algorithm::Wireframe | Algorithm::All => SurfaceMethod::ZBuffer,
@@ -551,14 +606,9 @@ fn render_options(
         item: picture.item.is_some(),
         normal: picture.normal.is_some(),
         max_pixels: args.picture.max_pixels,
-        ambient_occlusion: staging::occlusion(&args.stage, model),
         work: args.running.work.clone(),
-        ..RenderOptions::new(if std::ptr::eq(framed, scene) {
-            camera
-        } else {
-            staging::with_depths(&args.view, &camera, scene)
-        })
-    })
+        ..RenderOptions::new(camera)
+    }
 }
 
 /// Puts the viewports into one picture.

@@ -82,6 +82,11 @@ impl StageArgs {
         self.occlusion().is_some()
     }
 
+    /// Whether something is asked for that is made of all of the model.
+    pub fn needs_model(&self) -> bool {
+        self.has_ground() || self.grid || self.axes || self.has_edges() || self.has_occlusion()
+    }
+
     fn has_ground(&self) -> bool {
         self.ground || self.has_studio()
     }

@@ -200,11 +200,30 @@ pub(crate) fn whole(mesh: &Mesh, material: usize) -> Part {
 
 /// Takes colours from sRGB to linear; numbers up to 255 that should go up to 1 are scaled.
 pub(crate) fn make_linear(model: &mut Model, colors: &mut [Vec4]) {
-    let brightest = colors.iter().map(|c| c.truncate().max_element()).fold(0.0, f32::max);
-    let scale = if brightest > 2.0 { 1.0 / 255.0 } else { 1.0 };
+    let scale = scale_of(brightest(colors));
+    warn_of_scale(model, scale);
+    scaled_to_linear(colors, scale);
+}
+
+/// The largest part of colours.
+pub(crate) fn brightest(colors: &[Vec4]) -> f32 {
+    colors.iter().map(|c| c.truncate().max_element()).fold(0.0, f32::max)
+}
+
+/// What colours are multiplied by whose largest part this is.
+pub(crate) fn scale_of(brightest: f32) -> f32 {
+    if brightest > 2.0 { 1.0 / 255.0 } else { 1.0 }
+}
+
+/// Tells where colours are scaled.
+pub(crate) fn warn_of_scale(model: &mut Model, scale: f32) {
     if scale < 1.0 {
         model.warn(Place::Whole, "colors go up to 255 instead of 1; they were scaled");
     }
+}
+
+/// Takes colours from sRGB to linear, multiplied first.
+pub(crate) fn scaled_to_linear(colors: &mut [Vec4], scale: f32) {
     for c in colors {
         *c = color::linear3((c.truncate() * scale).to_array()).extend(c.w * scale);
     }

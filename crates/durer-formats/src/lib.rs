@@ -33,6 +33,7 @@ pub mod obj;
 pub mod off;
 pub mod picture;
 mod piece;
+mod pieces;
 mod place;
 pub mod ply;
 pub mod png;
@@ -52,4 +53,5 @@ pub mod xyz;
 
 pub use error::{Error, Place, Result, Warning};
 pub use model::{Found, Limits, Model, NoResources, Pose, ReadOptions, Resources};
+pub use pieces::{Facts, Pieces, Visit};
 pub use sniff::{ModelFormat, read_model};

@@ -1,6 +1,7 @@
 //! Moving a far-off model to its middle, so that single precision keeps its detail.
 
 use durer::math::{DMat4, DVec3, Vec3};
+use durer::scene::Aabb;
 
 /// A model is far off where its coordinates exceed its extent by this factor: beyond it, single
 /// precision would keep fewer than 21 bits of the extent. Nearer models keep their coordinates.
@@ -8,9 +9,12 @@ const FAR: f64 = 8.0;
 
 /// The origin to store positions against: zero, or for a far-off model its middle.
 pub(crate) fn origin(points: &[DVec3]) -> DVec3 {
-    let Some(bounds) = durer::scene::Aabb::around(points.iter().copied()) else {
-        return DVec3::ZERO;
-    };
+    origin_of(Aabb::around(points.iter().copied()))
+}
+
+/// As [`origin`], of points with this box around them.
+pub(crate) fn origin_of(bounds: Option<Aabb>) -> DVec3 {
+    let Some(bounds) = bounds else { return DVec3::ZERO };
     let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
     let extent = bounds.size().max_element();
     let middle = bounds.center();

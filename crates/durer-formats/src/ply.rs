@@ -20,8 +20,10 @@ mod faces;
 mod finish;
 mod header;
 mod names;
+mod pieces;
 mod row_color;
 mod splat;
+mod stream;
 mod texture;
 mod vertices;
 
@@ -30,6 +32,7 @@ use crate::{Error, Model, Place, ReadOptions, Resources, Result, text};
 use body::{Ascii, Binary};
 use build::Builder;
 use header::{Element, Encoding, Header};
+pub use pieces::Pieces;
 
 /// Whether the content begins as PLY does.
 pub(crate) fn sniff(bytes: &[u8]) -> bool {
@@ -68,16 +71,21 @@ pub fn read(bytes: &[u8], resources: &dyn Resources, options: &ReadOptions) -> R
     if matches!(header.encoding, Encoding::Ascii) {
         model.scene.last_digit = last_digit(body, b"");
     }
+    warn_of_end(&mut model, &header, warning);
+    model.scene.check()?;
+    Ok(model)
+}
+
+/// Tells of lines that were skipped, and of what is missing or left over at the end of the file.
+fn warn_of_end(model: &mut Model, header: &Header, end: Option<(Place, String)>) {
     if header.unknown.count > 0 {
         let message =
             format!("{} lines are not of a PLY header and were skipped", header.unknown.count);
         model.warn(header.unknown.first.clone(), message);
     }
-    if let Some((place, message)) = warning {
+    if let Some((place, message)) = end {
         model.warn(place, message);
     }
-    model.scene.check()?;
-    Ok(model)
 }
 
 /// Refuses splats of which a vertex is but four words of bits.
@@ -127,10 +135,18 @@ fn room(element: &Element, values: &impl body::Values) -> u64 {
 /// # Errors
 /// `why`, where there is nothing to show yet.
 fn missing(element: &Element, row: u64, builder: &Builder, why: Error) -> Result<(Place, String)> {
-    let Error::Decode { place, message } = why else { return Err(why) };
     if builder.vertices.len() == 0 {
-        return Err(Error::Decode { place, message });
+        return Err(why);
     }
+    missing_rows(element, row, why)
+}
+
+/// What to say of rows of an element that are not there.
+///
+/// # Errors
+/// `why`, where it is not about what the file holds.
+fn missing_rows(element: &Element, row: u64, why: Error) -> Result<(Place, String)> {
+    let Error::Decode { place, message } = why else { return Err(why) };
     let Element { name, count, .. } = element;
     let message = format!(
         "{message}: {row} of {count} rows of element `{name}` are read, and nothing after them"

@@ -13,17 +13,19 @@
 mod ascii;
 mod binary;
 mod palette;
+mod pieces;
 
 use crate::text::utf8;
 use crate::{Error, Limits, Model, ModelFormat, Place, ReadOptions, Resources, Result, place};
 pub use binary::read_binary_stream;
 use durer::math::DVec3;
 use durer::scene::{Instance, Mesh, UpAxis};
+pub use pieces::Pieces;
 
 /// Bytes of a binary file before its first triangle: 80 of text, and the count.
 pub const HEADER: usize = 84;
 /// Bytes of a triangle in a binary file: normal, three vertices, two bytes of attributes.
-const RECORD: usize = 50;
+pub const RECORD: usize = 50;
 /// How far into a file that begins with `solid` a keyword of ascii STL is looked for.
 const PROBE: usize = 4096;
 
@@ -87,12 +89,16 @@ fn finished(mut model: Model, infinite: usize) -> Result<Model> {
     if model.scene.meshes.iter().all(|m| m.positions.is_empty()) {
         model.warn(Place::Whole, "holds no triangles");
     }
+    warn_infinite(&mut model, infinite);
+    model.scene.check()?;
+    Ok(model)
+}
+
+fn warn_infinite(model: &mut Model, infinite: usize) {
     if infinite > 0 {
         let message = format!("{infinite} vertices have a coordinate that is NaN or infinite");
         model.warn(Place::Whole, message);
     }
-    model.scene.check()?;
-    Ok(model)
 }
 
 fn check_limit(triangles: u64, limits: &Limits) -> Result<()> {

@@ -58,14 +58,16 @@ fn what_needs_more_is_refused_with_its_stage_and_the_option() {
     for (command, budget, stage) in [
         ("render cube.obj -o o.png --size 2000x2000", "8M", "planes of the picture"),
         ("render cube.obj -o o.png --size 9x9 --shadows map", "8M", "shadow maps"),
-        ("render many.stl -o o.png --size 64x64", "1M", "meshes of the model"),
+        ("render many.stl -o o.png --size 64x64", "40k", "meshes of the model"),
+        ("render many.stl -o o.png --size 900x900", "5M", "samples of the picture"),
+        ("render many.stl -o o.png --size 64x64 --shadows map", "1M", "meshes of the model"),
         ("render many.obj -o o.png --size 64x64", "4M", "meshes of the model"),
         ("render many.obj -o o.png --size 64x64", "500k", "bytes of the file"),
-        ("render many.stl -o o.png --size 64x64 --aa 4", "3500k", "triangles on the screen"),
+        ("render many.stl -o o.png --size 64x --aa 4", "3500k", "triangles on the screen"),
         ("render many.stl -o o.png --size 64x64 --algorithm ray", "5M", "triangles on the screen"),
         ("render many.stl -o o.svg", "6M", "faces for hidden lines"),
         ("render many.stl -o o.svg --style regions", "6M", "faces of the drawing"),
-        ("info many.stl", "1M", "meshes of the model"),
+        ("info many.stl", "40k", "meshes of the model"),
         ("pick many.stl --at 9,9", "1M", "meshes of the model"),
         ("draw curves.svg -o o.png --size 100x100", "1M", "outlines of what is painted"),
         ("draw few.svg -o o.png --size 3000x3000", "34M", "planes of the picture"),
@@ -119,7 +121,7 @@ fn map_data_that_are_held_are_charged() {
 fn whether_a_large_model_is_closed_may_stay_open() {
     let folder = Folder::new();
     folder.write("many.stl", stl(60_000));
-    let info = folder.must("info many.stl --max-memory 4M");
+    let info = folder.must("info many.stl --max-memory 6100k");
     let text = String::from_utf8(info.out).unwrap();
     assert!(text.contains("whether it is closed is not looked for: edges of the model"), "{text}");
 }
@@ -127,11 +129,11 @@ fn whether_a_large_model_is_closed_may_stay_open() {
 #[test]
 fn a_model_that_costs_too_much_is_skipped() {
     let folder = Folder::with_models();
-    folder.write("many.stl", stl(60_000));
+    folder.write("many.obj", obj(100_000));
     let command =
-        "render many.stl cube.obj -o out/ --size 64x64 --skip-failures --max-memory 1M --json";
+        "render many.obj cube.obj -o out/ --size 64x64 --skip-failures --max-memory 500k --json";
     let ended = folder.run(command);
-    ended.fails(3, "many.stl: meshes of the model");
+    ended.fails(3, "many.obj: bytes of the file");
     assert_eq!(ended.json()["models"].as_array().unwrap().len(), 1);
     assert!(folder.path("out/cube.png").exists() && !folder.path("out/many.png").exists());
 }

@@ -26,6 +26,7 @@ mod other_formats;
 mod outputs;
 mod pick;
 mod pictures;
+mod pieces;
 mod plot;
 mod readme;
 mod regions;

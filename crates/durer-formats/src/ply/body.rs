@@ -207,9 +207,13 @@ impl<const LITTLE: bool> Values for Binary<'_, LITTLE> {
     }
 
     fn left_over(&mut self) -> Option<(Place, String)> {
-        let left = self.bytes_left();
-        let place = Place::Byte(self.offset + self.at as u64);
-        // Writers that end the data as they end a line leave one or two bytes.
-        (left > 2).then(|| (place, format!("{left} bytes after the last element were ignored")))
+        left_over(self.bytes_left(), self.offset + self.at as u64)
     }
+}
+
+/// What to say of so many bytes beyond the last element.
+pub(super) fn left_over(left: u64, place: u64) -> Option<(Place, String)> {
+    let message = || format!("{left} bytes after the last element were ignored");
+    // Writers that end the data as they end a line leave one or two bytes.
+    (left > 2).then(|| (Place::Byte(place), message()))
 }

@@ -24,6 +24,12 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
+    /// Of a file, of which nothing is wrong so far.
+    pub fn new(header: &Header, limits: Limits) -> Self {
+        let vertex_count = header.element("vertex").map_or(0, |e| e.count);
+        Self { limits, vertex_count, dangling: Tally::default(), dangling_vertex: 0.0 }
+    }
+
     /// The vertex that a value names, if there is one; others are counted.
     pub fn vertex(&mut self, value: f64, values: &impl Values) -> Option<u32> {
         if value >= 0.0 && value < self.vertex_count as f64 && value.fract() == 0.0 {
@@ -114,10 +120,8 @@ pub(super) struct Builder {
 
 impl Builder {
     pub fn new(header: &Header, limits: Limits) -> Self {
-        let vertex_count = header.element("vertex").map_or(0, |e| e.count);
-        let dangling = Tally::default();
         Self {
-            bounds: Bounds { limits, vertex_count, dangling, dangling_vertex: 0.0 },
+            bounds: Bounds::new(header, limits),
             vertices: Vertices::default(),
             faces: Faces::default(),
             edges: Edges::default(),
@@ -127,7 +131,7 @@ impl Builder {
 
     /// Whether there is a triangle to show.
     pub fn has_faces(&self) -> bool {
-        !self.faces.facets.triangles.indices.is_empty()
+        self.faces.has_any()
     }
 
     /// Prepares for `count` rows of an element.

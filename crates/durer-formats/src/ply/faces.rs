@@ -31,6 +31,11 @@ pub(super) struct Faces {
 }
 
 impl Faces {
+    /// Whether there is a triangle to show.
+    pub fn has_any(&self) -> bool {
+        !self.facets.triangles.indices.is_empty()
+    }
+
     /// Prepares for so many rows.
     pub fn begin(&mut self, plan: &Plan, count: usize) {
         if plan.has(Use::Indices) {

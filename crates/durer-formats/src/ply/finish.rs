@@ -1,6 +1,6 @@
 //! From the vertices, faces and edges of a PLY file to a scene.
 
-use super::build::Builder;
+use super::build::{Bounds, Builder};
 use super::faces::Faces;
 use super::header::{Encoding, Header};
 use super::{splat, texture};
@@ -26,7 +26,8 @@ pub(super) fn finish(
         return Err(Error::whole("has no element `vertex`: there is nothing to show"));
     }
     drop_unfinished(&mut model, &mut builder);
-    check_dangling(&mut model, &builder)?;
+    let nothing = !builder.has_faces() && builder.edges.ends.indices.is_empty();
+    check_dangling(&mut model, &builder.bounds, nothing)?;
     let origin = builder.vertices.wide.as_deref().map_or(DVec3::ZERO, place::origin);
     if let Some(wide) = builder.vertices.wide.take() {
         builder.vertices.all.positions = place::narrow(&wide, origin);
@@ -46,7 +47,7 @@ pub(super) fn finish(
     Ok(model)
 }
 
-fn format(header: &Header) -> &'static str {
+pub(super) fn format(header: &Header) -> &'static str {
     match header.encoding {
         Encoding::Ascii => "PLY, ascii",
         Encoding::LittleEndian => "PLY, binary little endian",
@@ -74,14 +75,14 @@ fn drop_unfinished(model: &mut Model, builder: &mut Builder) {
 /// Tells of faces and edges whose vertices do not exist.
 ///
 /// # Errors
-/// Where no others are left.
-fn check_dangling(model: &mut Model, builder: &Builder) -> Result<()> {
-    let dangling = &builder.bounds.dangling;
+/// Where nothing else is left.
+pub(super) fn check_dangling(model: &mut Model, bounds: &Bounds, nothing: bool) -> Result<()> {
+    let dangling = &bounds.dangling;
     if dangling.count == 0 {
         return Ok(());
     }
-    let (place, message) = (dangling.first.clone(), builder.bounds.dangling_message());
-    if builder.faces.facets.triangles.indices.is_empty() && builder.edges.ends.indices.is_empty() {
+    let (place, message) = (dangling.first.clone(), bounds.dangling_message());
+    if nothing {
         return Err(Error::Decode { place, message });
     }
     let message = format!("{message}; {} faces or edges like this are left out", dangling.count);
@@ -90,21 +91,29 @@ fn check_dangling(model: &mut Model, builder: &Builder) -> Result<()> {
 }
 
 fn warn(model: &mut Model, builder: &Builder) {
-    let infinite = count_infinite(&builder.vertices.all.positions);
+    warn_infinite(model, count_infinite(&builder.vertices.all.positions));
+    if builder.vertices.all.positions.is_empty() {
+        model.warn(Place::Whole, "holds no vertices");
+    }
+    warn_of_faces(model, &builder.faces);
+    for message in &builder.unread {
+        model.warn(Place::Whole, message);
+    }
+}
+
+pub(super) fn warn_infinite(model: &mut Model, infinite: usize) {
     if infinite > 0 {
         let message = format!("{infinite} vertices have a coordinate that is NaN or infinite");
         model.warn(Place::Whole, message);
     }
-    if builder.vertices.all.positions.is_empty() {
-        model.warn(Place::Whole, "holds no vertices");
-    }
-    for (tally, message) in builder.faces.warnings() {
+}
+
+/// Tells of faces that were left out or changed.
+pub(super) fn warn_of_faces(model: &mut Model, faces: &Faces) {
+    for (tally, message) in faces.warnings() {
         if tally.count > 0 {
             model.warn(tally.first.clone(), format!("{} {message}", tally.count));
         }
-    }
-    for message in &builder.unread {
-        model.warn(Place::Whole, message);
     }
 }
 

@@ -7,7 +7,7 @@ use super::names::{
 };
 use super::splat::Shape;
 use crate::facets::Attributes;
-use crate::{Error, Result};
+use crate::{Error, Result, place};
 use durer::math::{DVec3, Vec2, Vec3, Vec4};
 
 /// Half the root of 1 / π: what a splat's first coefficient of spherical harmonics is multiplied by.
@@ -89,6 +89,11 @@ impl Vertices {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.wide.as_ref().map_or(self.all.positions.len(), Vec::len)
+    }
+
+    /// The positions, relative to an origin where they are wide.
+    pub fn into_positions(self, origin: DVec3) -> Vec<Vec3> {
+        self.wide.map_or(self.all.positions, |wide| place::narrow(&wide, origin))
     }
 
     /// Reads one row.

@@ -9,7 +9,7 @@ use durer::math::{DVec3, Vec3};
 use durer::scene::{Mesh, Part};
 
 /// What the format is called in a model.
-const BINARY: &str = "STL, binary";
+pub(super) const BINARY: &str = "STL, binary";
 
 /// Bytes of a binary file that [`read_binary_stream`] works on at a time: few enough for the cache.
 const AT_ONCE: usize = 1024;
@@ -36,12 +36,15 @@ pub fn read_binary_stream(
         facets.add(bytes.as_chunks().0);
         left -= count;
     }
-    facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() })
+    facets.into_model(Model { format: BINARY.to_owned(), ..Model::default() }, false)
 }
 
-/// Takes the memory for so many triangles from the budget: their corners, some shared, and numbers of them.
+/// What a triangle takes: its corners, some shared, and numbers of them.
+pub(super) const BYTES: u64 = 48;
+
+/// Takes the memory for so many triangles from the budget.
 fn keep(triangles: usize, limits: &Limits) -> Result<()> {
-    Ok(limits.work.keep(MODEL, triangles as u64 * 48)?)
+    Ok(limits.work.keep(MODEL, triangles as u64 * BYTES)?)
 }
 
 /// Reads all bytes of a file.
@@ -62,7 +65,7 @@ pub(super) fn read(bytes: &[u8], limits: &Limits) -> Result<Model> {
     keep(records.len(), limits)?;
     let mut facets = Facets::new(bytes, records.len());
     records.chunks(AT_ONCE).for_each(|some| facets.add(some));
-    facets.into_model(model)
+    facets.into_model(model, false)
 }
 
 /// The triangles that are really there.
@@ -89,7 +92,7 @@ fn records<'a>(model: &mut Model, data: &'a [u8], count: u32) -> Result<&'a [[u8
     Ok(whole)
 }
 
-fn vertices(record: &[u8; RECORD]) -> [Vec3; 3] {
+pub(super) fn vertices(record: &[u8; RECORD]) -> [Vec3; 3] {
     let mut numbers = [0.0; 9];
     for (to, bytes) in numbers.iter_mut().zip(record[12..48].as_chunks().0) {
         *to = f32::from_le_bytes(*bytes);
@@ -99,7 +102,7 @@ fn vertices(record: &[u8; RECORD]) -> [Vec3; 3] {
 }
 
 /// The facets of a binary file so far.
-struct Facets {
+pub(super) struct Facets {
     mesh: Mesh,
     /// How many there will be.
     count: usize,
@@ -110,12 +113,12 @@ struct Facets {
 
 impl Facets {
     /// For a file that begins so and has so many facets.
-    fn new(head: &[u8], count: usize) -> Self {
+    pub fn new(head: &[u8], count: usize) -> Self {
         let mesh = Mesh { positions: Vec::with_capacity(3 * count), ..Mesh::default() };
         Self { mesh, count, palette: Palette::new(head), infinite: 0 }
     }
 
-    fn add(&mut self, records: &[[u8; RECORD]]) {
+    pub fn add(&mut self, records: &[[u8; RECORD]]) {
         let Mesh { positions, colors, .. } = &mut self.mesh;
         let before = positions.len();
         positions.resize(before + 3 * records.len(), Vec3::ZERO);
@@ -135,7 +138,11 @@ impl Facets {
         colors.extend(records.iter().flat_map(|r| [self.palette.color(attribute(r)); 3]));
     }
 
-    fn into_model(mut self, mut model: Model) -> Result<Model> {
+    /// Adds the facets to a model, with colours where some have one, or where it is known that others of the file have.
+    pub fn into_model(mut self, mut model: Model, colored: bool) -> Result<Model> {
+        if colored && self.mesh.colors.is_empty() {
+            self.mesh.colors.resize(self.mesh.positions.len(), self.palette.color(0));
+        }
         if let Some(material) = self.palette.material(!self.mesh.colors.is_empty()) {
             let range = 0..self.count as u32;
             self.mesh.parts.push(Part { range, material: Some(0), name: String::new() });

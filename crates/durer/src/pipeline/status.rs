@@ -136,36 +136,61 @@ fn other_color(background: Background) -> Vec4 {
 
 /// Returns what the places of the vertices tell; `None` where some may be seen.
 fn status_of_vertices(scene: &Scene, view: &View) -> Option<Status> {
-    let mut any = false;
-    let mut beyond_all: Option<Outcode> = None;
-    let mut behind_all = true;
-    for p in drawn_vertices(scene) {
-        any = true;
-        if !p.is_finite() {
-            continue;
+    let mut places = Places::new(view);
+    places.add(scene);
+    places.status()
+}
+
+/// Where all vertices lie that something is drawn with, of a scene that may come in pieces.
+pub struct Places<'a> {
+    view: &'a View,
+    any: bool,
+    beyond_all: Option<Outcode>,
+    behind_all: bool,
+}
+
+impl<'a> Places<'a> {
+    /// Of no vertices so far.
+    pub fn new(view: &'a View) -> Self {
+        Self { view, any: false, beyond_all: None, behind_all: true }
+    }
+
+    /// Adds those of a scene, or of the next piece of one.
+    pub fn add(&mut self, scene: &Scene) {
+        for p in drawn_vertices(scene) {
+            self.any = true;
+            if !p.is_finite() {
+                continue;
+            }
+            let clip = self.view.clip_from_world() * p.extend(1.0);
+            let code = Outcode::of_homogeneous(clip, DepthRange::NegativeOneToOne);
+            self.behind_all &= clip.w <= 0.0;
+            self.beyond_all = Some(self.beyond_all.map_or(code, |all| all & code));
         }
-        let clip = view.clip_from_world() * p.extend(1.0);
-        let code = Outcode::of_homogeneous(clip, DepthRange::NegativeOneToOne);
-        behind_all &= clip.w <= 0.0;
-        beyond_all = Some(beyond_all.map_or(code, |all| all & code));
     }
-    if !any {
-        return Some(Status::Empty);
+
+    /// What they tell; `None` where some may be seen.
+    pub fn status(&self) -> Option<Status> {
+        if !self.any {
+            return Some(Status::Empty);
+        }
+        let Some(beyond) = self.beyond_all else {
+            return Some(Status::Invisible(Unseen::NotFinite));
+        };
+        let perspective = matches!(self.view.camera().projection, Projection::Perspective { .. });
+        let why = if self.behind_all && perspective {
+            Unseen::BehindEye
+        } else if beyond.contains(Outcode::NEAR) {
+            Unseen::BeforeNear
+        } else if beyond.contains(Outcode::FAR) {
+            Unseen::BeyondFar
+        } else if beyond.is_inside() {
+            return None;
+        } else {
+            Unseen::Beside
+        };
+        Some(Status::Invisible(why))
     }
-    let Some(beyond) = beyond_all else { return Some(Status::Invisible(Unseen::NotFinite)) };
-    let perspective = matches!(view.camera().projection, Projection::Perspective { .. });
-    let why = if behind_all && perspective {
-        Unseen::BehindEye
-    } else if beyond.contains(Outcode::NEAR) {
-        Unseen::BeforeNear
-    } else if beyond.contains(Outcode::FAR) {
-        Unseen::BeyondFar
-    } else if beyond.is_inside() {
-        return None;
-    } else {
-        Unseen::Beside
-    };
-    Some(Status::Invisible(why))
 }
 
 /// All vertices that a triangle, a line or a point uses, in world space.

@@ -136,8 +136,18 @@ pub fn center(scene: &Scene) -> Option<DVec3> {
 /// Returns the distances of near and far planes around the part of the model that a camera at this position can
 /// see, world units.
 pub fn depth_range(camera: &Camera, scene: &Scene) -> (f64, f64) {
-    let back = (camera.eye - camera.target).normalize_or_zero();
-    let Some(ends) = drawn_ends(scene, back) else { return (0.1, 100.0) };
+    depth_range_of(camera, drawn_ends(scene, back(camera)))
+}
+
+/// Returns the unit vector from a camera's target to its eye.
+pub fn back(camera: &Camera) -> DVec3 {
+    (camera.eye - camera.target).normalize_or_zero()
+}
+
+/// Returns the result of [`depth_range`] for the points furthest along [`back`] and against it.
+pub fn depth_range_of(camera: &Camera, ends: Option<[DVec3; 2]>) -> (f64, f64) {
+    let back = back(camera);
+    let Some(ends) = ends else { return (0.1, 100.0) };
     let [nearest, farthest] = ends.map(|p| (camera.eye - p).dot(back));
     match camera.projection {
         Projection::Perspective { .. } => perspective_range(nearest, farthest),

@@ -12,11 +12,15 @@ const BATCH: usize = 64;
 /// Batches of a mesh that are looked at together. The first of them is looked at before all others.
 const GROUP: usize = 16;
 
+/// Vertices of a group: pieces of meshes end where groups do.
+pub const PIECE: usize = BATCH * GROUP;
+
 /// What a box of transformed points grows by, relative to its numbers, so that rounding does not
 /// leave a point outside: far above the 2⁻⁵³ that each of a few operations may be off.
 const SLACK: f64 = 1e-14;
 
 /// The outermost points along directions that are given, and along the axes.
+#[derive(Clone)]
 pub(super) struct Outermost<const N: usize> {
     furthest: [Furthest; N],
     /// Along x, y and z, and against them.
@@ -103,30 +107,23 @@ impl<const N: usize> Outermost<N> {
     }
 
     fn add_mesh(&mut self, positions: &[Vec3], used: Option<&[bool]>, place: &DMat4) {
-        let mut add = {
-            let mut placed = Vec::with_capacity(BATCH);
-            move |all: &mut Self, i: usize, batch: &[Vec3], around: &Aabb| {
-                let used = used.and_then(|used| used.get(BATCH * i..));
-                let drawn = |j: &usize| used.is_none_or(|used| used.get(*j).is_some_and(|&u| u));
-                let points = (0..batch.len())
-                    .filter(drawn)
-                    .map(|j| place.transform_point3(batch[j].as_dvec3()))
-                    .filter(|p| p.is_finite());
-                placed.clear();
-                for furthest in all.all().filter(|f| f.may_be_in(around)) {
-                    // Once for all directions, and only where one asks.
-                    if placed.is_empty() {
-                        placed.extend(points.clone());
-                    }
-                    furthest.add(&placed);
-                }
-            }
-        };
         // Some from everywhere first: of those that follow few reach beyond, though a file may run
         // from the bottom of a model to its top.
+        self.add_firsts(positions, used, place);
+        self.add_others(positions, used, place);
+    }
+
+    /// Adds the first batch of each group.
+    fn add_firsts(&mut self, positions: &[Vec3], used: Option<&[bool]>, place: &DMat4) {
+        let mut placed = Placed { used, place, points: Vec::with_capacity(BATCH) };
         for (i, batch) in positions.chunks(BATCH).enumerate().step_by(GROUP) {
-            add(self, i, batch, &around(extent(batch), place));
+            placed.add_to(self, i, batch, &around(extent(batch), place));
         }
+    }
+
+    /// Adds the other batches.
+    fn add_others(&mut self, positions: &[Vec3], used: Option<&[bool]>, place: &DMat4) {
+        let mut placed = Placed { used, place, points: Vec::with_capacity(BATCH) };
         for (group, positions) in positions.chunks(BATCH * GROUP).enumerate() {
             let others = || positions.chunks(BATCH).enumerate().skip(1);
             let mut extents = [NOTHING; GROUP];
@@ -135,7 +132,7 @@ impl<const N: usize> Outermost<N> {
             let whole = around(whole, place);
             if self.all().any(|f| f.may_be_in(&whole)) {
                 for (i, batch) in others() {
-                    add(self, group * GROUP + i, batch, &around(extents[i], place));
+                    placed.add_to(self, group * GROUP + i, batch, &around(extents[i], place));
                 }
             }
         }
@@ -152,6 +149,76 @@ impl<const N: usize> Outermost<N> {
         let max = DVec3::new(right.point.x, top.point.y, front.point.z);
         let min = DVec3::new(left.point.x, bottom.point.y, back.point.z);
         (right.distance > f64::NEG_INFINITY).then_some(Aabb { min, max })
+    }
+}
+
+/// The points of a batch of a mesh in the world.
+struct Placed<'a> {
+    used: Option<&'a [bool]>,
+    place: &'a DMat4,
+    points: Vec<DVec3>,
+}
+
+impl Placed<'_> {
+    /// Adds those of the mesh's batch `i` that are drawn.
+    fn add_to<const N: usize>(
+        &mut self,
+        all: &mut Outermost<N>,
+        i: usize,
+        batch: &[Vec3],
+        around: &Aabb,
+    ) {
+        let Self { used, place, points } = self;
+        let used = used.and_then(|used| used.get(BATCH * i..));
+        let drawn = |j: &usize| used.is_none_or(|used| used.get(*j).is_some_and(|&u| u));
+        points.clear();
+        for furthest in all.all().filter(|f| f.may_be_in(around)) {
+            // Once for all directions, and only where one asks.
+            if points.is_empty() {
+                let of_batch = (0..batch.len()).filter(drawn);
+                let placed = of_batch.map(|j| place.transform_point3(batch[j].as_dvec3()));
+                points.extend(placed.filter(|p| p.is_finite()));
+            }
+            furthest.add(points);
+        }
+    }
+}
+
+/// The outermost points of a mesh that comes in pieces: of points that are equally far out the same as of the mesh as a
+/// whole.
+pub(super) struct OutermostOfPieces<const N: usize> {
+    /// Of the first batches of groups, and of the others, which are looked at after all of those.
+    found: [Outermost<N>; 2],
+}
+
+impl<const N: usize> OutermostOfPieces<N> {
+    /// Of no points so far.
+    pub fn new(directions: [DVec3; N]) -> Self {
+        Self { found: [Outermost::new(directions), Outermost::new(directions)] }
+    }
+
+    /// Adds the vertices of the next piece, a scene of one instance; but for the last, pieces have a multiple of
+    /// [`PIECE`] vertices.
+    pub fn add_piece(&mut self, piece: &Scene) {
+        for instance in &piece.instances {
+            let Some(mesh) = piece.meshes.get(instance.mesh) else { continue };
+            let used = mesh.used_vertices();
+            let [firsts, others] = &mut self.found;
+            firsts.add_firsts(&mesh.positions, used.as_deref(), &instance.world_from_mesh);
+            others.add_others(&mesh.positions, used.as_deref(), &instance.world_from_mesh);
+        }
+    }
+
+    /// Those of all pieces.
+    pub fn whole(&self) -> Outermost<N> {
+        let [mut whole, others] = self.found.clone();
+        let others = others.furthest.iter().chain(others.extremes.as_flattened());
+        for (furthest, other) in whole.all().zip(others) {
+            if other.distance > furthest.distance {
+                *furthest = *other;
+            }
+        }
+        whole
     }
 }
 

@@ -15,7 +15,8 @@
 
 use crate::math::DVec3;
 use crate::scene::{Aabb, BoundingSphere, Camera, Projection, Scene, UpAxis};
-use crate::view::outermost::Outermost;
+pub use crate::view::outermost::PIECE;
+use crate::view::outermost::{Outermost, OutermostOfPieces};
 use crate::{Error, Result};
 use std::str::FromStr;
 
@@ -264,6 +265,69 @@ pub fn drawn_ends(scene: &Scene, direction: DVec3) -> Option<[DVec3; 2]> {
     outermost.bounds().map(|_| outermost.points())
 }
 
+/// Fits a camera to a scene of one instance that comes in pieces: the camera of [`fit_scene`], bit for bit.
+///
+/// But for the last, pieces have a multiple of [`PIECE`] vertices, in the order of the whole; what nothing is drawn with
+/// is not finite or has no index.
+pub struct FitPieces {
+    direction: ViewDirection,
+    options: FitOptions,
+    outermost: OutermostOfPieces<10>,
+}
+
+impl FitPieces {
+    /// Of no pieces so far.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an option out of range.
+    pub fn new(direction: &ViewDirection, options: &FitOptions) -> Result<Self> {
+        let directions = Frame::new(options)?.outermost_directions(direction);
+        let outermost = OutermostOfPieces::new(directions);
+        Ok(Self { direction: *direction, options: *options, outermost })
+    }
+
+    /// Adds the next piece.
+    pub fn add(&mut self, piece: &Scene) {
+        self.outermost.add_piece(piece);
+    }
+
+    /// The camera that sees all pieces.
+    ///
+    /// # Errors
+    /// As [`fit_scene`].
+    pub fn camera(&self) -> Result<Camera> {
+        fit_outermost(&self.outermost.whole(), &self.direction, &self.options)
+    }
+}
+
+/// [`drawn_bounds`] and [`drawn_ends`] of a scene that comes in pieces, as [`FitPieces`] takes them.
+pub struct EndsOfPieces {
+    outermost: OutermostOfPieces<2>,
+}
+
+impl EndsOfPieces {
+    /// Of no pieces so far; along a direction, and against it.
+    pub fn new(direction: DVec3) -> Self {
+        Self { outermost: OutermostOfPieces::new([direction, -direction]) }
+    }
+
+    /// Adds the next piece.
+    pub fn add(&mut self, piece: &Scene) {
+        self.outermost.add_piece(piece);
+    }
+
+    /// As [`drawn_bounds`].
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.outermost.whole().bounds()
+    }
+
+    /// As [`drawn_ends`].
+    pub fn ends(&self) -> Option<[DVec3; 2]> {
+        let whole = self.outermost.whole();
+        whole.bounds().map(|_| whole.points())
+    }
+}
+
 fn fit_outermost(
     outermost: &Outermost<10>,
     direction: &ViewDirection,
@@ -396,11 +460,16 @@ impl Frame {
         Ok(Self { lens, slope: DVec3::new(half_height * aspect, half_height, 0.0) * free })
     }
 
-    /// Of no points so far: along the axes of the view, and towards the sides of the frame.
+    /// Of no points so far.
     fn outermost(&self, direction: &ViewDirection) -> Outermost<10> {
+        Outermost::new(self.outermost_directions(direction))
+    }
+
+    /// Along the axes of the view, and towards the sides of the frame.
+    fn outermost_directions(&self, direction: &ViewDirection) -> [DVec3; 10] {
         let (x, y, z) = (direction.right(), direction.up(), direction.to_eye());
         let (in_x, in_y) = (z * self.slope.x, z * self.slope.y);
-        Outermost::new([x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y])
+        [x, -x, y, -y, z, -z, x + in_x, in_x - x, y + in_y, in_y - y]
     }
 
     /// Where the eye must be for the frame to hold the points; x right, y up, z toward the eye.

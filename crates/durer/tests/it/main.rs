@@ -38,6 +38,7 @@ mod marks;
 mod overlay;
 mod paper_break;
 mod paper_fit;
+mod pieces;
 mod plot;
 mod raster_coverage;
 mod raster_interpolate;

@@ -212,7 +212,7 @@ pub fn occupied(bins: &[Bins], fragments: &[Fragments], view: &View) -> Vec<bool
 }
 
 /// Triangles by the tiles that they touch.
-struct ByTile {
+pub struct ByTile {
     /// Tiles with something in them, ascending, and where their entries begin.
     starts: Vec<(u32, u32)>,
     entries: Vec<u32>,
@@ -220,7 +220,7 @@ struct ByTile {
 
 impl ByTile {
     /// Those of a tile.
-    fn of(&self, tile: u32) -> &[u32] {
+    pub fn of(&self, tile: u32) -> &[u32] {
         match self.starts.binary_search_by_key(&tile, |s| s.0) {
             Ok(i) => {
                 let end = self.starts.get(i + 1).map_or(self.entries.len(), |s| s.1 as usize);
@@ -232,7 +232,7 @@ impl ByTile {
 }
 
 /// Sorts (tile, triangle) pairs by tile, keeping the order of the triangles.
-fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile {
+pub fn sort_by_tile(touched: &[(u32, u32)], tiles: u32) -> ByTile {
     let mut next = vec![0u32; tiles as usize + 1];
     for (tile, _) in touched {
         next[*tile as usize + 1] += 1;
@@ -275,7 +275,7 @@ impl TileGrid {
 
     /// Calls `visit` with each tile that the triangle may touch.
     #[inline(always)]
-    fn touched(&self, t: &ScreenTriangle, reach: i32, mut visit: impl FnMut(u32)) {
+    pub fn touched(&self, t: &ScreenTriangle, reach: i32, mut visit: impl FnMut(u32)) {
         let (x0, x1) = tile_range(&t.x, reach, self.columns);
         let (y0, y1) = tile_range(&t.y, reach, self.rows);
         if x0 == x1 && y0 == y1 {

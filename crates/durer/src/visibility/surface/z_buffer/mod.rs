@@ -16,6 +16,7 @@ mod front_to_back;
 mod micropolygon;
 mod rasterize;
 mod resolve;
+pub mod survey;
 mod tile;
 
 use crate::info::{Class, Info};

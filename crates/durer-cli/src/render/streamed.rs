@@ -1,0 +1,241 @@
+//! Pictures of models that are larger than memory, read in pieces and never held as a whole.
+//!
+//! The file is read three times: for the camera, for what is seen, and for the triangles that are; these are a scene by
+//! themselves.
+
+use super::{
+    Job, Picture, RenderArgs, algorithm, asks_for_rays, colored, deliver, picture_options, shots, tell_model,
+    tell_picture, usage, with_file,
+};
+use crate::camera::{self, Shot, Sights};
+use crate::drawing;
+use crate::failure::Failure;
+use crate::film::Sink;
+use crate::input::{self, InPieces};
+use crate::messages::Messages;
+use crate::options::Shadows;
+use crate::report::noticed::Noticed;
+use crate::report::{Growing, PictureReport};
+use crate::staging;
+use crate::values::Algorithm;
+use durer::math::DVec3;
+use durer::pipeline::{self, RenderOptions, Seen, SurfaceMethod};
+use durer::scene::{Camera, NamedCamera, Projection, Scene, UpAxis};
+use durer::target::Framebuffer;
+use durer::view::fit;
+use durer::view::projection::{EndsOfPieces, FitOptions, FitPieces, ViewDirection};
+use durer_formats::{Facts, Pieces};
+use std::time::Instant;
+
+/// Whether a picture needs all of the model at once.
+pub fn needs_whole(args: &RenderArgs) -> bool {
+    let asked = &args.picture.algorithm;
+    let drawing = &args.drawing;
+    drawing::is_wanted(args, super::wanted(args).kind)
+        || drawing.callouts
+        || args.explode.explode.is_some()
+        || !args.section.section.is_empty()
+        || args.stage.needs_model()
+        || args.picture.turntable.is_some()
+        || args.picture.sides.is_open()
+        || args.look.color.is_some_and(|color| color.w < 1.0)
+        || !matches!(asked, None | Some(Algorithm::Surfaces(SurfaceMethod::ZBuffer)))
+        || algorithm(args) != Algorithm::Surfaces(SurfaceMethod::ZBuffer)
+        || !matches!(args.look.shadows, Shadows::None)
+        || asks_for_rays(args).is_some()
+}
+
+/// Whether light and shading let a picture be made of pieces.
+pub fn suits(args: &RenderArgs, job: &Job, pieces: &dyn Pieces) -> bool {
+    let camera = Camera {
+        eye: DVec3::Z,
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: 1.0 },
+        near: 0.0,
+        far: 1.0,
+    };
+    let method = Algorithm::Surfaces(SurfaceMethod::ZBuffer);
+    job.pictures.iter().all(|picture| {
+        let shot = Shot::of(&args.picture, picture.frame);
+        let options = picture_options(args, camera, picture, &shot, method);
+        pipeline::check_pieces(&options, pieces.has_normals()).is_ok()
+    })
+}
+
+/// Makes the pictures of a model in pieces.
+pub fn render_model(
+    args: &RenderArgs,
+    job: &Job,
+    pieces: InPieces,
+    messages: &Messages,
+    told: &mut Growing,
+) -> Result<(), Failure> {
+    let name = input::display_name(job.model);
+    let start = Instant::now();
+    let mut noticed = Noticed::default();
+    let mut streamed = Streamed { args, pieces, name: &name, messages, facts: None };
+    for picture in &job.pictures {
+        let mut sink = Sink::File(&picture.color);
+        let made = streamed.render_picture(picture, &mut sink);
+        tell_picture(&name, made.map_err(|f| with_file(&name, f))?, &mut noticed, messages, told);
+    }
+    let mut model = streamed.facts()?.model;
+    noticed.tell(&name, &mut model, messages);
+    tell_model(job, model, start.elapsed().as_secs_f64(), told);
+    Ok(())
+}
+
+/// A model in pieces, of which pictures are made.
+struct Streamed<'a> {
+    args: &'a RenderArgs,
+    pieces: InPieces,
+    name: &'a str,
+    messages: &'a Messages,
+    facts: Option<Facts>,
+}
+
+impl Streamed<'_> {
+    /// What is known of the model; its warnings are told at the first time.
+    fn facts(&mut self) -> Result<Facts, Failure> {
+        if let Some(facts) = &self.facts {
+            return Ok(facts.clone());
+        }
+        let facts = self.pieces.facts()?;
+        self.messages.warnings(self.name, &facts.model.warnings);
+        self.messages.detail(|| {
+            let Facts { model, triangles, .. } = &facts;
+            format!("{}: {}, {triangles} triangles, read in pieces", self.name, model.format)
+        });
+        Ok(self.facts.insert(facts).clone())
+    }
+
+    /// Shows which pass over the file is being made, of three.
+    fn pass(&self, number: u32, what: &str) {
+        self.messages.progress.stage(|| format!("{}: {what}, pass {number} of 3", self.name));
+    }
+
+    /// Renders one picture and writes its files; tells why nothing of the model is seen, where that is so.
+    fn render_picture(
+        &mut self,
+        picture: &Picture,
+        sink: &mut Sink,
+    ) -> Result<(PictureReport, Option<String>), Failure> {
+        let args = self.args;
+        let mut report = PictureReport::default();
+        let (mut cells, mut statuses) = (Vec::new(), Vec::new());
+        let method = Algorithm::Surfaces(SurfaceMethod::ZBuffer);
+        for cell in shots(args, picture.frame)? {
+            let camera = camera::camera_by(&args.view, self, &cell.shot)?;
+            report.cameras.push((&camera).into());
+            let options = picture_options(args, camera, picture, &cell.shot, method);
+            let seen = self.survey(&options, &mut report)?;
+            let (framebuffer, status) = self.render_seen(&seen, &options, &mut report)?;
+            statuses.push(status);
+            cells.push((cell, framebuffer));
+        }
+        let unseen = report.set_status(&statuses);
+        deliver(args, picture, cells, method, &mut report, sink)?;
+        Ok((report, unseen))
+    }
+
+    /// Finds what is seen.
+    fn survey(
+        &mut self,
+        options: &RenderOptions,
+        report: &mut PictureReport,
+    ) -> Result<Seen, Failure> {
+        self.facts()?;
+        self.pass(2, "looking for what is seen");
+        let start = Instant::now();
+        let mut survey = pipeline::survey(options).map_err(usage)?;
+        let args = self.args;
+        let passed = self.pieces.pieces.primitives(&mut |piece| {
+            dress(args, piece);
+            survey.add(piece)
+        });
+        passed.map_err(|e| self.pieces.failure(&e))?;
+        report.geometry_seconds += start.elapsed().as_secs_f64();
+        survey.finish().map_err(usage)
+    }
+
+    /// Renders what is seen.
+    fn render_seen(
+        &mut self,
+        seen: &Seen,
+        options: &RenderOptions,
+        report: &mut PictureReport,
+    ) -> Result<(Framebuffer, pipeline::Status), Failure> {
+        self.pass(3, "reading what is seen");
+        let only = self.pieces.pieces.only(&seen.items);
+        let (mut scene, _charge) = only.map_err(|e| self.pieces.failure(&e))?;
+        dress(self.args, &mut scene);
+        let triangles = self.facts()?.triangles;
+        let (framebuffer, stages) =
+            pipeline::render_seen(&scene, triangles, seen, options).map_err(usage)?;
+        report.add(&stages);
+        let status = if seen.items.is_empty() {
+            let pieces = &mut self.pieces.pieces;
+            let status = pipeline::status_of_pieces(options, |visit| {
+                pieces.primitives(&mut |piece| visit(piece))
+            });
+            status.map_err(|e| self.pieces.failure(&e))?
+        } else {
+            pipeline::status(&scene, options, &framebuffer).map_err(usage)?
+        };
+        Ok((framebuffer, status))
+    }
+
+    /// Hands over all vertices, for the camera.
+    fn vertices(&mut self, mut visit: impl FnMut(&Scene)) -> Result<(), Failure> {
+        self.pass(1, "reading for the view");
+        let passed = self.pieces.pieces.vertices(&mut |piece| {
+            visit(piece);
+            Ok(())
+        });
+        passed.map_err(|e| self.pieces.failure(&e))
+    }
+}
+
+/// Gives a scene the materials that are asked for.
+fn dress(args: &RenderArgs, scene: &mut Scene) {
+    if let Some(color) = args.look.color {
+        scene.give_material(colored(color));
+    }
+    staging::give_materials(&args.stage, args.look.color, scene);
+}
+
+impl Sights for Streamed<'_> {
+    fn up_axis(&self) -> UpAxis {
+        self.args.view.up_axis.map_or(self.pieces.pieces.up_axis(), Into::into)
+    }
+
+    fn cameras(&self) -> &[NamedCamera] {
+        &[]
+    }
+
+    fn center(&mut self) -> Result<DVec3, Failure> {
+        let mut ends = EndsOfPieces::new(DVec3::X);
+        self.vertices(|piece| ends.add(piece))?;
+        Ok(ends.bounds().map_or(DVec3::ZERO, |bounds| bounds.center()))
+    }
+
+    fn depth_range(&mut self, camera: &Camera) -> Result<(f64, f64), Failure> {
+        let mut ends = EndsOfPieces::new(fit::back(camera));
+        self.vertices(|piece| ends.add(piece))?;
+        Ok(fit::depth_range_of(camera, ends.ends()))
+    }
+
+    /// A still one.
+    fn fitted(
+        &mut self,
+        direction: &ViewDirection,
+        options: &FitOptions,
+        _turning: bool,
+    ) -> Result<Camera, Failure> {
+        let data = |e: durer::Error| Failure::Data(e.to_string());
+        let mut fit = FitPieces::new(direction, options).map_err(data)?;
+        self.vertices(|piece| fit.add(piece))?;
+        fit.camera().map_err(data)
+    }
+}

@@ -1,0 +1,73 @@
+//! Models that are read in pieces, over and over, for whoever cannot hold all of one.
+
+use crate::{Model, Result};
+use durer::scene::{Aabb, Scene, UpAxis};
+use durer::work::Charge;
+
+/// Takes a piece of a model; may change what it is made of.
+pub type Visit<'a> = &'a mut dyn FnMut(&mut Scene) -> durer::Result<()>;
+
+/// A model of one mesh that is read from its file piece by piece, as often as it is asked for.
+///
+/// Pieces are scenes of one instance, with the materials of the model; their primitives follow each other as in the scene
+/// that the format's `read` gives, and have the same bits.
+pub trait Pieces {
+    /// The most bytes that the model takes as a whole, with what a picture of it takes.
+    fn whole(&self) -> u64;
+
+    /// Which axis is up.
+    fn up_axis(&self) -> UpAxis;
+
+    /// Whether its vertices have normals.
+    fn has_normals(&self) -> bool;
+
+    /// Hands over all vertices, and what is drawn with them where that is known: for boxes and cameras. Of vertices that
+    /// nothing is drawn with the coordinates are no numbers. But for the last, pieces have a multiple of
+    /// [`durer::view::projection::PIECE`] vertices.
+    ///
+    /// # Errors
+    /// [`crate::Error::Io`], those of `visit`, and of a file that makes no sense after all.
+    fn vertices(&mut self, visit: Visit<'_>) -> Result<()>;
+
+    /// Finds the box around all finite vertices, as [`Scene::bounds`] does of the whole.
+    ///
+    /// # Errors
+    /// As [`Self::vertices`].
+    fn bounds(&mut self) -> Result<Option<Aabb>>;
+
+    /// Hands over all primitives, without colours.
+    ///
+    /// # Errors
+    /// As [`Self::vertices`].
+    fn primitives(&mut self, visit: Visit<'_>) -> Result<()>;
+
+    /// Reads the primitives of these numbers alone, which ascend; and gives what they take of the budget.
+    ///
+    /// # Errors
+    /// As [`Self::vertices`]; [`durer::Error::Memory`] where the budget has no room for them.
+    fn only(&mut self, numbers: &[u32]) -> Result<(Scene, Charge)>;
+
+    /// Tells what is known of the model as a whole. Reads the file where that has not been done yet.
+    ///
+    /// # Errors
+    /// As [`Self::vertices`].
+    fn facts(&mut self) -> Result<Facts>;
+}
+
+/// What there is to tell of a model in pieces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facts {
+    /// The model without its mesh: format, warnings, materials, and which axis is up.
+    pub model: Model,
+    /// Triangles.
+    pub triangles: u64,
+    /// Points.
+    pub points: u64,
+    /// Vertices.
+    pub vertices: u64,
+}
+
+/// The box around two that may be empty.
+pub(crate) fn union(a: Option<Aabb>, b: Option<Aabb>) -> Option<Aabb> {
+    a.into_iter().chain(b).reduce(|a, b| a.union(&b))
+}
