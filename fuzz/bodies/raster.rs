@@ -305,7 +305,7 @@ pub fn seed_fill(bytes: &[u8]) {
 fn any_seed_fill(u: &mut Unstructured<'_>) -> Result<()> {
     let (width, height) = (u.int_in_range(0..=130)?, u.int_in_range(0..=9)?);
     let connectivity = *u.choose(&[Connectivity::Four, Connectivity::Eight])?;
-    let options = seed_fill::Options { connectivity };
+    let options = seed_fill::Options { connectivity, ..Default::default() };
     let seed = (u.int_in_range(0..=131)?, u.int_in_range(0..=10)?);
     let (value, boundary, tolerance) = (u.arbitrary()?, u.arbitrary()?, u.arbitrary()?);
     let bits = u.bytes(u.len())?.iter().cycle();

@@ -286,7 +286,7 @@ fn fill<P: PixelValue>(
         Connectivity::Four => seed_fill::Connectivity::Four,
         Connectivity::Eight => seed_fill::Connectivity::Eight,
     };
-    let options = seed_fill::Options { connectivity };
+    let options = seed_fill::Options { connectivity, ..Default::default() };
     let (method, t) = (args.algorithm, &mut NoTrace);
     match boundary {
         Some(boundary) => {

@@ -1,7 +1,7 @@
 //! Steps of algorithms as captions and small drawings; the facts of all algorithms.
 
 use crate::info::Info;
-use crate::{clip, curve, raster, shade, view, visibility};
+use crate::{clip, curve, fragment, raster, shade, view, visibility};
 
 /// The facts of every algorithm of this library, in the order of the pipeline.
 ///
@@ -23,9 +23,12 @@ pub const ALGORITHMS: &[&Info] = &[
     &clip::line::batch::INFO,
     &clip::line::polyline::INFO,
     &clip::polygon::sutherland_hodgman::INFO,
+    &clip::polygon::liang_barsky::INFO,
     &clip::polygon::weiler_atherton::INFO,
     &clip::polygon::greiner_hormann::INFO,
     &clip::polygon::vatti::INFO,
+    &clip::polygon::scan_beams::INFO,
+    &clip::polygon::point::INFO,
     &clip::polygon::validity::INFO,
     &clip::polygon::mismatch::INFO,
     &clip::polygon::overlay::INFO,
@@ -53,6 +56,9 @@ pub const ALGORITHMS: &[&Info] = &[
     &raster::line::wide::INFO,
     &raster::line::wide::buffer::INFO,
     &raster::line::tiled::INFO,
+    &raster::line::pattern::INFO,
+    &raster::conic::CIRCLE,
+    &raster::conic::INFO,
     &raster::triangle::edge_function::INFO,
     &raster::triangle::edge_walking::INFO,
     &raster::triangle::tiles::INFO,
@@ -71,6 +77,9 @@ pub const ALGORITHMS: &[&Info] = &[
     &shade::phong::INFO,
     &shade::metallic_roughness::INFO,
     &shade::shadow::INFO,
+    &fragment::halftone::error_diffusion::INFO,
+    &fragment::halftone::clustered_dot::INFO,
+    &fragment::fog::INFO,
     &visibility::back_face::INFO,
     &visibility::surface::z_buffer::INFO,
     &visibility::surface::a_buffer::INFO,
@@ -80,10 +89,17 @@ pub const ALGORITHMS: &[&Info] = &[
     &visibility::surface::depth_sort::INFO,
     &visibility::surface::warnock::INFO,
     &visibility::surface::ray::INFO,
+    &visibility::polygons::z_buffer::INFO,
+    &visibility::polygons::a_buffer::INFO,
+    &visibility::polygons::painter::INFO,
+    &visibility::polygons::bsp::INFO,
+    &visibility::polygons::watkins::INFO,
+    &visibility::polygons::regions::INFO,
     &visibility::region::weiler_atherton::INFO,
     &visibility::region::SHADOWS,
     &visibility::line::hidden_line::INFO,
     &visibility::line::wireframe::INFO,
     &visibility::line::floating_horizon::INFO,
+    &visibility::line::horizon_curves::INFO,
     &visibility::wireframe::INFO,
 ];

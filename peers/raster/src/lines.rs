@@ -237,7 +237,7 @@ pub fn floods() {
         let (mut a, mut b, mut c) = (source.clone(), source.clone(), peer.clone());
         let fill = |image: &mut Pixels<u8>, connectivity| {
             image.data_mut().copy_from_slice(source.data());
-            let options = seed_fill::Options { connectivity };
+            let options = seed_fill::Options { connectivity, ..Default::default() };
             flood_fill(image, (0, 0), 128, 0, SeedFill::Spans, &options, &mut NoTrace);
         };
         // What each has to do before, to be taken off.

@@ -121,8 +121,8 @@ pub struct CuttingArgs {
     /// and leave lines and points out
     #[arg(long, value_name = "OP", default_value = "intersection", conflicts_with = "tiles")]
     pub op: BooleanOp,
-    /// Which points polygons enclose, of IN and FILE: even-odd, non-zero, positive (rings counter-clockwise)
-    /// or negative [default: even-odd; of an SVG, what its paths say]
+    /// Fill rule that decides which points the polygons of IN and FILE enclose: even-odd, non-zero, positive (rings counter-clockwise),
+    /// negative or abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
     pub fill_rule: Option<FillRule>,
     /// An algorithm by its name [default: what is fast and right]

@@ -25,8 +25,8 @@ Exit codes: 0 done; 1 bad data, or a file that cannot be read or written; 2 wron
 /// The options of `durer fix`.
 #[derive(Debug, Args)]
 pub struct FixArgs {
-    /// Which points rings that cross enclose: even-odd, non-zero, positive (rings counter-clockwise) or negative
-    /// [default: even-odd; of an SVG, what its paths say]
+    /// Fill rule that decides which points crossing rings enclose: even-odd, non-zero, positive (rings counter-clockwise), negative or
+    /// abs-geq-two (two rings at least) [default: even-odd; of an SVG, the rule of its paths]
     #[arg(long, value_name = "RULE")]
     pub rule: Option<FillRule>,
     /// Give neighbours the same points on the borders that they share: a point that one has and the other lacks is added

@@ -4,8 +4,8 @@
 //! themselves.
 
 use super::{
-    Job, Picture, RenderArgs, algorithm, asks_for_rays, colored, deliver, picture_options, shots, tell_model,
-    tell_picture, usage, with_file,
+    Job, Picture, RenderArgs, algorithm, asks_for_rays, colored, deliver, picture_options, shots,
+    tell_model, tell_picture, usage, with_file,
 };
 use crate::camera::{self, Shot, Sights};
 use crate::drawing;

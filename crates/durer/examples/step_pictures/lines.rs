@@ -149,7 +149,7 @@ fn parameters() -> durer::Result<String> {
     }
     for step in steps.steps() {
         match *step {
-            cyrus_beck::Step::Border { border, relation } => {
+            cyrus_beck::Step::Border { border, relation, .. } => {
                 let edge = [border, (border + 1) % 5].map(|i| window.vertices()[i]);
                 let along = (edge[1] - edge[0]).normalize() * 20.0;
                 all.line([edge[0] - along, edge[1] + along], "dash");

@@ -99,7 +99,7 @@ fn walks() -> durer::Result<String> {
                 turns.dot(*at, if *to_subject { "#1f6fb4" } else { "#d1495b" });
             }
             weiler_atherton::Step::Ring { points } => rings.push(points.clone()),
-            weiler_atherton::Step::Crossing { .. } => {}
+            _ => {}
         }
     }
     let panels = [
@@ -123,7 +123,7 @@ fn entries() -> durer::Result<String> {
                 crossings.dot(*at, if *entry { "#2b7a48" } else { "#d1495b" });
             }
             greiner_hormann::Step::Ring { points } => rings.push(points.clone()),
-            greiner_hormann::Step::Turn { .. } => {}
+            _ => {}
         }
     }
     let panels = [

@@ -5,6 +5,7 @@
 //! everything is inside; where the AND is not, everything lies beyond one border.
 
 use crate::math::{DVec2, DVec4, Rect};
+use std::fmt;
 use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign};
 
 /// Which depths the clip volume holds.
@@ -28,7 +29,7 @@ pub enum DepthRange {
 /// let code = Outcode::of_point_2d(&window, DVec2::new(2.0, -1.0));
 /// assert_eq!(code, Outcode::RIGHT | Outcode::BOTTOM);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Outcode(pub u8);
 
 impl Outcode {
@@ -77,6 +78,19 @@ impl Outcode {
         Self(inside.iter().rev().fold(0, |bits, &inside| bits << 1 | u8::from(!inside)))
     }
 
+    /// The bits as digits in the order of the borders given, for books that number borders otherwise.
+    ///
+    /// ```
+    /// use durer::clip::outcode::Outcode;
+    /// let code = Outcode::LEFT | Outcode::TOP;
+    /// assert_eq!(code.to_string(), "1001");
+    /// let order = [Outcode::BOTTOM, Outcode::LEFT, Outcode::TOP, Outcode::RIGHT];
+    /// assert_eq!(code.digits(&order), "0110");
+    /// ```
+    pub fn digits(self, order: &[Self]) -> String {
+        order.iter().map(|&border| if self.contains(border) { '1' } else { '0' }).collect()
+    }
+
     /// Whether no bit is set.
     #[inline]
     pub fn is_inside(self) -> bool {
@@ -87,6 +101,19 @@ impl Outcode {
     #[inline]
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+}
+
+/// As taught: top, bottom, right, left, with two more digits in front for far and near where a bit of them is set.
+impl fmt::Display for Outcode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 < 16 { write!(f, "{:04b}", self.0) } else { write!(f, "{:06b}", self.0) }
+    }
+}
+
+impl fmt::Debug for Outcode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Outcode({self})")
     }
 }
 

@@ -109,6 +109,8 @@ pub enum Step {
         vertex: usize,
         /// Beyond which borders it lies.
         code: Outcode,
+        /// Its boundary coordinates d₁ … d₆, see [`boundary_coordinates`].
+        distances: [f64; 6],
     },
     /// All vertices lie beyond one border, or one is not finite, or fewer than three are left:
     /// the result is empty.
@@ -128,6 +130,8 @@ pub enum Step {
         inside: usize,
         /// The number of its outside end.
         outside: usize,
+        /// The boundary coordinates of both: of the inside end, ≥ 0, and of the outside end, < 0.
+        distances: [f64; 2],
         /// The new vertex.
         position: DVec4,
     },
@@ -228,7 +232,7 @@ fn needed<A>(
     let mut sound = !vertices.is_empty();
     for (vertex, p) in vertices.iter().map(|v| v.position).enumerate() {
         let code = Outcode::of_homogeneous(p, options.depth);
-        t.step(|| Step::Code { vertex, code });
+        t.step(|| Step::Code { vertex, code, distances: boundary_coordinates(p, options.depth) });
         all &= code;
         any |= options.code(p);
         sound &= p.abs().cmple(DVec4::splat(COORDINATE_LIMIT)).all();
@@ -269,7 +273,9 @@ pub fn clip_segment<A: Blend>(
         for vertex in 0..2 {
             t.step(|| match &new {
                 Some(v) if outside == Some(vertex) => {
-                    Step::Cut { inside: 1 - vertex, outside: vertex, position: v.position }
+                    let (inside, outside) = (1 - vertex, vertex);
+                    let distances = [d[inside], d[outside]];
+                    Step::Cut { inside, outside, distances, position: v.position }
                 }
                 _ => Step::Keep { vertex },
             });
@@ -424,7 +430,10 @@ fn cut_into<V: Clone>(
         // An inside end on the border is kept as it is: a cut there would double it.
         if ends[0] > 0.0 && ends[1] < 0.0 {
             let new = cut([&ring[inside], &ring[outside]], ends);
-            t.step(|| Step::Cut { inside, outside, position: position(&new) });
+            t.step(|| {
+                let position = position(&new);
+                Step::Cut { inside, outside, distances: ends, position }
+            });
             kept.push(new);
         }
         d = d_next;

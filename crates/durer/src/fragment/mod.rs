@@ -14,6 +14,8 @@ mod color_index;
 mod compare;
 mod depth;
 mod dither;
+pub mod fog;
+pub mod halftone;
 mod logic_op;
 mod pixel_mask;
 mod scissor;

@@ -4,6 +4,7 @@
 
 pub(crate) mod bands;
 pub(crate) mod clipped;
+pub mod conic;
 pub mod coverage;
 pub mod fixed;
 pub mod interpolate;

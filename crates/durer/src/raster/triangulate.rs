@@ -2,14 +2,16 @@
 //! theorem, with the z-order search of V. Agafonkin's earcut, whose Rust form does the work).
 //!
 //! Cost: O(n log n) on ordinary input, O(n²) at worst. Limits: crossing contours give triangles that need
-//! not cover exactly the even-odd area.
+//! not cover exactly the even-odd area; with a winding rule ([`triangulate_by_rule`]) they do.
 
 use earcut::Earcut;
 
+use crate::Result;
+use crate::clip::polygon::{BooleanOp, FillRule, Shapes, overlay};
 use crate::curve::Contours;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
-use crate::trace::Tracer;
+use crate::trace::{NoTrace, Tracer};
 
 /// The facts of triangulation.
 pub const INFO: Info = Info {
@@ -20,7 +22,7 @@ pub const INFO: Info = Info {
     source: "Polygons have ears, American Mathematical Monthly 82(6)",
     class: Class::ObjectSpace,
     cost: "O(n log n) time on usual input, O(n²) at worst; O(n) memory",
-    limits: "contours that cross give triangles that need not cover exactly the even-odd area",
+    limits: "contours that cross need a winding rule; without one triangles need not cover the even-odd area",
 };
 
 /// Triangles of a polygon.
@@ -75,7 +77,59 @@ pub fn triangulate(polygon: &Contours, t: &mut impl Tracer<Step>) -> Triangulati
     let mut indices: Vec<u32> = Vec::new();
     Earcut::new().earcut(points.iter().map(|p| [p.x, p.y]), &holes, &mut indices);
     let triangles = indices.as_chunks::<3>().0.to_vec();
-    points.iter().for_each(|p| t.step(|| Step::Point(*p)));
-    triangles.iter().for_each(|corners| t.step(|| Step::Triangle(*corners)));
-    Triangulation { points, triangles }
+    let found = Triangulation { points, triangles };
+    report(&found, t);
+    found
+}
+
+/// Triangulates what any contours enclose by a winding rule, as OpenGL's tessellator does: they may cross themselves and
+/// one another, and need no order. Where they cross, points are added; the overlay finds them, and the region's
+/// polygons are triangulated one after the other.
+///
+/// ```
+/// use durer::clip::polygon::FillRule;
+/// use durer::curve::Contours;
+/// use durer::math::DVec2;
+/// use durer::raster::triangulate::triangulate_by_rule;
+/// use durer::trace::NoTrace;
+///
+/// // Two squares that overlap in one unit, both counter-clockwise.
+/// let square = |x: f64| [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)].map(|(u, v)| DVec2::new(x + u, v));
+/// let mut contours = Contours::polygon(square(0.0));
+/// contours.push(square(1.0), true);
+/// let area = |rule| triangulate_by_rule(&contours, rule, &mut NoTrace).map(|triangles| triangles.area());
+/// assert_eq!(area(FillRule::EvenOdd)?, 2.0);
+/// assert_eq!(area(FillRule::NonZero)?, 3.0);
+/// assert_eq!(area(FillRule::AbsGeqTwo)?, 1.0);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`overlay()`]: for points that are not finite, or are too many.
+pub fn triangulate_by_rule(
+    contours: &Contours,
+    rule: FillRule,
+    t: &mut impl Tracer<Step>,
+) -> Result<Triangulation> {
+    let mut rings = Shapes::new();
+    contours.iter().for_each(|(points, _)| rings.push_ring(points.iter().copied()));
+    rings.end_polygon();
+    let options = overlay::Options::with_rule(rule);
+    let region = overlay(&rings, &Shapes::new(), BooleanOp::Union, &options, &mut NoTrace)?.shapes;
+    let mut all = Triangulation::default();
+    for polygon in region.polygons() {
+        let mut contours = Contours::new();
+        polygon.rings().for_each(|ring| contours.push(ring.iter().copied(), true));
+        let part = triangulate(&contours, &mut NoTrace);
+        let first = all.points.len() as u32;
+        all.points.extend(part.points);
+        all.triangles.extend(part.triangles.iter().map(|corners| corners.map(|i| i + first)));
+    }
+    report(&all, t);
+    Ok(all)
+}
+
+fn report(found: &Triangulation, t: &mut impl Tracer<Step>) {
+    found.points.iter().for_each(|p| t.step(|| Step::Point(*p)));
+    found.triangles.iter().for_each(|corners| t.step(|| Step::Triangle(*corners)));
 }

@@ -63,7 +63,8 @@ impl Eye {
         }
     }
 
-    fn side(self, normal: DVec3, point: DVec3) -> Face {
+    /// The side of a face that is seen from here.
+    pub(crate) fn side(self, normal: DVec3, point: DVec3) -> Face {
         match self {
             Self::At(eye) => face_from_point(normal, point, eye),
             Self::Along(direction) => face_along(normal, direction),

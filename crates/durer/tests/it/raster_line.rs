@@ -91,12 +91,20 @@ fn lines_from_end_to_end_of_the_integers_do_not_overflow() {
 #[test]
 fn the_steps_of_a_line_rebuild_it() {
     let (a, b) = (IVec2::new(-3, 9), IVec2::new(40, -6));
-    for method in LineRasterizer::ALL {
-        let mut recorder: Recorder<Step> = Recorder::default();
-        let mut found = Vec::new();
-        method.draw(a, b, &Options::default(), |p| found.push(p), &mut recorder);
-        assert_eq!(recorder.steps().iter().map(|s| s.pixel).collect::<Vec<_>>(), found);
-        assert_eq!(found, pixels(*method, a, b, &Options::default()));
+    let window = Some((IVec2::new(0, 0), IVec2::new(30, 30)));
+    for options in [Options::default(), Options { window }] {
+        for method in LineRasterizer::ALL {
+            for (from, to) in [(a, b), (b, a)] {
+                let mut recorder: Recorder<Step> = Recorder::default();
+                let mut found = Vec::new();
+                method.draw(from, to, &options, |p| found.push(p), &mut recorder);
+                assert_eq!(found, pixels(*method, a, b, &options));
+                // Steps have the caller's direction.
+                found.sort_by_key(|p| if from == a { p.x } else { -p.x });
+                let replayed: Vec<_> = recorder.steps().iter().map(|s| s.pixel).collect();
+                assert_eq!(replayed, found);
+            }
+        }
     }
 }
 

@@ -82,7 +82,7 @@ fn empty_targets_take_everything() {
         }
         let mut gray = Pixels::new(width, height, 0_u8);
         for connectivity in [Connectivity::Four, Connectivity::Eight] {
-            let options = seed_fill::Options { connectivity };
+            let options = seed_fill::Options { connectivity, ..Default::default() };
             for &fill in SeedFill::ALL {
                 let t = &mut NoTrace;
                 assert_eq!(flood_fill(&mut gray, (0, 0), 9, 255, fill, &options, t), 0);

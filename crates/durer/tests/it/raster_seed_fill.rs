@@ -55,7 +55,7 @@ fn fills_take_exactly_the_connected_region() {
         for connectivity in [Connectivity::Four, Connectivity::Eight] {
             let labels = labels(&image, connectivity == Connectivity::Eight);
             let own = labels[(seed.1 * w + seed.0) as usize];
-            let options = Options { connectivity };
+            let options = Options { connectivity, ..Options::default() };
             for method in SeedFill::ALL {
                 let mut filled = image.clone();
                 let mut recorder: Recorder<Step> = Recorder::default();
@@ -110,7 +110,7 @@ fn boundaries_and_tolerance_on_colours() {
         let four = Options::default();
         assert_eq!(boundary_fill(&mut i, (2, 2), red, black, 0, *method, &four, &mut NoTrace), 5);
         let mut i = image.clone();
-        let eight = Options { connectivity: Connectivity::Eight };
+        let eight = Options { connectivity: Connectivity::Eight, ..Options::default() };
         assert_eq!(boundary_fill(&mut i, (2, 2), red, black, 0, *method, &eight, &mut NoTrace), 13);
         assert_eq!(flood_fill(&mut i, (5, 0), red, 0, *method, &eight, &mut NoTrace), 0);
         assert_eq!(
@@ -175,7 +175,7 @@ fn long_runs_that_meet_at_corners_are_one_region_of_eight() {
             let seed = (if mirrored { width - 1 - x } else { x }, seed_y);
             for (connectivity, expected) in [(Connectivity::Four, 100), (Connectivity::Eight, 400)]
             {
-                let options = Options { connectivity };
+                let options = Options { connectivity, ..Options::default() };
                 let mut filled = image.clone();
                 let n = flood_fill(&mut filled, seed, 7, 0, *method, &options, &mut NoTrace);
                 assert_eq!(n, expected, "{method} {connectivity:?} {mirrored} {seed:?}");

@@ -52,7 +52,8 @@ fn every_test_gets_its_turn() {
         }));
     }
     use Test::{BehindPlane, Boxes, Depths, InFrontOfPlane, Pixels, Projections};
-    let all = [Depths, Boxes, BehindPlane, InFrontOfPlane, Projections, Pixels];
+    let all = [Depths, Boxes, InFrontOfPlane, BehindPlane, Projections, Pixels];
+    assert_eq!(all.map(Test::number), ["1", "2a", "2b", "2c", "2d", "pixels"]);
     assert_eq!(passed.into_iter().collect::<Vec<_>>(), all);
 }
 

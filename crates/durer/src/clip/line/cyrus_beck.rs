@@ -16,7 +16,7 @@ use crate::info::{Class, Info};
 use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
 
-pub use super::passage::{Step, replay};
+pub use super::passage::{Numbers, Step, replay};
 
 /// The facts of Cyrus–Beck clipping.
 pub const INFO: Info = Info {

@@ -20,7 +20,7 @@ use crate::math::{DVec2, DVec3, Plane, Rect};
 use crate::trace::Tracer;
 use std::cmp::Ordering;
 
-pub use super::passage::{Step, replay};
+pub use super::passage::{Numbers, Step, replay};
 
 /// The facts of clipping in homogeneous coordinates.
 pub const INFO: Info = Info {

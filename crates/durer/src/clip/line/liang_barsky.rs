@@ -8,7 +8,7 @@
 //! The bounds are compared as numbers where rounding cannot matter and exactly where it could.
 
 use super::border::{Canonical, bit};
-use super::passage::{clip_convex, finish};
+use super::passage::{Bounds, clip_convex, finish};
 use super::{ClipBox, HalfPlane, Relation, Segment};
 use crate::clip::outcode::Outcode;
 use crate::info::{Class, Info};
@@ -17,7 +17,7 @@ use crate::trace::Tracer;
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
-pub use super::passage::{Step, replay};
+pub use super::passage::{Numbers, Step, replay};
 
 /// The facts of Liang–Barsky clipping.
 pub const INFO: Info = Info {
@@ -103,12 +103,13 @@ fn run<const N: usize, P: From<[f64; N]>>(
     // A border that neither end lies beyond bounds t outside 0 … 1; one that both lie beyond
     // rejects, segments parallel to it included.
     let (outside_p, outside_q) = (window.code(line.p), window.code(line.q));
+    report(window, &line, [outside_p, outside_q], t);
     if !(outside_p & outside_q).is_inside() {
         t.step(|| Step::Rejected);
         return Ok(None);
     }
-    let lower = tightest(window, &line, outside_p, Ordering::Greater, t);
-    let upper = tightest(window, &line, outside_q, Ordering::Less, t);
+    let lower = tightest(window, &line, outside_p, Ordering::Greater);
+    let upper = tightest(window, &line, outside_q, Ordering::Less);
     let at = |b: usize| (b >> 1, window.borders[b >> 1][b & 1]);
     if let Some((l, u)) = lower.zip(upper)
         && line.compare_parameters(at(l), at(u)) == Ordering::Greater
@@ -120,21 +121,38 @@ fn run<const N: usize, P: From<[f64; N]>>(
     Ok(Some(finish(segment, &line, cut(lower), cut(upper), t)))
 }
 
+/// Tells a listener of every border, in order, crossed or not.
+fn report<const N: usize, P>(
+    window: &ClipBox<N>,
+    line: &Canonical<N>,
+    outside: [Outcode; 2],
+    t: &mut impl Tracer<Step<P>>,
+) {
+    let mut bounds = Bounds::WHOLE;
+    for border in 0..2 * N {
+        t.step(|| {
+            let (axis, upper) = (border >> 1, border & 1);
+            let at = window.borders[axis][upper];
+            let inwards = if upper == 0 { 1.0 } else { -1.0 };
+            let values = [line.p, line.q].map(|p| inwards * (p[axis] - at));
+            let relation = Relation::of(outside.map(|code| !code.contains(bit(axis, upper))));
+            bounds.step(line, border, relation, values)
+        });
+    }
+}
+
 /// Of the borders in `code`, the one with the largest (`Greater`) or smallest (`Less`) parameter.
 #[inline]
-fn tightest<const N: usize, P>(
+fn tightest<const N: usize>(
     window: &ClipBox<N>,
     line: &Canonical<N>,
     code: Outcode,
     wanted: Ordering,
-    t: &mut impl Tracer<Step<P>>,
 ) -> Option<usize> {
     let mut best: Option<usize> = None;
     let at = |b: usize| (b >> 1, window.borders[b >> 1][b & 1]);
-    let relation = if wanted == Ordering::Greater { Relation::Entering } else { Relation::Leaving };
     for border in (0..2 * N).filter(|&b| code.contains(bit(b >> 1, b & 1))) {
         if best.is_none_or(|b| line.compare_parameters(at(border), at(b)) == wanted) {
-            t.step(|| Step::Border { border, relation });
             best = Some(border);
         }
     }

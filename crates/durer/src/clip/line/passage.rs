@@ -8,17 +8,19 @@ use crate::clip::exact::EPSILON;
 use crate::trace::Tracer;
 use std::cmp::Ordering;
 
-/// What an algorithm did; borders are looked at from the lexicographically smaller end.
+/// What an algorithm did, in the direction of the caller's segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step<P> {
-    /// A border was looked at: all of them by Cyrus and Beck and in homogeneous coordinates; by Liang
-    /// and Barsky those that now bound the parameter.
+    /// A border was looked at: every one of a rectangle or box by Liang and Barsky, otherwise all up to the first
+    /// that both ends lie beyond.
     Border {
         /// Its index in the window; of a rectangle or box 2·axis, plus 1 for the larger coordinate.
         border: usize,
         /// How the segment lies to it; [`Relation::Entering`] raises the lower bound of the parameter,
         /// [`Relation::Leaving`] lowers the upper.
         relation: Relation,
+        /// What is computed of it.
+        numbers: Numbers,
     },
     /// One end moves to the border that bounds it.
     Cut {
@@ -33,6 +35,70 @@ pub enum Step<P> {
     Accepted,
     /// The lower bound passed the upper, or a border has both ends beyond it.
     Rejected,
+}
+
+/// The numbers of a border as the methods are taught; rounded, while what they decide is decided exactly.
+///
+/// E(P) = n · (P − Q) has a normal n that points inwards, and Q on the border: E ≥ 0 inside. It is q of Liang and
+/// Barsky, the boundary coordinate d of Blinn and Newell; with Cyrus and Beck's outer normal it has the other sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Numbers {
+    /// E of the segment's start: q.
+    pub start: f64,
+    /// E of its end.
+    pub end: f64,
+    /// The lower bound of the parameter after this border: u₁, or t_e.
+    pub lower: f64,
+    /// The upper bound: u₂, or t_l.
+    pub upper: f64,
+}
+
+impl Numbers {
+    /// p of Liang and Barsky, the product of the outer normal and the segment's direction: where it is
+    /// negative the segment enters, where it is positive it leaves, where it is zero it runs along the border.
+    pub fn p(&self) -> f64 {
+        self.start - self.end
+    }
+
+    /// The parameter at which the segment's line crosses the border, r = q / p: 0 at the start, 1 at the end;
+    /// none along the border.
+    pub fn t(&self) -> Option<f64> {
+        // A quarter of each, because the difference of two huge values overflows.
+        let p = self.start * 0.25 - self.end * 0.25;
+        (p != 0.0).then(|| self.start * 0.25 / p)
+    }
+}
+
+/// The bounds of the parameter that a listener is told: from 0 to 1 before the first border.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    lower: f64,
+    upper: f64,
+}
+
+impl Bounds {
+    pub const WHOLE: Self = Self { lower: 0.0, upper: 1.0 };
+
+    /// The step of the next border, from what is known of the canonical segment.
+    pub fn step<const N: usize, P>(
+        &mut self,
+        line: &Canonical<N>,
+        border: usize,
+        relation: Relation,
+        values: [f64; 2],
+    ) -> Step<P> {
+        let [start, end] = if line.swapped { [values[1], values[0]] } else { values };
+        let mut numbers = Numbers { start, end, lower: self.lower, upper: self.upper };
+        if let Some(t) = numbers.t() {
+            if numbers.p() < 0.0 {
+                self.lower = self.lower.max(t);
+            } else {
+                self.upper = self.upper.min(t);
+            }
+        }
+        (numbers.lower, numbers.upper) = (self.lower, self.upper);
+        Step::Border { border, relation: relation.reversed_if(line.swapped), numbers }
+    }
 }
 
 /// The result that a list of steps leads to.
@@ -56,7 +122,13 @@ pub(super) fn clip<const N: usize, P: From<[f64; N]>, H: HalfSpace<N>>(
     at: impl Fn(usize) -> [f64; N],
     t: &mut impl Tracer<Step<P>>,
 ) -> Option<Segment<P>> {
-    let report = |border, relation| t.step(|| Step::Border { border, relation });
+    let mut bounds = Bounds::WHOLE;
+    let report = |border: usize, relation| {
+        t.step(|| {
+            let values = [line.p, line.q].map(|p| spaces[border].value(p).0);
+            bounds.step(line, border, relation, values)
+        });
+    };
     let Some(passage) = passage(spaces, line, report) else {
         t.step(|| Step::Rejected);
         return None;
@@ -84,9 +156,9 @@ pub(super) fn finish<const N: usize, P: From<[f64; N]>>(
     upper: Option<(usize, [f64; N])>,
     t: &mut impl Tracer<Step<P>>,
 ) -> Segment<P> {
-    for (cut, end) in [(lower, End::Start), (upper, End::End)] {
+    let [first, last] = if line.swapped { [upper, lower] } else { [lower, upper] };
+    for (cut, end) in [(first, End::Start), (last, End::End)] {
         if let Some((border, point)) = cut {
-            let end = end.swapped_if(line.swapped);
             t.step(|| Step::Cut { end, border, point: point.into() });
         }
     }
@@ -97,7 +169,7 @@ pub(super) fn finish<const N: usize, P: From<[f64; N]>>(
     }
 }
 
-/// How a canonical segment lies to one half space.
+/// How a segment lies to one half space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
     /// Both ends inside: nothing to do.
@@ -108,6 +180,27 @@ pub enum Relation {
     Entering,
     /// The start is inside, the end outside.
     Leaving,
+}
+
+impl Relation {
+    /// That of the segment in the other direction where `swapped`.
+    fn reversed_if(self, swapped: bool) -> Self {
+        match self {
+            Self::Entering if swapped => Self::Leaving,
+            Self::Leaving if swapped => Self::Entering,
+            same => same,
+        }
+    }
+
+    /// From whether the start and the end are inside.
+    pub(super) fn of(inside: [bool; 2]) -> Self {
+        match inside {
+            [true, true] => Self::Inside,
+            [false, false] => Self::Outside,
+            [false, true] => Self::Entering,
+            [true, false] => Self::Leaving,
+        }
+    }
 }
 
 /// The borders through which a segment enters and leaves; `None` for an end that is inside.
@@ -155,13 +248,7 @@ fn passage<const N: usize, H: HalfSpace<N>>(
 }
 
 fn relate<const N: usize, H: HalfSpace<N>>(space: &H, line: &Canonical<N>) -> Relation {
-    let inside = [line.p, line.q].map(|p| space.sign(p) != Ordering::Less);
-    match inside {
-        [true, true] => Relation::Inside,
-        [false, false] => Relation::Outside,
-        [false, true] => Relation::Entering,
-        [true, false] => Relation::Leaving,
-    }
+    Relation::of([line.p, line.q].map(|p| space.sign(p) != Ordering::Less))
 }
 
 /// The exact order along the segment of its crossings with two borders, both of which it spans.

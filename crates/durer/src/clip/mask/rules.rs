@@ -38,7 +38,7 @@ impl Rules {
             FillRule::EvenOdd => true,
             // Holes may run the same way as the rings around them.
             FillRule::NonZero => shapes.polygons().all(|p| p.holes().len() == 0),
-            FillRule::Positive | FillRule::Negative => false,
+            FillRule::Positive | FillRule::Negative | FillRule::AbsGeqTwo => false,
         };
         as_even_odd && self.grid.is_none()
     }

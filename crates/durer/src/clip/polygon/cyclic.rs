@@ -11,9 +11,11 @@
 use super::locate::{Place, group, is_flat, locate, on_segment};
 use super::near::pairs;
 use super::node;
+use super::walk::{Mark, Operand, Step};
 use super::{BooleanOp, Shapes};
 use crate::clip::exact;
 use crate::math::{DVec2, Orientation, orient2d};
+use crate::trace::Tracer;
 use crate::{Error, Result};
 use std::cmp::Ordering;
 
@@ -255,6 +257,19 @@ impl Linked {
         for (i, &[[_, b], [c, d]]) in edges.iter().enumerate() {
             let enters = orient2d(c, d, b) == Orientation::CounterClockwise;
             node::join(&mut self.lists, [vertices[0][i], vertices[1][i]], enters);
+        }
+    }
+
+    /// Tells a listener of both lists.
+    pub fn tell(&self, t: &mut impl Tracer<Step>) {
+        for (lists, list) in self.lists.iter().zip([Operand::Subject, Operand::Clip]) {
+            for v in lists.starts.iter().flat_map(|start| lists.ring(start.vertex)) {
+                t.step(|| {
+                    let vertex = &lists.vertices[v];
+                    let mark = if vertex.enters { Mark::Entering } else { Mark::Leaving };
+                    Step::Listed { list, at: vertex.at, mark: vertex.twin.map(|_| mark) }
+                });
+            }
         }
     }
 

@@ -12,7 +12,7 @@ use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-pub use super::walk::{Options, Step, replay};
+pub use super::walk::{Mark, Operand, Options, Step, replay};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -73,7 +73,7 @@ fn walk(linked: &Linked, op: BooleanOp, t: &mut impl Tracer<Step>) -> Vec<Vec<DV
     let mut found = Vec::new();
     for (start, vertex) in subject.iter().enumerate() {
         if vertex.twin.is_some() && !visited[start] {
-            let mut ring = trace(&linked.lists, &entries, start, &mut visited);
+            let mut ring = trace(&linked.lists, &entries, start, &mut visited, t);
             // The result lies where the subject does, on the left of its border.
             if !entries[0][start] {
                 ring.reverse();
@@ -99,6 +99,7 @@ fn trace(
     entries: &[Vec<bool>; 2],
     start: usize,
     visited: &mut [bool],
+    t: &mut impl Tracer<Step>,
 ) -> Vec<DVec2> {
     let all = lists[0].vertices.len() + lists[1].vertices.len();
     let mut points = Vec::new();
@@ -114,7 +115,9 @@ fn trace(
             if points.len() > all {
                 return Vec::new();
             }
-            points.push(lists[k].vertices[v].at);
+            let at = lists[k].vertices[v].at;
+            t.step(|| Step::Passed { list: [Operand::Subject, Operand::Clip][k], at });
+            points.push(at);
             let vertex = &lists[k].vertices[v];
             v = if forward { vertex.next } else { vertex.previous };
             if lists[k].vertices[v].twin.is_some() {

@@ -4,10 +4,13 @@ use super::{Ring, Shapes, signed_area};
 use crate::math::{DVec2, Orientation, Rect, orient2d};
 
 /// Where a point lies of a region.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// Within it.
     Inside,
+    /// On the border.
     Border,
+    /// Neither.
     Outside,
 }
 

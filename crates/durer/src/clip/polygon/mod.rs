@@ -6,6 +6,7 @@
 pub mod coverage;
 mod cyclic;
 pub mod greiner_hormann;
+pub mod liang_barsky;
 mod locate;
 pub mod mismatch;
 pub mod naive;
@@ -14,7 +15,9 @@ mod nesting;
 mod node;
 mod outline;
 pub mod overlay;
+pub mod point;
 pub mod rectangle;
+pub mod scan_beams;
 mod shapes;
 mod status;
 pub mod sutherland_hodgman;
@@ -124,7 +127,8 @@ fn as_rectangle(shapes: &Shapes) -> Option<Rect> {
     one.then(|| Rect::around([a, c])).flatten()
 }
 
-/// Which points a set of closed curves encloses, told by the winding number w around the point.
+/// Which points a set of closed curves encloses, told by the winding number w around the point: the five rules of
+/// OpenGL's tessellator (GLU 1.3, 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
     /// w is odd.
@@ -136,12 +140,14 @@ pub enum FillRule {
     Positive,
     /// w < 0: inside curves that run clockwise (y up).
     Negative,
+    /// |w| ≥ 2: inside two curves that run the same way, or twice inside one.
+    AbsGeqTwo,
 }
 
 impl FillRule {
     /// Every rule, in the order of the documentation.
     pub const ALL: &'static [Self] =
-        &[Self::EvenOdd, Self::NonZero, Self::Positive, Self::Negative];
+        &[Self::EvenOdd, Self::NonZero, Self::Positive, Self::Negative, Self::AbsGeqTwo];
 
     /// The name used on the command line.
     pub const fn name(self) -> &'static str {
@@ -150,6 +156,7 @@ impl FillRule {
             Self::NonZero => "non-zero",
             Self::Positive => "positive",
             Self::Negative => "negative",
+            Self::AbsGeqTwo => "abs-geq-two",
         }
     }
 
@@ -161,6 +168,7 @@ impl FillRule {
             Self::NonZero => winding != 0,
             Self::Positive => winding > 0,
             Self::Negative => winding < 0,
+            Self::AbsGeqTwo => winding.unsigned_abs() >= 2,
         }
     }
 }
@@ -222,7 +230,7 @@ impl std::str::FromStr for FillRule {
     type Err = Error;
 
     fn from_str(s: &str) -> Result<Self> {
-        let expected = "even-odd, non-zero, positive or negative";
+        let expected = "even-odd, non-zero, positive, negative or abs-geq-two";
         let found = Self::ALL.iter().copied().find(|r| r.name() == s);
         found.ok_or_else(|| Error::parameter("fill rule", s, expected))
     }

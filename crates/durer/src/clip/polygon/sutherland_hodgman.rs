@@ -13,6 +13,8 @@
 //! Which side of a border a vertex is on is decided exactly. Cuts are computed from the
 //! lexicographically smaller end of an edge, so polygons that share an edge share its cuts.
 
+pub mod by_borders;
+
 use super::locate::is_flat;
 use super::{Shapes, signed_area};
 use crate::clip::line::border::Canonical;
@@ -113,7 +115,7 @@ impl<H, V> Stage<H, V> {
         V: Vertex<N>,
     {
         let inside = self.border.sign(vertex.position()) != Ordering::Less;
-        let cut = self.previous.and_then(|from| self.cut(from, (vertex, inside)));
+        let cut = self.previous.and_then(|from| cut(&self.border, from, (vertex, inside)));
         self.first.get_or_insert((vertex, inside));
         self.previous = Some((vertex, inside));
         [cut, inside.then_some(vertex)]
@@ -127,28 +129,37 @@ impl<H, V> Stage<H, V> {
         V: Vertex<N>,
     {
         let (from, to) = self.previous.take().zip(self.first.take())?;
-        self.cut(from, to)
+        cut(&self.border, from, to)
     }
+}
 
-    /// The cut of an edge whose ends are on different sides; none where one end is on the border.
-    fn cut<const N: usize>(&self, (a, a_in): (V, bool), (b, b_in): (V, bool)) -> Option<V>
-    where
-        H: HalfSpace<N>,
-        V: Vertex<N>,
-    {
-        let on_border = |v: &V| self.border.sign(v.position()) == Ordering::Equal;
-        if a_in == b_in || on_border(&a) || on_border(&b) {
-            return None;
-        }
-        // Segments made of vertices that came through a window are finite, but be safe.
-        let line = Canonical::new(a.position(), b.position()).ok()?;
-        let t = convex::parameter(&self.border, &line);
-        let mut position = line.at(t);
-        if let Some((axis, border)) = self.border.coordinate() {
-            position[axis] = border;
-        }
-        let (from, to) = if line.swapped { (b, a) } else { (a, b) };
-        Some(from.cut(&to, t, position))
+/// The cut of an edge whose ends are on different sides of a border; none where one end is on it.
+fn cut<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+    border: &H,
+    (a, a_in): (V, bool),
+    (b, b_in): (V, bool),
+) -> Option<V> {
+    let on_border = |v: &V| border.sign(v.position()) == Ordering::Equal;
+    if a_in == b_in || on_border(&a) || on_border(&b) {
+        return None;
+    }
+    // Segments made of vertices that came through a window are finite, but be safe.
+    let line = Canonical::new(a.position(), b.position()).ok()?;
+    let t = convex::parameter(border, &line);
+    let mut position = line.at(t);
+    if let Some((axis, at)) = border.coordinate() {
+        position[axis] = at;
+    }
+    let (from, to) = if line.swapped { (b, a) } else { (a, b) };
+    Some(from.cut(&to, t, position))
+}
+
+/// Refuses vertices with coordinates that are not finite.
+fn finite_vertices<const N: usize, V: Vertex<N>>(ring: &[V]) -> Result<()> {
+    let finite = |v: &V| v.position().iter().all(|c| c.is_finite());
+    match ring.iter().position(|v| !finite(v)) {
+        Some(index) => Err(Error::NonFinite { what: "vertex", index }),
+        None => Ok(()),
     }
 }
 
@@ -365,10 +376,7 @@ fn run<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
     ring: &[V],
     t: &mut impl Tracer<Step<V>>,
 ) -> Result<Vec<V>> {
-    let finite = |v: &V| v.position().iter().all(|c| c.is_finite());
-    if let Some(index) = ring.iter().position(|v| !finite(v)) {
-        return Err(Error::NonFinite { what: "vertex", index });
-    }
+    finite_vertices(ring)?;
     let (mut pipeline, mut out) = (Pipeline::new(borders), Vec::new());
     for &vertex in ring {
         pipeline.push(vertex, &mut |v| out.push(v), t);

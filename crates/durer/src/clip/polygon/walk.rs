@@ -3,7 +3,7 @@
 use super::cyclic::{Linked, link};
 use super::locate::group;
 use super::outline::simple_rings;
-use super::{BooleanOp, Shapes};
+use super::{BooleanOp, Shapes, signed_area};
 use crate::Result;
 use crate::math::DVec2;
 use crate::trace::Tracer;
@@ -12,9 +12,43 @@ use crate::trace::Tracer;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {}
 
-/// What happens, step by step.
+/// One of the two cyclic lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Operand {
+    /// That of what is clipped.
+    Subject,
+    /// That of the window.
+    Clip,
+}
+
+/// How a list goes on at a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Mark {
+    /// Into the other polygon.
+    Entering,
+    /// Out of it.
+    Leaving,
+}
+
+/// What happens, step by step, in the direction of the subject's first ring.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
+    /// A vertex of a list once crossings are inserted: ring after ring, each in its order.
+    Listed {
+        /// Which list.
+        list: Operand,
+        /// Where.
+        at: DVec2,
+        /// Of a crossing: how the list goes on.
+        mark: Option<Mark>,
+    },
+    /// The walk passes a vertex, which belongs to the ring that is being made.
+    Passed {
+        /// Along which list.
+        list: Operand,
+        /// Where.
+        at: DVec2,
+    },
     /// Greiner and Hormann: the borders cross here; the subject enters or leaves the clip.
     Crossing {
         /// Where.
@@ -31,7 +65,7 @@ pub enum Step {
     },
     /// A ring of the result is complete.
     Ring {
-        /// Its points, the inside on the left.
+        /// Its points, the inside on the left, or on the right where the subject's first ring runs clockwise.
         points: Vec<DVec2>,
     },
 }
@@ -61,36 +95,74 @@ pub(super) fn walk_all<'t, T: Tracer<Step>>(
     let largest = points.fold(0.0, |all: f64, p| all.max(p.abs().max_element()));
     let exponent = if largest.is_finite() && largest > 0.0 { libm::ilogb(largest) } else { 0 };
     let shift = if TAME.contains(&exponent) { 0 } else { exponent };
-    let mut t = Scaled { to: t, shift };
-    if shift == 0 {
+    let mirrored = inputs[0].rings().next().is_some_and(|ring| signed_area(ring) < 0.0);
+    let frame = Frame { shift, mirrored };
+    let mut t = Scaled { to: t, frame };
+    if !mirrored && shift == 0 {
         return walk_tame(inputs, op, &mut t, walk);
     }
-    let scaled = inputs.map(|shapes| scale(shapes, -shift));
-    let found = walk_tame([&scaled[0], &scaled[1]], op, &mut t, walk)?;
-    Ok(scale(&found, shift))
+    let framed = inputs.map(|shapes| map(shapes, |p| frame.of(p)));
+    let found = walk_tame([&framed[0], &framed[1]], op, &mut t, walk)?;
+    let found = map(&found, |p| frame.back(p));
+    Ok(if mirrored { reversed(&found) } else { found })
 }
 
-fn scale(shapes: &Shapes, shift: i32) -> Shapes {
-    let mut scaled = shapes.clone();
-    scaled.points_mut().iter_mut().for_each(|p| *p = times_power(*p, shift));
-    scaled
+/// How coordinates are seen while walking: at a power of two of their size, and in a mirror where the subject
+/// runs clockwise. For walks have the inside on their left, and are to go in the caller's direction.
+#[derive(Clone, Copy)]
+struct Frame {
+    shift: i32,
+    mirrored: bool,
+}
+
+impl Frame {
+    fn of(self, p: DVec2) -> DVec2 {
+        let p = if self.mirrored { DVec2::new(p.x, -p.y) } else { p };
+        times_power(p, -self.shift)
+    }
+
+    fn back(self, p: DVec2) -> DVec2 {
+        let p = times_power(p, self.shift);
+        // Adding zero turns −0 into 0.
+        if self.mirrored { DVec2::new(p.x, -p.y + 0.0) } else { p }
+    }
+}
+
+fn map(shapes: &Shapes, f: impl Fn(DVec2) -> DVec2) -> Shapes {
+    let mut mapped = shapes.clone();
+    mapped.points_mut().iter_mut().for_each(|p| *p = f(*p));
+    mapped
 }
 
 fn times_power(p: DVec2, shift: i32) -> DVec2 {
-    DVec2::new(libm::scalbn(p.x, shift), libm::scalbn(p.y, shift))
+    if shift == 0 { p } else { DVec2::new(libm::scalbn(p.x, shift), libm::scalbn(p.y, shift)) }
+}
+
+/// The same shapes, each ring in the other direction.
+fn reversed(shapes: &Shapes) -> Shapes {
+    let mut out = Shapes::new();
+    for polygon in shapes.polygons() {
+        for ring in polygon.rings() {
+            out.push_ring(ring.iter().rev().copied());
+        }
+        out.end_polygon();
+    }
+    out
 }
 
 /// A listener that is told the caller's coordinates.
 pub(super) struct Scaled<'t, T> {
     to: &'t mut T,
-    shift: i32,
+    frame: Frame,
 }
 
 impl<T: Tracer<Step>> Tracer<Step> for Scaled<'_, T> {
     fn step(&mut self, make: impl FnOnce() -> Step) {
-        let shift = self.shift;
-        let place = |at| if shift == 0 { at } else { times_power(at, shift) };
+        let frame = self.frame;
+        let place = |at| frame.back(at);
         self.to.step(|| match make() {
+            Step::Listed { list, at, mark } => Step::Listed { list, at: place(at), mark },
+            Step::Passed { list, at } => Step::Passed { list, at: place(at) },
             Step::Crossing { at, entry } => Step::Crossing { at: place(at), entry },
             Step::Turn { at, to_subject } => Step::Turn { at: place(at), to_subject },
             Step::Ring { points } => Step::Ring { points: points.into_iter().map(place).collect() },
@@ -106,6 +178,7 @@ fn walk_tame<T: Tracer<Step>>(
 ) -> Result<Shapes> {
     let mut once = |subject, clip, op| -> Result<Vec<Vec<DVec2>>> {
         let linked = link(subject, clip, op)?;
+        linked.tell(t);
         let mut found = walk(&linked, op, t);
         found.extend(linked.whole_rings(op));
         Ok(found)

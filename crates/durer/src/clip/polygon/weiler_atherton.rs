@@ -13,7 +13,7 @@ use crate::info::{Class, Info};
 use crate::math::DVec2;
 use crate::trace::Tracer;
 
-pub use super::walk::{Options, Step, replay};
+pub use super::walk::{Mark, Operand, Options, Step, replay};
 
 /// The facts.
 pub const INFO: Info = Info {
@@ -89,6 +89,7 @@ fn trace(
         t.step(|| Step::Turn { at: subject[v].at, to_subject: true });
         visited[v] = true;
         loop {
+            t.step(|| Step::Passed { list: Operand::Subject, at: subject[v].at });
             points.push(subject[v].at);
             v = subject[v].next;
             if points.len() > all {
@@ -101,6 +102,7 @@ fn trace(
         let Some(mut w) = subject[v].twin else { return points };
         t.step(|| Step::Turn { at: clip[w].at, to_subject: false });
         loop {
+            t.step(|| Step::Passed { list: Operand::Clip, at: clip[w].at });
             points.push(clip[w].at);
             if points.len() > all {
                 return Vec::new();

@@ -55,8 +55,8 @@ pub fn draw(
     } else {
         (IVec2::X, IVec2::new(0, across))
     };
+    course.report(t);
     for _ in course.first..=course.last {
-        t.step(|| Step { pixel });
         plot(pixel);
         error += rise;
         // Without a branch, for which way it goes cannot be foretold.

@@ -40,9 +40,9 @@ pub fn draw(
     let half = 1_u128 << (BITS - 1);
     let offset = if course.sign < 0 { half + slack } else { half - slack };
     let mut sum = slope * course.first.max(0) as u128 + offset;
+    course.report(t);
     for step in course.first..=course.last {
         let pixel = course.pixel(step, (sum >> BITS) as i64);
-        t.step(|| Step { pixel });
         plot(pixel);
         sum += slope;
     }

@@ -29,9 +29,9 @@ pub fn draw(
     t: &mut impl Tracer<Step>,
 ) {
     let course = Course::new(from, to, options);
+    course.report(t);
     for step in course.first..=course.last {
         let pixel = course.pixel(step, (course.numerator(step) / course.denominator()) as i64);
-        t.step(|| Step { pixel });
         plot(pixel);
     }
 }

@@ -7,6 +7,7 @@ pub mod anti_aliased;
 pub mod bresenham;
 pub mod dda;
 pub mod equation;
+pub mod pattern;
 mod pieces;
 pub mod tiled;
 pub mod wide;
@@ -53,11 +54,20 @@ pub struct Options {
     pub window: Option<(IVec2, IVec2)>,
 }
 
-/// One step: a pixel is lit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// One step: a pixel is lit. Steps come from the line's first end to its last, though pixels are plotted in the
+/// direction of rising coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Column and row.
     pub pixel: IVec2,
+    /// Where the line itself is across its longer axis, in pixels: what the equation gives, what the digital
+    /// differential analyzer has summed up; its nearest whole number is the pixel's.
+    pub across: f64,
+    /// Bresenham's E at this pixel, 2Δy − Δx at the first one: twice the distance, times Δx, from the point midway
+    /// between the two pixels that may come next to the line. Where it is positive the next pixel lies one further
+    /// across and 2Δy − 2Δx is added, where it is negative it lies straight on and 2Δy is added; where it is zero
+    /// the smaller coordinate across decides.
+    pub e: i64,
 }
 
 /// A line seen along its longer axis, in the direction of rising coordinates: every algorithm starts
@@ -74,6 +84,8 @@ struct Course {
     rise: i64,
     /// The direction across.
     sign: i64,
+    /// Whether the caller's line runs the other way.
+    swapped: bool,
     /// The steps to take, both included; empty where `first > last`.
     first: i64,
     last: i64,
@@ -95,7 +107,8 @@ impl Course {
         let steep = (b.1 - a.1).abs() > (b.0 - a.0).abs();
         let turn = |(x, y): (i64, i64)| if steep { (y, x) } else { (x, y) };
         let (a, b) = (turn(a), turn(b));
-        let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
+        let swapped = a.0 > b.0;
+        let (a, b) = if swapped { (b, a) } else { (a, b) };
         let (steps, rise) = (b.0 - a.0, b.1 - a.1);
         Self {
             steep,
@@ -104,6 +117,7 @@ impl Course {
             steps,
             rise: rise.abs(),
             sign: rise.signum(),
+            swapped,
             first: 0,
             last: steps,
         }
@@ -150,6 +164,31 @@ impl Course {
         let wanted = self.denominator() * i128::from(distance) - self.numerator(0);
         let twice = 2 * i128::from(self.rise);
         ((wanted + twice - 1) / twice).clamp(0, i128::from(self.steps) + 1) as i64
+    }
+
+    /// Tells a listener of all pixels, in the caller's direction.
+    fn report(&self, t: &mut impl Tracer<Step>) {
+        for step in self.first..=self.last {
+            t.step(|| {
+                let step = if self.swapped { self.last - (step - self.first) } else { step };
+                self.step(step)
+            });
+        }
+    }
+
+    fn step(&self, step: i64) -> Step {
+        let distance = (self.numerator(step) / self.denominator()) as i64;
+        let slope = self.rise as f64 / self.steps.max(1) as f64;
+        // Steps and distance from the end at which the caller begins.
+        let (done, passed) =
+            if self.swapped { (self.steps - step, self.rise - distance) } else { (step, distance) };
+        let wide = i128::from;
+        let e = 2 * wide(self.rise) * (wide(done) + 1) - wide(self.steps) * (1 + 2 * wide(passed));
+        Step {
+            pixel: self.pixel(step, distance),
+            across: self.across as f64 + self.sign as f64 * slope * step as f64,
+            e: e as i64,
+        }
     }
 
     fn pixel(&self, step: i64, distance: i64) -> IVec2 {

@@ -31,12 +31,21 @@ pub const INFO: Info = Info {
 /// One step of the algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
+    /// An entry of the edge table, row by row (bucket by bucket), before anything is filled.
+    Table(Edge),
     /// An edge enters the active edge table at this row and pixel.
     Enter {
         /// Row.
         y: i32,
         /// First pixel right of the edge.
         x: i64,
+    },
+    /// An entry of the active edge table in this row; they come in the order of x, before the row's spans.
+    Active {
+        /// Row.
+        y: i32,
+        /// As it is in this row.
+        edge: Edge,
     },
     /// Edges that end above this row leave the table; so many stay.
     Leave {
@@ -50,19 +59,23 @@ pub enum Step {
 }
 
 /// An edge in the tables.
-#[derive(Debug, Clone, Copy)]
-struct Edge {
-    /// First row whose centres the edge crosses, and one past the last.
-    rows: (i32, i32),
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// First row whose centres the edge crosses, and one past the last: y_min and y_max.
+    pub rows: (i32, i32),
     /// First pixel of the current row whose centre is not left of the edge.
-    x: i64,
-    /// How far the edge lies right of that pixel's left neighbour's centre, in 1/`whole` of a pixel.
-    error: i64,
-    /// What a row adds to `x` and to `error`.
-    step: i64,
-    remainder: i64,
-    whole: i64,
-    winding: i32,
+    pub x: i64,
+    /// The accumulator: how far the edge lies right of the centre of that pixel's left neighbour, in 1/`whole` of
+    /// a pixel, less one.
+    pub error: i64,
+    /// What a row adds to `x` without the accumulator: the whole pixels of Δx/Δy.
+    pub step: i64,
+    /// What a row adds to the accumulator: the rest of Δx/Δy, in 1/`whole` of a pixel.
+    pub remainder: i64,
+    /// As much in the accumulator is one pixel: when it is reached, `x` grows by one.
+    pub whole: i64,
+    /// 1 for an edge that goes down in the contour, −1 for one that goes up.
+    pub winding: i32,
 }
 
 impl Edge {
@@ -94,7 +107,14 @@ impl Edge {
         })
     }
 
-    fn advance(&mut self) {
+    /// Where the edge crosses the centre of the current row, in pixels from the centre of column 0; what is never
+    /// computed while filling.
+    pub fn crossing(&self) -> f64 {
+        (self.x - 1) as f64 + (self.error + 1) as f64 / self.whole as f64
+    }
+
+    /// Goes on to the next row.
+    pub(crate) fn advance(&mut self) {
         self.x += self.step;
         self.error += self.remainder;
         if self.error >= self.whole {
@@ -125,8 +145,9 @@ pub fn fill(
     mut emit: impl FnMut(Span),
     t: &mut impl Tracer<Step>,
 ) {
-    let mut table = edge_table(contours, height);
+    let mut table = table(contours, height);
     table.sort_by_key(|e| std::cmp::Reverse(e.rows.0));
+    table.iter().rev().for_each(|edge| t.step(|| Step::Table(*edge)));
     let mut active: Vec<Edge> = Vec::new();
     let mut y = table.last().map_or(0, |e| e.rows.0);
     while (y as u32) < height && !(table.is_empty() && active.is_empty()) {
@@ -135,6 +156,7 @@ pub fn fill(
             active.push(edge);
         }
         active.sort_by_key(|e| e.x);
+        active.iter().for_each(|&edge| t.step(|| Step::Active { y, edge }));
         row(&active, y, width, options.rule, |span| {
             t.step(|| Step::Span(span));
             emit(span);
@@ -149,7 +171,8 @@ pub fn fill(
     }
 }
 
-fn edge_table(contours: &Contours, height: u32) -> Vec<Edge> {
+/// The edges of a polygon that cross rows of the target.
+pub(crate) fn table(contours: &Contours, height: u32) -> Vec<Edge> {
     let mut table = Vec::new();
     snapped_edges(contours, 0..contours.points().len(), |a, b| {
         table.extend(Edge::new(a, b, 0).filter(|e| i64::from(e.rows.0) < i64::from(height)));

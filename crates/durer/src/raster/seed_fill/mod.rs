@@ -33,6 +33,9 @@ pub enum Connectivity {
 pub struct Options {
     /// Which pixels are neighbours.
     pub connectivity: Connectivity,
+    /// For [`boundary_fill`]: whether pixels that have the new value already stop it, too, as is taught
+    /// (`current ≠ boundary and current ≠ fill`). Then what lies behind them is not reached.
+    pub stop_at_value: bool,
 }
 
 /// One step: pixels of a row that were found to belong to the region.
@@ -44,6 +47,8 @@ pub struct Step {
     pub x0: u32,
     /// One past the last pixel.
     pub x1: u32,
+    /// How much waits on the stack: pixels of the naive form, runs of the other.
+    pub waiting: usize,
 }
 
 /// The facts of the naive form.
@@ -169,6 +174,19 @@ pub fn flood_fill<P: PixelValue>(
 
 /// Fills the pixels connected with the seed up to a boundary: those whose channels differ from the
 /// boundary's by more than `tolerance`; returns how many were filled.
+///
+/// ```
+/// use durer::raster::seed_fill::{Options, SeedFill, boundary_fill};
+/// use durer::target::Pixels;
+/// use durer::trace::NoTrace;
+///
+/// // 5 is the new value, 9 the boundary; what has the new value stops the fill if that is asked for.
+/// let mut row = Pixels::from_data(7, 1, vec![0_u8, 0, 5, 0, 0, 9, 0]).unwrap();
+/// let options = Options { stop_at_value: true, ..Options::default() };
+/// let fill = SeedFill::Naive;
+/// assert_eq!(boundary_fill(&mut row, (0, 0), 5, 9, 0, fill, &options, &mut NoTrace), 2);
+/// assert_eq!(row.data(), [5, 5, 5, 0, 0, 9, 0]);
+/// ```
 #[expect(clippy::too_many_arguments, reason = "one call, all of it the kind of fill")]
 pub fn boundary_fill<P: PixelValue>(
     image: &mut Pixels<P>,
@@ -180,7 +198,12 @@ pub fn boundary_fill<P: PixelValue>(
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> u64 {
-    fill_where(image, seed, value, |p| p.difference(boundary) > tolerance, method, options, t)
+    let inside = |p: P| p.difference(boundary) > tolerance;
+    if options.stop_at_value {
+        let is_new = |p: P| p.difference(value) == P::Level::default();
+        return fill_where(image, seed, value, |p| inside(p) && !is_new(p), method, options, t);
+    }
+    fill_where(image, seed, value, inside, method, options, t)
 }
 
 /// Fills the pixels connected with the seed for which `inside` holds; returns how many were filled.
@@ -222,11 +245,12 @@ fn listens<P: Copy>(
         let (before, after) = image.row(y).split_at(x as usize);
         let left = before.iter().rev().take_while(|p| inside(**p)).count() as u32;
         let right = after.iter().take_while(|p| inside(**p)).count() as u32;
-        Step { y, x0: x - left, x1: x + right }
+        Step { y, x0: x - left, x1: x + right, waiting: 0 }
     });
     listens
 }
 
+/// In the order in which they are taught to be visited.
 const NEIGHBOURS: [(i64, i64); 8] =
     [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
 
@@ -240,8 +264,10 @@ fn naive(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
         }
         region.open[y as usize * region.words + x as usize / 64] &= !(1 << (x as usize % 64));
         found += 1;
-        t.step(|| Step { y: y as u32, x0: x as u32, x1: x as u32 + 1 });
-        stack.extend(neighbours.iter().map(|(dx, dy)| (x + dx, y + dy)));
+        let waiting = stack.len();
+        t.step(|| Step { y: y as u32, x0: x as u32, x1: x as u32 + 1, waiting });
+        // The last put there is the first to be taken: pixels come in the order of the recursive form.
+        stack.extend(neighbours.iter().rev().map(|(dx, dy)| (x + dx, y + dy)));
     }
     found
 }
@@ -254,7 +280,8 @@ fn spans(region: &mut Region, seed: (u32, u32), eight: bool, t: &mut impl Tracer
     let mut found = 0;
     while let Some((y, start, end)) = stack.pop() {
         if found > 0 {
-            t.step(|| Step { y: y as u32, x0: start as u32, x1: end as u32 });
+            let waiting = stack.len();
+            t.step(|| Step { y: y as u32, x0: start as u32, x1: end as u32, waiting });
         }
         found += (end - start) as u64;
         let (from, to) = (start.saturating_sub(reach), (end + reach).min(region.width));

@@ -8,6 +8,7 @@ pub mod edge_lines;
 mod facing;
 pub mod floating_horizon;
 pub mod hidden_line;
+pub mod horizon_curves;
 mod intersection;
 mod marks;
 mod method;

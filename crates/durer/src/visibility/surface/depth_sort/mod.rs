@@ -67,14 +67,28 @@ pub enum Test {
     Depths,
     /// 2a: their boxes on the screen have no pixel in common.
     Boxes,
-    /// 2b: P lies wholly behind Q's plane.
-    BehindPlane,
-    /// 2c: Q lies wholly in front of P's plane.
+    /// 2b: Q lies wholly in front of P's plane.
     InFrontOfPlane,
+    /// 2c: P lies wholly behind Q's plane.
+    BehindPlane,
     /// 2d: their projections do not overlap.
     Projections,
     /// P is nearer at no pixel that both cover.
     Pixels,
+}
+
+impl Test {
+    /// The test's number as it is taught; the last one is none of the paper's.
+    pub const fn number(self) -> &'static str {
+        match self {
+            Self::Depths => "1",
+            Self::Boxes => "2a",
+            Self::InFrontOfPlane => "2b",
+            Self::BehindPlane => "2c",
+            Self::Projections => "2d",
+            Self::Pixels => "pixels",
+        }
+    }
 }
 
 /// What there is to see. Polygons have numbers: first the triangles of the input, then pieces.

@@ -30,11 +30,11 @@ impl Pieces<'_> {
         let (tp, tq) = (self.triangle(p), self.triangle(q));
         let slack =
             self.slack[self.get(p).triangle as usize] + self.slack[self.get(q).triangle as usize];
-        if lies_behind(tp, tp, tq, slack) {
-            return Verdict::Passed(Test::BehindPlane);
-        }
         if lies_behind(tq, tp, tq, slack) {
             return Verdict::Passed(Test::InFrontOfPlane);
+        }
+        if lies_behind(tp, tp, tq, slack) {
+            return Verdict::Passed(Test::BehindPlane);
         }
         if separated(tp, tq) || separated(tq, tp) {
             return Verdict::Passed(Test::Projections);

@@ -1,0 +1,129 @@
+//! The method as it is taught: border after border, each with the whole list of vertices.
+//!
+//! The same cuts as the chain of stages makes, so the same ring, which may begin at another vertex; four rules for
+//! the two ends of an edge, of which the first goes from the last vertex to the first.
+
+use super::{Vertex, cut, finite_vertices};
+use crate::Result;
+use crate::clip::line::HalfSpace;
+use crate::trace::Tracer;
+use std::cmp::Ordering;
+
+/// Where the two ends of an edge lie of a border.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Rule {
+    /// Both inside: the end is emitted.
+    InIn,
+    /// The edge leaves: its cut is emitted.
+    InOut,
+    /// The edge enters: its cut and its end are emitted.
+    OutIn,
+    /// Both outside: nothing is emitted.
+    OutOut,
+}
+
+impl Rule {
+    fn of(from_inside: bool, to_inside: bool) -> Self {
+        match (from_inside, to_inside) {
+            (true, true) => Self::InIn,
+            (true, false) => Self::InOut,
+            (false, true) => Self::OutIn,
+            (false, false) => Self::OutOut,
+        }
+    }
+
+    /// The rule's name as it is written on the blackboard.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::InIn => "in→in",
+            Self::InOut => "in→out",
+            Self::OutIn => "out→in",
+            Self::OutOut => "out→out",
+        }
+    }
+}
+
+/// What the algorithm did.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step<V> {
+    /// An edge was looked at.
+    Edge {
+        /// The border's index.
+        border: usize,
+        /// Where the edge begins.
+        from: V,
+        /// Where it ends.
+        to: V,
+        /// Where its ends lie.
+        rule: Rule,
+        /// What is emitted: the cut, and the end. There is no cut where an end lies on the border itself.
+        emitted: [Option<V>; 2],
+    },
+    /// A border is done: this is what is left.
+    List {
+        /// The border's index.
+        border: usize,
+        /// The vertices.
+        vertices: Vec<V>,
+    },
+}
+
+/// The result that a list of steps leads to.
+pub fn replay<V: Clone>(ring: &[V], steps: &[Step<V>]) -> Vec<V> {
+    let lists = steps.iter().filter_map(|step| match step {
+        Step::List { vertices, .. } => Some(vertices),
+        Step::Edge { .. } => None,
+    });
+    lists.last().cloned().unwrap_or_else(|| ring.to_vec())
+}
+
+/// The part of a ring on the inner side of all borders, one border after the other, as one ring.
+///
+/// ```
+/// use durer::clip::line::HalfPlane;
+/// use durer::clip::polygon::sutherland_hodgman::by_borders::clip;
+/// use durer::math::DVec2;
+/// use durer::trace::NoTrace;
+///
+/// let right = HalfPlane { normal: DVec2::X, point: DVec2::ZERO };
+/// let ring = [(-1.0, 0.0), (1.0, 0.0), (1.0, 2.0)].map(DVec2::from);
+/// let clipped = clip(&[right], &ring, &mut NoTrace)?;
+/// assert_eq!(clipped, [(0.0, 1.0), (0.0, 0.0), (1.0, 0.0), (1.0, 2.0)].map(DVec2::from));
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`NonFinite`](crate::Error::NonFinite) for a vertex with a NaN or infinite coordinate.
+pub fn clip<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+    borders: &[H],
+    ring: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Result<Vec<V>> {
+    finite_vertices(ring)?;
+    let mut vertices = ring.to_vec();
+    for (index, border) in borders.iter().enumerate() {
+        vertices = past(index, border, &vertices, t);
+        t.step(|| Step::List { border: index, vertices: vertices.clone() });
+    }
+    Ok(vertices)
+}
+
+/// What one border leaves of a list.
+fn past<const N: usize, H: HalfSpace<N>, V: Vertex<N>>(
+    index: usize,
+    border: &H,
+    vertices: &[V],
+    t: &mut impl Tracer<Step<V>>,
+) -> Vec<V> {
+    let side = |v: V| (v, border.sign(v.position()) != Ordering::Less);
+    let Some(mut from) = vertices.last().copied().map(side) else { return Vec::new() };
+    let mut left = Vec::new();
+    for to in vertices.iter().copied().map(side) {
+        let emitted = [cut(border, from, to), to.1.then_some(to.0)];
+        left.extend(emitted.into_iter().flatten());
+        let rule = Rule::of(from.1, to.1);
+        t.step(|| Step::Edge { border: index, from: from.0, to: to.0, rule, emitted });
+        from = to;
+    }
+    left
+}

@@ -1,0 +1,74 @@
+//! Depth cueing and fog: what is farther away is nearer to the colour of the air.
+//!
+//! Depth cueing: J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes, *Computer Graphics: Principles and Practice*, 2nd ed. 1990, 14.3.4 and 16.1.3.
+//! Fog: *The OpenGL Graphics System* 2.1 (2006), 3.10. Cost: O(1). Limits: colours are mixed as they are, linear light mixes as air does.
+
+use crate::info::{Class, Info};
+use crate::math::{Vec4, exp2};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "fog",
+    title: "Depth cueing and fog",
+    authors: "J. D. Foley, A. van Dam, S. K. Feiner, J. F. Hughes; the OpenGL board",
+    year: 1990,
+    source: "Computer Graphics: Principles and Practice, 14.3.4 and 16.1.3; OpenGL 2.1, 3.10",
+    class: Class::ImageSpace,
+    cost: "O(1) per fragment",
+    limits: "the air is the same everywhere",
+};
+
+/// How much of a colour is left at a distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fog {
+    /// Depth cueing: all of it up to `start`, `least` of it from `end` on, in between in proportion. With `least` = 0 it is
+    /// OpenGL's linear fog, (end − z) / (end − start).
+    Linear {
+        /// Distance from the eye, world units.
+        start: f32,
+        /// The same; beyond `start`.
+        end: f32,
+        /// From 0 to 1.
+        least: f32,
+    },
+    /// e^(−density · z): air that takes the same share per unit.
+    Exponential {
+        /// Per world unit.
+        density: f32,
+    },
+    /// e^(−(density · z)²): clear nearby, thick soon.
+    Squared {
+        /// Per world unit.
+        density: f32,
+    },
+}
+
+impl Fog {
+    /// How much of a colour is left at a distance from the eye, 0 … 1; all of it where that is no number.
+    ///
+    /// ```
+    /// use durer::fragment::fog::Fog;
+    /// let cue = Fog::Linear { start: 2.0, end: 4.0, least: 0.5 };
+    /// assert_eq!([1.0, 2.0, 3.0, 4.0, 9.0].map(|z| cue.left(z)), [1.0, 1.0, 0.75, 0.5, 0.5]);
+    /// ```
+    pub fn left(&self, z: f32) -> f32 {
+        let left = match *self {
+            Self::Linear { start, end, least } => {
+                let far = if z >= end { 0.0 } else { (end - z) / (end - start) };
+                least + (1.0 - least) * far.clamp(0.0, 1.0)
+            }
+            Self::Exponential { density } => exp2(-(density * z) * std::f32::consts::LOG2_E),
+            Self::Squared { density } => {
+                let thick = density * z;
+                exp2(-(thick * thick) * std::f32::consts::LOG2_E)
+            }
+        };
+        if left.is_nan() { 1.0 } else { left.clamp(0.0, 1.0) }
+    }
+
+    /// A colour at a distance, mixed with the air's; alpha stays.
+    pub fn apply(&self, color: Vec4, air: Vec4, z: f32) -> Vec4 {
+        let left = self.left(z);
+        (color * left + air * (1.0 - left)).truncate().extend(color.w)
+    }
+}

@@ -1,0 +1,159 @@
+//! Binary space partition: a tree of planes that orders polygons for any eye.
+//!
+//! H. Fuchs, Z. M. Kedem, B. F. Naylor, *On visible surface generation by a priori tree structures*, SIGGRAPH 1980. List
+//! priority. One polygon's plane divides the others, those that cross it are split, and so on in both halves. The tree
+//! does not hang on the eye: for each eye a walk through it, the far half of each node first, gives an order from
+//! back to front. Cost: O(n²) pieces at worst, O(n log n) as a rule; a walk is linear in the pieces.
+//!
+//! A piece keeps its face and the planes that cut it, and its pixels are those of the face on its side of them; so
+//! pieces share out a face's pixels, and the picture is the z-buffer's.
+
+mod tree;
+
+pub use tree::Tree;
+
+use super::{Face, Screen};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::math::DVec3;
+use crate::target::{NO_ITEM, Pixels};
+use crate::trace::Tracer;
+use crate::visibility::back_face::Eye;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "bsp-tree",
+    title: "Binary space partition tree",
+    authors: "H. Fuchs, Z. M. Kedem, B. F. Naylor",
+    year: 1980,
+    source: "On visible surface generation by a priori tree structures, SIGGRAPH",
+    class: Class::ListPriority,
+    cost: "O(n log n) pieces as a rule, O(n²) at worst, for n polygons; a walk per eye linear in the pieces",
+    limits: "plane polygons; at most so many pieces as the options say",
+};
+
+/// How the tree is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// So many polygons of a list are tried as its root, and the one that splits the fewest others is taken: the first
+    /// alone gives large trees, five or six give nearly the smallest. At least 1.
+    pub candidates: usize,
+    /// The most pieces that the tree may have.
+    pub max_pieces: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { candidates: 5, max_pieces: 1 << 20 }
+    }
+}
+
+/// On which side of a node's plane a polygon lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Where the normal points.
+    Front,
+    /// Behind it.
+    Back,
+    /// In the plane itself.
+    On,
+    /// On both sides: it is split.
+    Both,
+}
+
+/// What there is to see. Pieces have numbers: first the faces, then what splitting makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// A piece was tried as the root of a list.
+    Tried {
+        /// The piece.
+        piece: u32,
+        /// How many others its plane would split.
+        splits: usize,
+    },
+    /// A piece is a node of the tree.
+    Node {
+        /// The node's number.
+        node: u32,
+        /// The piece whose plane divides.
+        piece: u32,
+        /// The node above and the side of it; none for the tree's root.
+        below: Option<(u32, Side)>,
+    },
+    /// A piece was compared with the node's plane.
+    Sorted {
+        /// The piece.
+        piece: u32,
+        /// Where it lies.
+        side: Side,
+    },
+    /// A piece was split.
+    Split {
+        /// The piece.
+        piece: u32,
+        /// What is in front, and what is behind.
+        into: [u32; 2],
+    },
+    /// The walk comes to a node: the eye is on this side of its plane, so the other side is painted first.
+    Visit {
+        /// The node.
+        node: u32,
+        /// The eye's side.
+        eye: Side,
+    },
+    /// A piece is painted over what is there.
+    Paint {
+        /// The piece.
+        piece: u32,
+        /// Its face.
+        face: u32,
+    },
+    /// Of the piece that is painted: a pixel.
+    Pixel {
+        /// Column and row.
+        pixel: [u32; 2],
+        /// The face.
+        face: u32,
+    },
+}
+
+/// The picture that a list of steps leads to.
+///
+/// # Errors
+/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
+    let mut items = screen.plane(NO_ITEM)?;
+    for step in steps {
+        if let Step::Pixel { pixel: [x, y], face } = *step {
+            items.set(x, y, face);
+        }
+    }
+    Ok(items)
+}
+
+/// The index of the nearest face at each pixel's centre, of equally near ones the first.
+///
+/// # Errors
+/// [`Limit`](crate::Error::Limit) for too many pieces, [`Memory`](crate::Error::Memory) where the screen's budget does
+/// not suffice.
+pub fn items(
+    faces: &[Face],
+    screen: &Screen,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Pixels<u32>> {
+    let tree = Tree::new(faces, options, t)?;
+    let mut items = screen.plane(NO_ITEM)?;
+    for piece in tree.back_to_front(Eye::Along(DVec3::Z), t) {
+        let number = tree.face(piece);
+        let Some(face) = faces.get(number as usize) else { continue };
+        t.step(|| Step::Paint { piece, face: number });
+        face.pixels(screen, |pixel @ [x, y], point| {
+            if tree.holds(piece, point) {
+                t.step(|| Step::Pixel { pixel, face: number });
+                items.set(x, y, number);
+            }
+        });
+    }
+    Ok(items)
+}

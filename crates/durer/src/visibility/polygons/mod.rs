@@ -1,0 +1,84 @@
+//! Visible surfaces as they are taught: the published methods on plane polygons of any number of corners, a file each,
+//! small enough to be read beside the paper.
+//!
+//! The eye looks along z: x goes to the right and y down, in pixels, and z is the distance from the eye. All methods
+//! find the same nearest polygon at each pixel's centre, of equally near ones the first; [`regions`] finds where each
+//! polygon is seen, without pixels. What renders models is in
+//! [`super::surface`], what makes regions of them in [`super::region`].
+//!
+//! ```
+//! use durer::math::DVec3;
+//! use durer::visibility::polygons::{Face, PolygonMethod, Screen};
+//!
+//! let square = |at: f64, z: f64| {
+//!     let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
+//!     Face::new(&corners.map(|(x, y)| DVec3::new(x + at, y, z)))
+//! };
+//! let faces = [square(0.0, 2.0)?, square(2.0, 1.0)?];
+//! let screen = Screen { width: 6, height: 1, ..Screen::default() };
+//! for method in PolygonMethod::ALL {
+//!     assert_eq!(method.items(&faces, &screen)?.data(), [0, 0, 1, 1, 1, 1], "{method}");
+//! }
+//! # Ok::<(), durer::Error>(())
+//! ```
+
+pub mod a_buffer;
+pub mod bsp;
+mod face;
+pub mod painter;
+pub mod regions;
+pub mod watkins;
+pub mod z_buffer;
+
+pub use face::Face;
+
+use crate::Result;
+use crate::target::Pixels;
+use crate::trace::NoTrace;
+use crate::work::Work;
+
+/// The picture that is made: an item for each pixel, which is the index of a face, or
+/// [`NO_ITEM`](crate::target::NO_ITEM).
+#[derive(Debug, Clone, Default)]
+pub struct Screen {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// What memory is charged to, and what may stop the work.
+    pub work: Work,
+}
+
+impl Screen {
+    /// A plane of this size.
+    fn plane<T: Copy>(&self, value: T) -> Result<Pixels<T>> {
+        Pixels::within((&self.work, "planes of the picture"), self.width, self.height, value)
+    }
+}
+
+crate::info::family! {
+    /// The methods that find the visible polygon at each pixel. The painter's is none of them: it is wrong where
+    /// no order by depth is right.
+    pub enum PolygonMethod {
+        /// [`z_buffer`]
+        ZBuffer => z_buffer::INFO,
+        /// [`bsp`]
+        Bsp => bsp::INFO,
+        /// [`watkins`]
+        Watkins => watkins::INFO,
+    }
+}
+
+impl PolygonMethod {
+    /// The index of the nearest face at each pixel's centre, of equally near ones the smallest.
+    ///
+    /// # Errors
+    /// What the method's own function says; all take memory from the screen's budget.
+    pub fn items(self, faces: &[Face], screen: &Screen) -> Result<Pixels<u32>> {
+        match self {
+            Self::ZBuffer => z_buffer::items(faces, screen, &mut NoTrace),
+            Self::Bsp => bsp::items(faces, screen, &Default::default(), &mut NoTrace),
+            Self::Watkins => watkins::items(faces, screen, &mut NoTrace),
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The painter's method alone: sorted by depth once, then painted over each other from back to front, with no tests.
+//!
+//! In Newell, Newell, Sancha, *A Solution to the Hidden Surface Problem*, ACM Annual Conference 1972, the first step
+//! of the depth sort. Class: list priority. Cost: O(n log n + covered pixels). It is wrong where faces overlap in depth
+//! and in the picture, and no order at all is right where they overlap in a ring: so it is no member of any family.
+//! Use [`crate::visibility::surface::depth_sort`].
+
+use super::{Face, Screen};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::target::{NO_ITEM, Pixels};
+use crate::trace::Tracer;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "painter",
+    title: "Painter's method",
+    authors: "M. Newell, R. Newell, T. Sancha",
+    year: 1972,
+    source: "A Solution to the Hidden Surface Problem, ACM Annual Conference",
+    class: Class::ListPriority,
+    cost: "O(n log n + covered pixels), n faces",
+    limits: "wrong where faces overlap in depth and in the picture",
+};
+
+/// By what faces are sorted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Key {
+    /// The z of the farthest corner.
+    #[default]
+    Farthest,
+    /// The mean of the corners' z.
+    Mean,
+}
+
+/// How faces are sorted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// By what.
+    pub key: Key,
+}
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// A face's place in the order, from far to near.
+    Sorted {
+        /// Its index.
+        face: u32,
+        /// What it was sorted by.
+        z: f64,
+    },
+    /// Pixels of a row get a face's item, whatever was there.
+    Paint {
+        /// The face.
+        face: u32,
+        /// Row.
+        y: i32,
+        /// First column.
+        x0: i32,
+        /// The column after the last.
+        x1: i32,
+    },
+}
+
+/// The picture that a list of steps leads to.
+///
+/// # Errors
+/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
+    let mut items = screen.plane(NO_ITEM)?;
+    for step in steps {
+        if let Step::Paint { face, y, x0, x1 } = *step {
+            (x0..x1).for_each(|x| items.set(x as u32, y as u32, face));
+        }
+    }
+    Ok(items)
+}
+
+/// The index of the face that is painted last at each pixel's centre; of faces with equal keys the first one is
+/// painted last.
+///
+/// # Errors
+/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+pub fn items(
+    faces: &[Face],
+    screen: &Screen,
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Pixels<u32>> {
+    let mut items = screen.plane(NO_ITEM)?;
+    let key = |face: &Face| match options.key {
+        Key::Farthest => face.depths()[1],
+        Key::Mean => face.corners().iter().map(|c| c.z).sum::<f64>() / face.corners().len() as f64,
+    };
+    let mut order: Vec<(f64, u32, &Face)> =
+        (0..).zip(faces).map(|(number, face)| (key(face), number, face)).collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+    order.iter().for_each(|&(z, face, _)| t.step(|| Step::Sorted { face, z }));
+    for (_, number, face) in order {
+        face.spans(screen, |span| {
+            t.step(|| Step::Paint { face: number, y: span.y, x0: span.x0, x1: span.x1 });
+            (span.x0..span.x1).for_each(|x| items.set(x as u32, span.y as u32, number));
+        });
+    }
+    Ok(items)
+}

@@ -1,0 +1,246 @@
+//! Visible regions by cutting polygons along each other.
+//!
+//! K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977. Object space. The nearest
+//! polygon cuts all others like a pastry cutter: into what is inside its outline and what is outside. Inside, what lies
+//! behind it goes; if nothing is left there, it is seen, else what is left, which is in front of it, is treated in the same
+//! way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap; memory O(regions).
+//!
+//! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided where
+//! their planes meet. [`crate::visibility::region`] finds the same regions of models by a planar map, in far less time.
+
+use super::Face;
+use crate::clip::line::HalfPlane;
+use crate::clip::polygon::sutherland_hodgman::by_borders;
+use crate::clip::polygon::{BooleanOp, Shapes, overlay};
+use crate::info::{Class, Info};
+use crate::math::{DVec2, Rect};
+use crate::trace::{NoTrace, Tracer};
+use crate::{Error, Result};
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "area-sorting",
+    title: "Weiler–Atherton visible regions",
+    authors: "K. Weiler, P. Atherton",
+    year: 1977,
+    source: "Hidden Surface Removal Using Polygon Area Sorting, SIGGRAPH",
+    class: Class::ObjectSpace,
+    cost: "O(n²) cuts where few of n polygons overlap, more where many do",
+    limits: "plane polygons; cuts are rounded to 2^-37 of the picture",
+};
+
+/// How regions are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// The most cuts that are made: each cuts one polygon along another.
+    pub max_cuts: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { max_cuts: 1 << 18 }
+    }
+}
+
+/// What is seen of one face.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// Its index.
+    pub face: u32,
+    /// Where it is seen, in pixels.
+    pub shapes: Shapes,
+}
+
+/// What there is to see.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// A list's nearest polygon is taken for cutting the others.
+    Nearest {
+        /// Its face.
+        face: u32,
+        /// How many others there are in its list.
+        others: usize,
+    },
+    /// Another polygon was cut along it.
+    Cut {
+        /// The face that is cut.
+        face: u32,
+        /// What goes to the inside list.
+        inside: Shapes,
+        /// What goes to the outside list.
+        outside: Shapes,
+    },
+    /// What is inside lies behind: it is hidden.
+    Hidden {
+        /// Its face.
+        face: u32,
+    },
+    /// What is inside lies in front, or a part of it does: it is treated in its turn.
+    InFront {
+        /// Its face.
+        face: u32,
+    },
+    /// Nothing is in front: this is seen.
+    Seen(Region),
+}
+
+/// The result that a list of steps leads to.
+pub fn replay(steps: &[Step]) -> Vec<Region> {
+    let seen = |step: &Step| match step {
+        Step::Seen(region) => Some(region.clone()),
+        _ => None,
+    };
+    steps.iter().filter_map(seen).collect()
+}
+
+/// Polygons that wait, and one that lies behind all of them and shows where they do not.
+struct List {
+    polygons: Vec<Region>,
+    base: Option<Region>,
+}
+
+/// What is seen of each face; a face may be seen in several regions. Of faces in one plane the first is seen.
+///
+/// ```
+/// use durer::math::DVec3;
+/// use durer::trace::NoTrace;
+/// use durer::visibility::polygons::{Face, regions::regions};
+///
+/// let square = |low: f64, high: f64, z: f64| {
+///     let corners = [(low, low), (high, low), (high, high), (low, high)];
+///     Face::new(&corners.map(|(x, y)| DVec3::new(x, y, z)))
+/// };
+/// let faces = [square(0.0, 4.0, 2.0)?, square(1.0, 2.0, 1.0)?];
+/// let seen = regions(&faces, &Default::default(), &mut NoTrace)?;
+/// let areas: Vec<_> = seen.iter().map(|region| (region.face, region.shapes.area())).collect();
+/// assert_eq!(areas, [(0, 15.0), (1, 1.0)]);
+/// # Ok::<(), durer::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Limit`] for more cuts than the options allow.
+pub fn regions(
+    faces: &[Face],
+    options: &Options,
+    t: &mut impl Tracer<Step>,
+) -> Result<Vec<Region>> {
+    let Some(cutter) = Cutter::new(faces) else { return Ok(Vec::new()) };
+    let whole =
+        |(face, own): (u32, &Face)| Region { face, shapes: Shapes::from_rings([own.outline()]) };
+    let all = (0..).zip(faces).filter(|(_, own)| own.plane().normal.z != 0.0);
+    let mut lists = vec![List { polygons: all.map(whole).collect(), base: None }];
+    let (mut seen, mut cuts) = (Vec::new(), 0);
+    while let Some(mut list) = lists.pop() {
+        let Some(nearest) = cutter.take_nearest(&mut list.polygons) else {
+            if let Some(base) = list.base {
+                t.step(|| Step::Seen(base.clone()));
+                seen.push(base);
+            }
+            continue;
+        };
+        t.step(|| Step::Nearest { face: nearest.face, others: list.polygons.len() });
+        cuts += list.polygons.len();
+        if cuts > options.max_cuts {
+            let (value, limit) = (cuts as u64, options.max_cuts as u64);
+            return Err(Error::Limit { what: "cuts of polygons", value, limit });
+        }
+        let [inside, outside] = cutter.cut(nearest, list, t)?;
+        lists.extend([outside, inside]);
+    }
+    seen.sort_by_key(|region| region.face);
+    Ok(seen)
+}
+
+/// What cutting needs to know of all faces.
+struct Cutter<'a> {
+    faces: &'a [Face],
+    around: Rect,
+    /// The grid that cuts are rounded to.
+    grid: f64,
+    /// So near to each other depths are equal.
+    equal: f64,
+}
+
+impl<'a> Cutter<'a> {
+    fn new(faces: &'a [Face]) -> Option<Self> {
+        let corners = || faces.iter().flat_map(Face::corners);
+        let around = Rect::around(corners().map(|c| c.truncate()))?;
+        let reach = around.min().abs().max(around.max().abs()).max_element();
+        let deep = corners().fold(0.0, |all: f64, c| all.max(c.z.abs()));
+        let grid = libm::scalbn(1.0, libm::ilogb(reach.max(f64::MIN_POSITIVE)) - 37);
+        Some(Self { faces, around, grid, equal: 1e-9 * (1.0 + deep) })
+    }
+
+    /// Takes the polygon with the nearest corner out of a list.
+    fn take_nearest(&self, polygons: &mut Vec<Region>) -> Option<Region> {
+        let z = |region: &Region| self.faces[region.face as usize].depths()[0];
+        let order = |a: &Region, b: &Region| z(a).total_cmp(&z(b)).then(a.face.cmp(&b.face));
+        let place = (0..polygons.len()).min_by(|&i, &j| order(&polygons[i], &polygons[j]))?;
+        Some(polygons.remove(place))
+    }
+
+    /// Cuts a list along a polygon: what is left inside, with the polygon behind it, and the outside.
+    fn cut(&self, by: Region, list: List, t: &mut impl Tracer<Step>) -> Result<[List; 2]> {
+        let (mut inside, mut outside) = (Vec::new(), Vec::new());
+        for polygon in list.polygons {
+            let face = polygon.face;
+            let within = self.overlay(&polygon.shapes, &by.shapes, BooleanOp::Intersection)?;
+            let beyond = self.overlay(&polygon.shapes, &by.shapes, BooleanOp::Difference)?;
+            t.step(|| Step::Cut { face, inside: within.clone(), outside: beyond.clone() });
+            outside.extend(beyond.ring_count().gt(&0).then_some(Region { face, shapes: beyond }));
+            if within.ring_count() == 0 {
+                continue;
+            }
+            let before = self.in_front(by.face, face, within)?;
+            if before.ring_count() == 0 {
+                t.step(|| Step::Hidden { face });
+            } else {
+                t.step(|| Step::InFront { face });
+                inside.push(Region { face, shapes: before });
+            }
+        }
+        // What lies behind the list lies behind the polygon, too: it goes on outside only.
+        let base = match list.base {
+            Some(base) => {
+                let shapes = self.overlay(&base.shapes, &by.shapes, BooleanOp::Difference)?;
+                (shapes.ring_count() > 0).then_some(Region { shapes, ..base })
+            }
+            None => None,
+        };
+        let inside = List { polygons: inside, base: Some(by) };
+        Ok([inside, List { polygons: outside, base }])
+    }
+
+    /// The part of a polygon, within another's outline, that is in front of that one.
+    fn in_front(&self, by: u32, face: u32, shapes: Shapes) -> Result<Shapes> {
+        let [behind, own] = [by, face].map(|face| &self.faces[face as usize]);
+        let ahead = |p: DVec2| behind.depth(p) - own.depth(p);
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for distance in shapes.points().iter().map(|&p| ahead(p)) {
+            (least, most) = (least.min(distance), most.max(distance));
+        }
+        if most <= self.equal && (least < -self.equal || face > by) {
+            return Ok(Shapes::new());
+        }
+        if least >= -self.equal {
+            return Ok(shapes);
+        }
+        // They pierce each other: along a line of the picture, beyond which this one is in front.
+        let at = ahead(DVec2::ZERO);
+        let normal = DVec2::new(ahead(DVec2::X) - at, ahead(DVec2::Y) - at);
+        let point = normal * (-at / normal.length_squared());
+        let (low, high) = (self.around.min(), self.around.max());
+        let all = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        let half = by_borders::clip(&[HalfPlane { normal, point }], &all, &mut NoTrace)?;
+        self.overlay(&shapes, &Shapes::from_rings([half]), BooleanOp::Intersection)
+    }
+
+    /// The overlay on the common grid, without what rounding leaves.
+    fn overlay(&self, subject: &Shapes, clip: &Shapes, op: BooleanOp) -> Result<Shapes> {
+        let options = overlay::Options { grid: Some(self.grid), ..Default::default() };
+        let shapes = overlay(subject, clip, op, &options, &mut NoTrace)?.shapes;
+        let reach = self.around.size().max_element();
+        let least = reach * self.grid * 64.0;
+        Ok(if shapes.area() > least { shapes } else { Shapes::new() })
+    }
+}

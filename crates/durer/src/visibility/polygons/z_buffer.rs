@@ -1,0 +1,90 @@
+//! The z-buffer as the plain loop that it is.
+//!
+//! E. Catmull, *A Subdivision Algorithm for Computer Display of Curved Surfaces*, dissertation, University of Utah, 1974.
+//! Class: image space. Cost: O(covered pixels) time, two numbers a pixel. What renders models is
+//! [`crate::visibility::surface::z_buffer`], which finds the same.
+
+use super::{Face, Screen};
+use crate::Result;
+use crate::info::{Class, Info};
+use crate::target::{NO_ITEM, Pixels};
+use crate::trace::Tracer;
+
+/// The facts.
+pub const INFO: Info = Info {
+    name: "z-buffer-loop",
+    title: "z-buffer, the plain loop",
+    authors: "E. Catmull; W. Strasser",
+    year: 1974,
+    source: "A Subdivision Algorithm for Computer Display of Curved Surfaces, University of Utah",
+    class: Class::ImageSpace,
+    cost: "O(covered pixels) time, a depth and an item per pixel",
+    limits: "one sample per pixel; plane polygons",
+};
+
+/// What there is to see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// All pixels are cleared: depth infinite, no face.
+    Clear,
+    /// The next face's turn.
+    Face {
+        /// Its index.
+        face: u32,
+    },
+    /// A pixel that the face covers: its depth is compared with what is stored.
+    Compare {
+        /// Column and row.
+        pixel: [u32; 2],
+        /// The face's depth.
+        depth: f64,
+        /// The depth stored so far.
+        stored: f64,
+    },
+    /// It was nearer: depth and face are stored.
+    Store {
+        /// Column and row.
+        pixel: [u32; 2],
+        /// The face.
+        face: u32,
+        /// Its depth.
+        depth: f64,
+    },
+}
+
+/// The picture that a list of steps leads to.
+///
+/// # Errors
+/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+pub fn replay(screen: &Screen, steps: &[Step]) -> Result<Pixels<u32>> {
+    let mut items = screen.plane(NO_ITEM)?;
+    for step in steps {
+        if let Step::Store { pixel: [x, y], face, .. } = *step {
+            items.set(x, y, face);
+        }
+    }
+    Ok(items)
+}
+
+/// The index of the nearest face at each pixel's centre, of equally near ones the first.
+///
+/// # Errors
+/// [`Memory`](crate::Error::Memory) where the screen's budget does not suffice.
+pub fn items(faces: &[Face], screen: &Screen, t: &mut impl Tracer<Step>) -> Result<Pixels<u32>> {
+    let mut depths = screen.plane(f64::INFINITY)?;
+    let mut items = screen.plane(NO_ITEM)?;
+    t.step(|| Step::Clear);
+    for (number, face) in (0..).zip(faces) {
+        t.step(|| Step::Face { face: number });
+        face.pixels(screen, |pixel @ [x, y], point| {
+            let (depth, stored) = (point.z, depths.get(x, y).unwrap_or(f64::INFINITY));
+            t.step(|| Step::Compare { pixel, depth, stored });
+            if depth < stored {
+                t.step(|| Step::Store { pixel, face: number, depth });
+                depths.set(x, y, depth);
+                items.set(x, y, number);
+            }
+        });
+    }
+    Ok(items)
+}

@@ -1,0 +1,113 @@
+//! Hidden lines and surfaces.
+
+use super::p;
+use durer::math::{DVec2, DVec3};
+use durer::trace::{NoTrace, Recorder};
+use durer::view::cull::newell_area;
+use durer::visibility::line::horizon_curves::{Curve, Options, Piece, Seen, Step, draw, replay};
+
+fn curves(all: &[(usize, &[f64])]) -> Vec<Curve> {
+    all.iter().map(|(first, heights)| Curve { first: *first, heights: heights.to_vec() }).collect()
+}
+
+#[test]
+fn the_far_curve_crosses_the_near_one_at_a_half_and_at_one_and_a_half() {
+    let all = curves(&[(0, &[0.0, 2.0, 0.0]), (0, &[1.0, 1.0, 1.0])]);
+    let mut steps = Recorder::default();
+    let pieces = draw(&all, &Options::columns(3), &mut steps).unwrap();
+    let crossings: Vec<DVec2> = steps
+        .steps()
+        .iter()
+        .filter_map(|s| if let Step::Crossing { at, .. } = *s { Some(at) } else { None })
+        .collect();
+    assert_eq!(crossings, [p(0.5, 1.0), p(1.5, 1.0)]);
+    let far: Vec<_> = pieces.iter().filter(|q| q.curve == 1).map(|q| q.seen).collect();
+    assert_eq!(far, [Seen::Above, Seen::Below, Seen::Below, Seen::Above]);
+    assert_eq!(replay(steps.steps()), pieces);
+    // The two arrays after both curves.
+    let mut horizons = [[0.0; 2]; 3];
+    for step in steps.steps() {
+        if let Step::Horizon { column, horizons: new } = *step {
+            horizons[column] = new;
+        }
+    }
+    assert_eq!(horizons, [[0.0, 1.0], [1.0, 2.0], [0.0, 1.0]]);
+}
+
+#[test]
+fn what_lies_between_the_horizons_is_hidden() {
+    // A ridge, a valley, and a curve that goes behind both.
+    let all = curves(&[(0, &[3.0, 3.0, 3.0]), (0, &[0.0, 0.0, 0.0]), (0, &[2.0, 4.0, -1.0])]);
+    let pieces = draw(&all, &Options::columns(3), &mut NoTrace).unwrap();
+    let last: Vec<Piece> = pieces.into_iter().filter(|q| q.curve == 2).collect();
+    let ends: Vec<_> = last.iter().map(|q| (q.ends, q.seen)).collect();
+    let expected = [
+        ([p(0.5, 3.0), p(1.0, 4.0)], Seen::Above),
+        ([p(1.0, 4.0), p(1.2, 3.0)], Seen::Above),
+        ([p(1.8, 0.0), p(2.0, -1.0)], Seen::Below),
+    ];
+    assert_eq!(ends.len(), 3);
+    for ((found, seen), (points, wanted)) in ends.iter().zip(expected) {
+        assert_eq!(*seen, wanted);
+        let apart = found.iter().zip(points).map(|(a, b)| a.distance(b));
+        assert!(apart.fold(0.0, f64::max) < 1e-12, "{found:?}");
+    }
+}
+
+#[test]
+fn mirrored_curves_give_mirrored_pieces() {
+    let mut random = crate::raster_coverage::Random(7);
+    let all: Vec<Curve> = (0..9)
+        .map(|_| Curve {
+            first: 0,
+            heights: (0..20).map(|_| random.next().round() + random.next()).collect(),
+        })
+        .collect();
+    let mut mirrored = all.clone();
+    mirrored.iter_mut().for_each(|curve| curve.heights.reverse());
+    let pieces = |curves: &[Curve]| draw(curves, &Options::columns(20), &mut NoTrace).unwrap();
+    let (there, mut back) = (pieces(&all), pieces(&mirrored));
+    let turned = |q: DVec2| p(19.0 - q.x, q.y);
+    back.iter_mut().for_each(|q| q.ends = [turned(q.ends[1]), turned(q.ends[0])]);
+    back.sort_by(|a, b| a.curve.cmp(&b.curve).then(a.ends[0].x.total_cmp(&b.ends[0].x)));
+    assert_eq!(there.len(), back.len());
+    for (a, b) in there.iter().zip(&back) {
+        assert_eq!((a.curve, a.seen), (b.curve, b.seen));
+        assert!(a.ends.iter().zip(b.ends).all(|(a, b)| a.distance(b) < 1e-9));
+    }
+}
+
+#[test]
+fn gaps_at_the_ends_are_filled() {
+    // Two bands beside each other, from y = 0 to 4; column 3 lies between them.
+    let (low, high) = ([0.0; 3], [4.0; 3]);
+    let all = curves(&[(4, &low), (4, &high), (0, &low), (0, &high), (1, &[2.0, 2.0, 2.0])]);
+    let seen = |fill_ends| {
+        let options = Options { fill_ends, ..Options::columns(8) };
+        let pieces = draw(&all, &options, &mut NoTrace).unwrap();
+        pieces.iter().filter(|q| q.curve == 4).count()
+    };
+    assert_eq!([seen(true), seen(false)], [0, 1]);
+    let bad = curves(&[(0, &[0.0, f64::NAN])]);
+    assert!(draw(&bad, &Options::columns(3), &mut NoTrace).is_err());
+    assert!(draw(&all, &Options::columns(0), &mut NoTrace).unwrap().is_empty());
+    let far = curves(&[(usize::MAX, &[1.0, 2.0])]);
+    assert!(draw(&far, &Options::columns(3), &mut NoTrace).unwrap().is_empty());
+}
+
+#[test]
+fn newells_sums_are_the_normal_and_its_length_the_area() {
+    let ring =
+        [(0.0, 0.0, 0.0), (4.0, 0.0, 2.0), (4.0, 3.0, 2.0), (0.0, 3.0, 0.0)].map(DVec3::from);
+    let sums = |u: fn(DVec3) -> f64, v: fn(DVec3) -> f64| -> f64 {
+        let next = ring.iter().cycle().skip(1);
+        ring.iter().zip(next).map(|(a, b)| (u(*a) - u(*b)) * (v(*a) + v(*b))).sum()
+    };
+    // Nx = Σ (y_i − y_j)(z_i + z_j), and so on around: twice the vector area.
+    let n = DVec3::new(sums(|c| c.y, |c| c.z), sums(|c| c.z, |c| c.x), sums(|c| c.x, |c| c.y));
+    assert_eq!(newell_area(&ring) * 2.0, n);
+    assert_eq!(n, DVec3::new(-12.0, 0.0, 24.0));
+    // Outward from a convex body: P the mean of the corners, v = P_k − P, N · v > 0.
+    let body_middle = DVec3::new(2.0, 1.5, -3.0);
+    assert!(n.dot(ring[0] - body_middle) > 0.0);
+}

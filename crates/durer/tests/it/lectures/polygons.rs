@@ -1,0 +1,230 @@
+//! Polygons at windows.
+
+use super::p;
+use durer::clip::line::HalfPlane;
+use durer::clip::polygon::sutherland_hodgman::by_borders::{self, Rule, Step as Edge};
+use durer::clip::polygon::weiler_atherton::{self, Mark, Operand, Step as Walk};
+use durer::clip::polygon::{BooleanOp, Shapes, naive, sutherland_hodgman};
+use durer::math::{DVec2, Rect};
+use durer::trace::{NoTrace, Recorder};
+
+/// The borders of (0, 0) … (10, 10) in the lecture's order: top, right, bottom, left.
+fn borders() -> [HalfPlane; 4] {
+    let plane = |normal, point| HalfPlane { normal, point };
+    let (low, high) = (DVec2::ZERO, DVec2::splat(10.0));
+    [plane(-DVec2::Y, high), plane(-DVec2::X, high), plane(DVec2::Y, low), plane(DVec2::X, low)]
+}
+
+/// The smallest of all rotations of a ring, so that rings that begin elsewhere compare equal.
+fn cyclic(ring: &[DVec2]) -> Vec<DVec2> {
+    let key = |k: usize| -> Vec<[f64; 2]> {
+        (0..ring.len()).map(|i| ring[(i + k) % ring.len()].to_array()).collect()
+    };
+    let first = (0..ring.len()).min_by(|&i, &j| key(i).partial_cmp(&key(j)).unwrap());
+    let mut ring = ring.to_vec();
+    ring.rotate_left(first.unwrap_or(0));
+    ring
+}
+
+#[test]
+fn four_rules_emit_what_they_are_named_for() {
+    // Only D is beyond the border.
+    let [a, b, c, d] = [p(2.0, 8.0), p(2.0, 2.0), p(8.0, 2.0), p(8.0, 14.0)];
+    let top = &borders()[..1];
+    let mut steps = Recorder::default();
+    let left = by_borders::clip(top, &[a, b, c, d], &mut steps).unwrap();
+    let (s1, s2) = (p(4.0, 10.0), p(8.0, 10.0));
+    assert_eq!(left, [s1, a, b, c, s2]);
+    let edge = |from, to, rule, emitted| Edge::Edge { border: 0, from, to, rule, emitted };
+    let expected = [
+        edge(d, a, Rule::OutIn, [Some(s1), Some(a)]),
+        edge(a, b, Rule::InIn, [None, Some(b)]),
+        edge(b, c, Rule::InIn, [None, Some(c)]),
+        edge(c, d, Rule::InOut, [Some(s2), None]),
+        Edge::List { border: 0, vertices: left.clone() },
+    ];
+    assert_eq!(steps.steps(), expected);
+    assert_eq!(by_borders::replay(&[a, b, c, d], steps.steps()), left);
+    assert_eq!(Rule::OutOut.name(), "out→out");
+}
+
+#[test]
+fn a_triangle_at_four_borders_has_the_lists_of_the_lecture() {
+    let [v0, v1, v2] = [p(-6.0, 12.0), p(14.0, 4.0), p(6.0, -8.0)];
+    let mut steps = Recorder::default();
+    by_borders::clip(&borders(), &[v0, v1, v2], &mut steps).unwrap();
+    let lists: Vec<Vec<DVec2>> = steps
+        .steps()
+        .iter()
+        .filter_map(|step| match step {
+            Edge::List { vertices, .. } => Some(vertices.clone()),
+            Edge::Edge { .. } => None,
+        })
+        .collect();
+    let [s1, s2, s3, s4] = [p(-1.0, 10.0), p(-4.8, 10.0), p(10.0, 5.6), p(10.0, -2.0)];
+    let [s5, s6, s7, s8] = [p(10.0, 0.0), p(1.2, 0.0), p(0.0, 2.0), p(0.0, 9.6)];
+    let expected = [
+        vec![s1, v1, v2, s2],
+        vec![s1, s3, s4, v2, s2],
+        vec![s1, s3, s5, s6, s2],
+        vec![s8, s3, s5, s6, s7],
+    ];
+    for (found, expected) in lists.iter().zip(&expected) {
+        let (found, expected) = (cyclic(found), cyclic(expected));
+        assert_eq!(found.len(), expected.len());
+        let apart = found.iter().zip(&expected).map(|(a, b)| a.distance(*b));
+        assert!(apart.fold(0.0, f64::max) < 1e-12, "{found:?} {expected:?}");
+    }
+    assert_eq!(lists.len(), 4);
+    let rules = |wanted| {
+        let is = |step: &&Edge<DVec2>| matches!(step, Edge::Edge { rule, .. } if *rule == wanted);
+        steps.steps().iter().filter(is).count()
+    };
+    // As often in as out, and in one list two vertices in a row are out: at the bottom, and on the left.
+    assert_eq!([Rule::OutIn, Rule::InOut, Rule::OutOut].map(rules), [4, 4, 2]);
+}
+
+#[test]
+fn border_by_border_and_stage_by_stage_leave_the_same_ring() {
+    let mut random = crate::raster_coverage::Random(5);
+    let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
+    let planes = HalfPlane::of_rect(&window);
+    for _ in 0..500 {
+        let ring: Vec<DVec2> = (0..7).map(|_| random.point(-4.0, 14.0)).collect();
+        let chained = sutherland_hodgman::clip(&window, &ring, &mut NoTrace).unwrap();
+        let listed = by_borders::clip(&planes, &ring, &mut NoTrace).unwrap();
+        assert_eq!(cyclic(&listed), cyclic(&chained));
+    }
+}
+
+#[test]
+fn a_ring_that_falls_apart_keeps_a_bridge() {
+    // Eight corners: a U upside down, whose back is beyond the top.
+    let ring = [
+        (1.0, 5.0),
+        (3.0, 5.0),
+        (3.0, 12.0),
+        (7.0, 12.0),
+        (7.0, 5.0),
+        (9.0, 5.0),
+        (9.0, 14.0),
+        (1.0, 14.0),
+    ]
+    .map(DVec2::from);
+    let left = by_borders::clip(&borders(), &ring, &mut NoTrace).unwrap();
+    assert_eq!(left.len(), 8);
+    let ends = || left.iter().zip(left.iter().cycle().skip(1));
+    let along: Vec<f64> =
+        ends().filter(|(a, b)| a.y == 10.0 && b.y == 10.0).map(|(a, b)| b.x - a.x).collect();
+    assert_eq!(along, [4.0, -8.0], "between the legs, and back along the border");
+    assert_eq!(durer::clip::polygon::signed_area(&left).abs(), 20.0);
+}
+
+#[test]
+fn edge_by_edge_is_wrong_for_polygons() {
+    // A triangle around a corner of the window: clipped edges alone do not close.
+    let window = Rect::new(DVec2::ZERO, DVec2::splat(10.0)).unwrap();
+    let triangle = [p(5.0, 5.0), p(25.0, 5.0), p(5.0, 25.0)];
+    let wrong = naive::clip(&window, &triangle, &mut NoTrace).unwrap();
+    let right = sutherland_hodgman::clip(&window, &triangle, &mut NoTrace).unwrap();
+    let area = durer::clip::polygon::signed_area;
+    assert_eq!([area(&right), area(&wrong)], [25.0, 12.5], "the corner is missing");
+}
+
+fn subject() -> [DVec2; 10] {
+    [
+        (5.0, 9.0),
+        (15.0, 9.0),
+        (18.0, 5.0),
+        (15.0, 1.0),
+        (5.0, 1.0),
+        (5.0, 3.0),
+        (15.0, 3.0),
+        (14.0, 5.0),
+        (15.0, 7.0),
+        (5.0, 7.0),
+    ]
+    .map(DVec2::from)
+}
+
+#[test]
+fn weiler_and_atherton_walk_both_lists() {
+    let s = subject();
+    let w = [(0.0, 10.0), (10.0, 10.0), (10.0, 0.0), (0.0, 0.0)].map(DVec2::from);
+    let [i, j, k, l] = [9.0, 7.0, 3.0, 1.0].map(|y| p(10.0, y));
+    let mut steps = Recorder::default();
+    let found = weiler_atherton::weiler_atherton(
+        &Shapes::from_rings([s]),
+        &Shapes::from_rings([w]),
+        BooleanOp::Intersection,
+        &Default::default(),
+        &mut steps,
+    )
+    .unwrap();
+    let listed = |wanted: Operand| -> Vec<(DVec2, Option<Mark>)> {
+        let of = |step: &Walk| match *step {
+            Walk::Listed { list, at, mark } if list == wanted => Some((at, mark)),
+            _ => None,
+        };
+        steps.steps().iter().filter_map(of).collect()
+    };
+    let (enters, leaves) = (Some(Mark::Entering), Some(Mark::Leaving));
+    let plain = |range: std::ops::Range<usize>| s[range].iter().map(|&at| (at, None));
+    let mut expected: Vec<_> = plain(0..1).chain([(i, leaves)]).chain(plain(1..4)).collect();
+    expected.extend([(l, enters)].into_iter().chain(plain(4..6)).chain([(k, leaves)]));
+    expected.extend(plain(6..9).chain([(j, enters)]).chain(plain(9..10)));
+    assert_eq!(listed(Operand::Subject), expected);
+    let window: Vec<DVec2> = listed(Operand::Clip).into_iter().map(|(at, _)| at).collect();
+    assert_eq!(window, [w[0], w[1], i, j, k, l, w[2], w[3]]);
+    // The walks, each along the subject first, with the changes of list between.
+    let turn = |at, to_subject| Walk::Turn { at, to_subject };
+    let passed = |list, at| Walk::Passed { list, at };
+    let walk = |from: DVec2, on: [DVec2; 2], to: DVec2| {
+        let mut steps = vec![turn(from, true), passed(Operand::Subject, from)];
+        steps.extend(on.map(|at| passed(Operand::Subject, at)));
+        steps.extend([turn(to, false), passed(Operand::Clip, to)]);
+        steps
+    };
+    let expected: Vec<Walk> = [walk(l, [s[4], s[5]], k), walk(j, [s[9], s[0]], i)].concat();
+    let walks: Vec<Walk> = steps
+        .steps()
+        .iter()
+        .filter(|step| matches!(step, Walk::Turn { .. } | Walk::Passed { .. }))
+        .cloned()
+        .collect();
+    assert_eq!(walks, expected);
+    let rings: Vec<Vec<DVec2>> = steps
+        .steps()
+        .iter()
+        .filter_map(|step| match step {
+            Walk::Ring { points } => Some(points.clone()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(rings, [vec![l, s[4], s[5], k], vec![j, s[9], s[0], i]]);
+    assert_eq!(weiler_atherton::replay(steps.steps()), found);
+    assert_eq!(found.area(), 20.0);
+}
+
+#[test]
+fn a_clockwise_subject_gives_what_it_gives_the_other_way_round() {
+    let (clockwise, mut other) = (subject(), subject());
+    other.reverse();
+    let window =
+        Shapes::from_rings([[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from)]);
+    for op in BooleanOp::ALL {
+        let clip = |ring: [DVec2; 10]| {
+            let subject = Shapes::from_rings([ring]);
+            let none = &Default::default();
+            weiler_atherton::weiler_atherton(&subject, &window, *op, none, &mut NoTrace).unwrap()
+        };
+        let rings = |shapes: &Shapes| {
+            let mut rings: Vec<_> = shapes.rings().map(cyclic).collect();
+            rings.sort_by(|a, b| a[0].to_array().partial_cmp(&b[0].to_array()).unwrap());
+            rings
+        };
+        let (a, b) = (clip(clockwise), clip(other));
+        assert_eq!(rings(&a), rings(&b), "{op}");
+        assert_eq!(a.area(), b.area());
+    }
+}

@@ -1,0 +1,323 @@
+//! Visible polygons as they are taught: all methods agree, steps rebuild what they found, and the numbers are there.
+
+use crate::raster_coverage::Random;
+use durer::math::{DVec2, DVec3};
+use durer::target::{NO_ITEM, Pixels};
+use durer::trace::{NoTrace, Recorder};
+use durer::visibility::back_face::Eye;
+use durer::visibility::polygons::bsp::{self, Tree};
+use durer::visibility::polygons::regions::{self, Region, regions};
+use durer::visibility::polygons::{Face, PolygonMethod, Screen, painter, watkins, z_buffer};
+
+fn screen() -> Screen {
+    Screen { width: 32, height: 32, ..Screen::default() }
+}
+
+/// A star-shaped polygon with corners on a fine grid, in a plane with a random slope.
+fn star(random: &mut Random, corners: usize) -> Face {
+    let grid = |v: f64| (v * 64.0).round() / 64.0 + 1.0 / 256.0;
+    let (center, slope) = (random.point(4.0, 28.0), random.point(-0.4, 0.4));
+    let z = 20.0 + random.next() * 10.0;
+    let corners: Vec<DVec3> = (0..corners)
+        .map(|k| {
+            let (turn, reach) = (std::f64::consts::TAU * k as f64 / corners as f64, random.next());
+            let p = center + DVec2::from_angle(turn) * (2.0 + 10.0 * reach);
+            let p = DVec2::new(grid(p.x), grid(p.y));
+            p.extend(z + slope.dot(p - center))
+        })
+        .collect();
+    Face::new(&corners).unwrap()
+}
+
+fn scene(random: &mut Random, count: usize) -> Vec<Face> {
+    (0..count).map(|k| star(random, 3 + k % 4)).collect()
+}
+
+/// A beam from p to q, z from first to last.
+fn beam(p: (f64, f64), q: (f64, f64), [first, last]: [f64; 2]) -> Face {
+    let (p, q) = (DVec2::from(p), DVec2::from(q));
+    let side = (q - p).perp().normalize() * 2.0;
+    let corners = [(p + side, first), (p - side, first), (q - side, last), (q + side, last)];
+    Face::new(&corners.map(|(p, z)| p.extend(z))).unwrap()
+}
+
+/// Three beams of which each lies over the next.
+fn beams() -> [Face; 3] {
+    [
+        beam((4.0, 8.0), (28.0, 8.0), [1.0, 5.0]),
+        beam((24.0, 4.0), (10.0, 28.0), [1.0, 5.0]),
+        beam((22.0, 28.0), (8.0, 4.0), [1.0, 5.0]),
+    ]
+}
+
+/// Whether both pictures show the same, but for faces that are equally near to within rounding.
+fn same(faces: &[Face], a: &Pixels<u32>, b: &Pixels<u32>) -> bool {
+    let all = (0..a.height()).flat_map(|y| (0..a.width()).map(move |x| (x, y)));
+    all.into_iter().all(|(x, y)| {
+        let [a, b] = [a, b].map(|items| items.get(x, y).unwrap());
+        let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let depth = |face: u32| faces.get(face as usize).map_or(f64::INFINITY, |f| f.depth(p));
+        a == b || (depth(a) - depth(b)).abs() < 1e-9
+    })
+}
+
+#[test]
+fn all_methods_find_the_nearest_polygon() {
+    let mut random = Random(11);
+    for round in 0..40 {
+        let faces = scene(&mut random, 1 + round % 12);
+        let expected = z_buffer::items(&faces, &screen(), &mut NoTrace).unwrap();
+        for method in PolygonMethod::ALL {
+            let found = method.items(&faces, &screen()).unwrap();
+            assert!(same(&faces, &found, &expected), "{method}, round {round}");
+        }
+        assert!(round < 3 || expected.data().iter().any(|item| *item != NO_ITEM));
+    }
+    let expected = z_buffer::items(&beams(), &screen(), &mut NoTrace).unwrap();
+    for method in PolygonMethod::ALL {
+        assert!(same(&beams(), &method.items(&beams(), &screen()).unwrap(), &expected), "{method}");
+    }
+}
+
+#[test]
+fn of_equal_depths_the_first_face_is_seen() {
+    let square = |at: f64| {
+        let corners = [(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0)];
+        Face::new(&corners.map(|(x, y)| DVec3::new(x + at, y + at, 3.0))).unwrap()
+    };
+    let faces = [square(4.0), square(0.0), square(8.0)];
+    for method in PolygonMethod::ALL {
+        let items = method.items(&faces, &screen()).unwrap();
+        let seen = [(1, 1), (5, 5), (11, 11), (13, 13)].map(|(x, y)| items.get(x, y).unwrap());
+        assert_eq!(seen, [1, 0, 0, 2], "{method}");
+    }
+    let areas: Vec<_> = seen_areas(&faces);
+    assert_eq!(areas, [64.0, 48.0, 48.0]);
+}
+
+fn seen_areas(faces: &[Face]) -> Vec<f64> {
+    let mut areas = vec![0.0; faces.len()];
+    for region in regions(faces, &Default::default(), &mut NoTrace).unwrap() {
+        areas[region.face as usize] += region.shapes.area();
+    }
+    areas
+}
+
+#[test]
+fn the_steps_rebuild_the_pictures() {
+    let mut random = Random(12);
+    let (faces, screen) = (scene(&mut random, 9), screen());
+    let mut steps = Recorder::default();
+    let found = z_buffer::items(&faces, &screen, &mut steps).unwrap();
+    assert_eq!(z_buffer::replay(&screen, steps.steps()).unwrap(), found);
+    assert_eq!(z_buffer::items(&faces, &screen, &mut NoTrace).unwrap(), found);
+    let mut steps = Recorder::default();
+    let found = watkins::items(&faces, &screen, &mut steps).unwrap();
+    assert_eq!(watkins::replay(&screen, steps.steps()).unwrap(), found);
+    assert_eq!(watkins::items(&faces, &screen, &mut NoTrace).unwrap(), found);
+    let mut steps = Recorder::default();
+    let how = bsp::Options::default();
+    let found = bsp::items(&faces, &screen, &how, &mut steps).unwrap();
+    assert_eq!(bsp::replay(&screen, steps.steps()).unwrap(), found);
+    assert_eq!(bsp::items(&faces, &screen, &how, &mut NoTrace).unwrap(), found);
+    let mut steps = Recorder::default();
+    let how = painter::Options { key: painter::Key::Mean };
+    let found = painter::items(&faces, &screen, &how, &mut steps).unwrap();
+    assert_eq!(painter::replay(&screen, steps.steps()).unwrap(), found);
+    let mut steps = Recorder::default();
+    let mut found = regions(&faces, &Default::default(), &mut steps).unwrap();
+    let mut replayed = regions::replay(steps.steps());
+    let by = |a: &Region, b: &Region| a.face.cmp(&b.face);
+    found.sort_by(by);
+    replayed.sort_by(by);
+    assert_eq!(replayed, found);
+}
+
+#[test]
+fn the_z_buffer_clears_compares_and_stores() {
+    use z_buffer::Step;
+    let wall = |z: f64| {
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)];
+        Face::new(&corners.map(|(x, y)| DVec3::new(x, y, z))).unwrap()
+    };
+    let mut steps = Recorder::default();
+    let small = Screen { width: 1, height: 1, ..Screen::default() };
+    z_buffer::items(&[wall(5.0), wall(7.0), wall(4.0)], &small, &mut steps).unwrap();
+    let pixel = [0, 0];
+    let compare = |depth, stored| Step::Compare { pixel, depth, stored };
+    let store = |face, depth| Step::Store { pixel, face, depth };
+    let expected = [
+        Step::Clear,
+        Step::Face { face: 0 },
+        compare(5.0, f64::INFINITY),
+        store(0, 5.0),
+        Step::Face { face: 1 },
+        compare(7.0, 5.0),
+        Step::Face { face: 2 },
+        compare(4.0, 5.0),
+        store(2, 4.0),
+    ];
+    assert_eq!(steps.steps(), expected);
+}
+
+#[test]
+fn painting_in_order_of_depth_fails_where_beams_overlap_in_a_ring() {
+    let (faces, screen) = (beams(), screen());
+    let right = z_buffer::items(&faces, &screen, &mut NoTrace).unwrap();
+    for key in [painter::Key::Farthest, painter::Key::Mean] {
+        let options = painter::Options { key };
+        let painted = painter::items(&faces, &screen, &options, &mut NoTrace).unwrap();
+        assert!(!same(&faces, &painted, &right), "{key:?}");
+    }
+    // A tree splits a beam, and then there is an order.
+    let mut steps = Recorder::default();
+    bsp::items(&faces, &screen, &bsp::Options::default(), &mut steps).unwrap();
+    assert!(steps.steps().iter().any(|step| matches!(step, bsp::Step::Split { .. })));
+    // Where depths do not overlap, the order alone is right.
+    let apart: Vec<Face> = (0..3)
+        .map(|k| beam((4.0, 8.0 + f64::from(k)), (28.0, 9.0), [f64::from(k), f64::from(k) + 0.5]))
+        .collect();
+    let painted = painter::items(&apart, &screen, &Default::default(), &mut NoTrace).unwrap();
+    assert_eq!(painted, z_buffer::items(&apart, &screen, &mut NoTrace).unwrap());
+}
+
+#[test]
+fn trees_order_pieces_for_every_eye() {
+    let mut random = Random(13);
+    let faces = scene(&mut random, 8);
+    for candidates in [1, 5] {
+        let how = bsp::Options { candidates, ..Default::default() };
+        let tree = Tree::new(&faces, &how, &mut NoTrace).unwrap();
+        for eye in [DVec3::new(16.0, 16.0, -50.0), DVec3::new(-40.0, 3.0, 25.0), DVec3::ZERO] {
+            let order = tree.back_to_front(Eye::At(eye), &mut NoTrace);
+            // No piece lies, on a ray from the eye, before one that is painted later.
+            for (k, &far) in order.iter().enumerate() {
+                for &near in &order[k + 1..] {
+                    assert!(!hides(&tree, &faces, eye, far, near), "{far} {near} from {eye}");
+                }
+            }
+        }
+    }
+}
+
+/// Whether the first piece lies before the second on a ray to the middle of one of them.
+fn hides(tree: &Tree, faces: &[Face], eye: DVec3, first: u32, second: u32) -> bool {
+    let face = |piece: u32| &faces[tree.face(piece) as usize];
+    let corners = tree.corners(second);
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    if !tree.holds(second, middle) || tree.face(first) == tree.face(second) {
+        return false;
+    }
+    let plane = face(first).plane();
+    let (at_eye, at_middle) = (plane.evaluate(eye), plane.evaluate(middle));
+    let t = at_eye / (at_eye - at_middle);
+    let hit = eye + (middle - eye) * t;
+    let outline = tree.corners(first);
+    let inside = outline.len() == 3 && {
+        let side = |k: usize| {
+            let (a, b) = (outline[k], outline[(k + 1) % 3]);
+            (b - a).cross(hit - a).dot(plane.normal)
+        };
+        [0, 1, 2].iter().all(|&k| side(k) > 1e-6)
+    };
+    inside && t > 0.0 && t < 1.0 - 1e-6
+}
+
+#[test]
+fn too_many_pieces_are_refused() {
+    let how = bsp::Options { candidates: 1, max_pieces: 4 };
+    let crossing: Vec<Face> = scene(&mut Random(14), 9);
+    let refused = Tree::new(&crossing, &how, &mut NoTrace).unwrap_err();
+    assert!(refused.to_string().contains("pieces of a tree"), "{refused}");
+    let how = regions::Options { max_cuts: 3 };
+    assert!(regions(&crossing, &how, &mut NoTrace).is_err());
+}
+
+#[test]
+fn watkins_has_his_tables() {
+    use watkins::Step;
+    let quad = |x0: f64, x1: f64, z: f64| {
+        let corners = [(x0, 0.5), (x1, 0.5), (x1, 2.5), (x0, 2.5)];
+        Face::new(&corners.map(|(x, y)| DVec3::new(x, y, z + 0.25 * x))).unwrap()
+    };
+    let faces = [quad(0.5, 8.5, 5.0), quad(4.5, 12.5, 2.0)];
+    let mut steps = Recorder::default();
+    watkins::items(&faces, &screen(), &mut steps).unwrap();
+    let steps = steps.steps();
+    let is = |wanted: fn(&Step) -> bool| steps.iter().filter(|s| wanted(s)).count();
+    // Horizontal edges are in no table: two edges and one plane a polygon, two rows.
+    assert_eq!(is(|s| matches!(s, Step::Edge(_))), 4);
+    assert_eq!(is(|s| matches!(s, Step::Row { .. })), 2);
+    assert_eq!(is(|s| matches!(s, Step::Active(_))), 8);
+    let slopes: Vec<_> = steps
+        .iter()
+        .filter_map(|s| match s {
+            Step::Polygon { slope, origin, .. } => Some((*slope, *origin)),
+            _ => None,
+        })
+        .collect();
+    for ((slope, origin), z) in slopes.iter().zip([5.0, 2.0]) {
+        assert!(slope.distance(DVec2::new(0.25, 0.0)) < 1e-12 && (origin - z).abs() < 1e-12);
+    }
+    let row: Vec<_> = steps
+        .iter()
+        .filter_map(|s| match *s {
+            Step::Flag { face, x, inside } => Some((face, x, inside)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(row[..4], [(0, 0, true), (1, 4, true), (0, 8, false), (1, 12, false)]);
+    let spans: Vec<_> = steps
+        .iter()
+        .filter_map(|s| match *s {
+            Step::Span { face, y: 0, columns } => Some((face, columns)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(spans, [(0, [0, 4]), (1, [4, 8]), (1, [8, 12])]);
+}
+
+#[test]
+fn regions_show_the_nearest_face_everywhere() {
+    let mut random = Random(15);
+    for round in 0..12 {
+        let faces = if round == 0 { beams().to_vec() } else { scene(&mut random, 3 + round / 2) };
+        let seen = regions(&faces, &Default::default(), &mut NoTrace).unwrap();
+        let inside = |ring: &[DVec2], p: DVec2| {
+            let next = ring.iter().cycle().skip(1);
+            let crosses = ring.iter().zip(next).filter(|(a, b)| {
+                (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
+            });
+            crosses.count() % 2 == 1
+        };
+        for _ in 0..400 {
+            let p = random.point(0.0, 32.0);
+            let covers = |face: &Face| inside(&face.outline(), p);
+            let nearest = (0..faces.len()).filter(|&k| covers(&faces[k]));
+            let depth = |k: &usize| faces[*k].depth(p);
+            let nearest = nearest.min_by(|a, b| depth(a).total_cmp(&depth(b)));
+            let shown: Vec<usize> = seen
+                .iter()
+                .filter(|r| r.shapes.rings().filter(|ring| inside(ring, p)).count() % 2 == 1)
+                .map(|r| r.face as usize)
+                .collect();
+            assert_eq!(shown, nearest.into_iter().collect::<Vec<_>>(), "{p} in round {round}");
+        }
+    }
+}
+
+#[test]
+fn faces_must_be_plane_and_have_an_area() {
+    let corners = |z: f64| [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (4.0, 4.0, z), (0.0, 4.0, 0.0)];
+    assert!(Face::new(&corners(0.0).map(DVec3::from)).is_ok());
+    assert!(Face::new(&corners(1.0).map(DVec3::from)).is_err());
+    assert!(Face::new(&corners(f64::NAN).map(DVec3::from)).is_err());
+    assert!(Face::new(&[DVec3::ZERO, DVec3::X, DVec3::X * 2.0]).is_err());
+    assert!(Face::new(&[]).is_err());
+    // Seen edge-on it covers nothing, but divides a tree.
+    let edge = Face::new(&[DVec3::ZERO, DVec3::Y * 9.0, DVec3::Z * 9.0]).unwrap();
+    for method in PolygonMethod::ALL {
+        let items = method.items(std::slice::from_ref(&edge), &screen()).unwrap();
+        assert!(items.data().iter().all(|item| *item == NO_ITEM));
+    }
+}
