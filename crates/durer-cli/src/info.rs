@@ -112,6 +112,24 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     input::check_streams(&args.models)?;
     let messages = Messages::new(&args.running, args.models.len() as u64);
     let mut infos = Vec::new();
+    let ended = tell_all(args, &messages, &mut infos);
+    drop(messages);
+    if ended.is_err() && infos.is_empty() {
+        return ended;
+    }
+    let printed = match &infos[..] {
+        _ if !args.json => {
+            let texts: Vec<String> = infos.iter().map(Told::text).collect();
+            report::print_text(&texts.join("\n"))
+        }
+        [one] if ended.is_ok() => report::print(one),
+        several => report::print(&several),
+    };
+    ended.and(printed)
+}
+
+/// Reads the files one after the other, up to the first that cannot be read.
+fn tell_all(args: &InfoArgs, messages: &Messages, infos: &mut Vec<Told>) -> Result<(), Failure> {
     for path in &args.models {
         let name = input::display_name(path);
         messages.progress.stage(|| format!("reading {name}"));
@@ -130,15 +148,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         }
         messages.progress.advance();
     }
-    drop(messages);
-    if !args.json {
-        let texts: Vec<String> = infos.iter().map(Told::text).collect();
-        return report::print_text(&texts.join("\n"));
-    }
-    match &infos[..] {
-        [one] => report::print(one),
-        several => report::print(&several),
-    }
+    Ok(())
 }
 
 /// Whether a file holds map data, and no model: by its first bytes, or else by its name. Standard input holds a model.

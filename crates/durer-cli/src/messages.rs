@@ -20,7 +20,7 @@ pub struct Messages {
 impl Messages {
     /// Messages for `count` pictures or models.
     pub fn new(args: &RunningArgs, count: u64) -> Self {
-        let progress = Progress::new(count, !args.quiet);
+        let progress = Progress::new(&args.work, count, !args.quiet);
         Self { quiet: args.quiet, verbose: args.verbose, progress }
     }
 

@@ -1,7 +1,9 @@
 //! Progress on a terminal, for work that takes over half a second.
 
 use crate::watch;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use durer::work::{self, Work};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
@@ -13,6 +15,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// A line on standard error that says what is being done; nothing where that is no terminal.
 #[derive(Debug, Default)]
 pub struct Progress {
+    /// What counts how far the work has come.
+    work: Work,
     shown: Option<Shown>,
 }
 
@@ -25,19 +29,25 @@ struct Shown {
 }
 
 impl Progress {
-    /// Progress over `count` pictures; `wanted` is false for `--quiet`.
-    pub fn new(count: u64, wanted: bool) -> Self {
+    /// Progress of the work over `count` pictures; `wanted` is false for `--quiet`.
+    pub fn new(work: &Work, count: u64, wanted: bool) -> Self {
+        let work = work.clone();
         if !wanted || !std::io::stderr().is_terminal() {
-            return Self::default();
+            return Self { work, shown: None };
         }
         let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
         let template = if count > 1 {
-            "{spinner} {pos}/{len} {wide_msg} {elapsed}, {eta} left"
+            "{spinner} {pos}/{len} {wide_msg} {part} {elapsed}, {eta} left"
         } else {
-            "{spinner} {wide_msg} {elapsed}"
+            "{spinner} {wide_msg} {part} {elapsed}"
         };
         if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
+            let counted = work.clone();
+            // What is written to is a text, which takes all.
+            let part = move |_: &ProgressState, out: &mut dyn Write| {
+                let _ = out.write_str(&percent(counted.progress()));
+            };
+            bar.set_style(style.with_key("part", part));
         }
         let (wake, woken) = channel::<()>();
         let late = bar.clone();
@@ -47,12 +57,15 @@ impl Progress {
                 late.enable_steady_tick(Duration::from_millis(100));
             }
         });
-        Self { shown: Some(Shown { bar, wake: Some(wake), waiting: Some(waiting) }) }
+        let shown = Some(Shown { bar, wake: Some(wake), waiting: Some(waiting) });
+        Self { work, shown }
     }
 
     /// Says what is being done.
     pub fn stage(&self, what: impl FnOnce() -> String) {
         let what = what();
+        // What was counted before is over.
+        self.work.begin("", 0);
         if let Some(shown) = &self.shown {
             shown.bar.set_message(what.clone());
         }
@@ -78,6 +91,11 @@ impl Progress {
     }
 }
 
+/// How much of a stage is done, in percent; empty where nothing is counted.
+fn percent(progress: work::Progress) -> String {
+    progress.share().map_or_else(String::new, |share| format!("{:.0} %", (share * 100.0).floor()))
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         if let Some(shown) = &mut self.shown {
@@ -88,5 +106,21 @@ impl Drop for Progress {
             }
             shown.bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_counted_is_told_in_percent() {
+        let work = Work::stoppable();
+        assert_eq!(percent(work.progress()), "");
+        work.begin("rows", 3);
+        work.advance(2);
+        assert_eq!(percent(work.progress()), "66 %");
+        Progress::new(&work, 1, false).stage(|| "reading".to_owned());
+        assert_eq!(percent(work.progress()), "");
     }
 }

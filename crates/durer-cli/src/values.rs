@@ -139,12 +139,18 @@ pub fn count(text: &str) -> Result<u64, String> {
     }
 }
 
-/// A SIMD level of this machine by its name.
+/// A SIMD level of this machine by its name, or `auto` for its best.
 pub fn simd_level(text: &str) -> Result<Level, String> {
-    let levels = simd::levels();
-    let names: Vec<_> = levels.iter().map(|&level| simd::name(level)).collect();
-    let found = levels.iter().zip(&names).find(|(_, name)| **name == text);
-    found.map(|(&level, _)| level).ok_or_else(|| format!("this machine has {}", names.join(", ")))
+    let missing = || match (text, cfg!(feature = "scalar")) {
+        ("scalar", false) => {
+            "this build has no scalar code; the feature `scalar` builds it".to_owned()
+        }
+        _ => {
+            let names: Vec<_> = simd::levels().into_iter().map(simd::name).collect();
+            format!("this machine has auto, {}", names.join(", "))
+        }
+    };
+    simd::by_name(text).ok_or_else(missing)
 }
 
 /// A number of bytes, with `k`, `M` or `G` for powers of 1024.
@@ -193,6 +199,15 @@ mod tests {
         for wrong in ["", "x", "0x5", "5x0", "NaNxNaN", "1e3x2", "-1x2", "4294967296x1", "1x2x3"] {
             assert!(size(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn simd_levels_have_names() {
+        let weakest = simd::name(simd::levels()[0]);
+        assert!(simd_level("auto").is_ok() && simd_level(weakest).is_ok());
+        assert_eq!(simd_level("scalar").is_ok(), cfg!(feature = "scalar"));
+        let told = simd_level("mmx").expect_err("no level");
+        assert!(told.starts_with(&format!("this machine has auto, {weakest}")), "{told}");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use crate::told::shown;
 use quick_xml::Error as Xml;
 use quick_xml::errors::{IllFormedError, SyntaxError};
 use std::io::ErrorKind;
+use usvg::roxmltree::Error as Markup;
 use zip::result::ZipError;
 
 /// Describes a fault of XML.
@@ -41,12 +42,13 @@ fn not_closed(error: &SyntaxError) -> &'static str {
     }
 }
 
+fn mismatched(expected: &str, found: &str) -> String {
+    format!("`</{}>` stands where `</{}>` is needed", shown(found), shown(expected))
+}
+
 fn ill_formed(error: &IllFormedError) -> String {
     match error {
-        IllFormedError::MismatchedEndTag { expected, found } => {
-            let (expected, found) = (shown(expected), shown(found));
-            format!("`</{found}>` stands where `</{expected}>` is needed")
-        }
+        IllFormedError::MismatchedEndTag { expected, found } => mismatched(expected, found),
         IllFormedError::UnmatchedEndTag(name) => {
             format!("`</{}>` ends what was not begun", shown(name))
         }
@@ -55,6 +57,87 @@ fn ill_formed(error: &IllFormedError) -> String {
         _ => "it is not well-formed".to_owned(),
     }
 }
+
+/// Describes a fault of the XML of a drawing, without its place.
+pub(crate) fn markup(error: &Markup) -> String {
+    match error {
+        Markup::UnexpectedCloseTag(expected, found, _) => mismatched(expected, found),
+        Markup::UnknownNamespace(prefix, _) => {
+            let prefix = shown(prefix);
+            format!("the prefix of `{prefix}:` is not declared; `svg` needs `xmlns:{prefix}=\"…\"`")
+        }
+        Markup::UnknownEntityReference(name, _) => {
+            format!("`&{};` is no known entity; `&` itself is written `&amp;`", shown(name))
+        }
+        Markup::MalformedEntityReference(_) | Markup::EntityResolver(..) => entity(),
+        Markup::DuplicatedAttribute(name, _) => {
+            format!("an element has the attribute `{}` twice", shown(name))
+        }
+        Markup::DuplicatedNamespace(prefix, _) => {
+            let colon = if prefix.is_empty() { "" } else { ":" };
+            format!("an element has `xmlns{colon}{}` twice", shown(prefix))
+        }
+        Markup::NonXmlChar(c, _) => {
+            format!("the character U+{:04X} is not allowed in XML", u32::from(*c))
+        }
+        // In an attribute's value, the end of which is looked for.
+        Markup::InvalidChar(b'"' | b'\'', b'<', _) => LESS_IN_VALUE.to_owned(),
+        Markup::InvalidChar(expected, found, _) => {
+            format!("`{}` stands where `{}` is needed", byte(*found), byte(*expected))
+        }
+        Markup::InvalidChar2(expected, found, _) => {
+            let needed = expected.replace('\'', "`");
+            format!("`{}` stands where {needed} is needed", byte(*found))
+        }
+        Markup::InvalidString(expected, _) => format!("`{expected}` is needed"),
+        other => structure(other).to_owned(),
+    }
+}
+
+const LESS_IN_VALUE: &str = "an attribute's value holds `<`, which is written `&lt;`";
+
+/// A byte as a message shows it.
+fn byte(byte: u8) -> String {
+    if byte.is_ascii_graphic() { char::from(byte).to_string() } else { format!("\\x{byte:02x}") }
+}
+
+/// Describes a fault of the XML of a drawing that says nothing of the text.
+fn structure(error: &Markup) -> &'static str {
+    match error {
+        Markup::InvalidXmlPrefixUri(_)
+        | Markup::UnexpectedXmlUri(_)
+        | Markup::UnexpectedXmlnsUri(_)
+        | Markup::InvalidElementNamePrefix(_) => {
+            "the prefixes `xml` and `xmlns` are XML's own and cannot be declared"
+        }
+        Markup::UnexpectedEntityCloseTag(_) => "an entity ends an element that it does not begin",
+        Markup::EntityReferenceLoop(_) => {
+            "entities refer to each other in a circle, or too often; ten levels are allowed"
+        }
+        Markup::InvalidAttributeValue(_) => LESS_IN_VALUE,
+        Markup::NoRootNode => "it has no element",
+        Markup::UnclosedRootNode | Markup::UnexpectedEndOfStream => {
+            "the text ends before all elements do"
+        }
+        Markup::UnexpectedDeclaration(_) => {
+            "`<?xml … ?>` stands elsewhere than at the very beginning"
+        }
+        Markup::NodesLimitReached => TOO_MANY_ELEMENTS,
+        Markup::AttributesLimitReached => "it has more attributes than are read",
+        Markup::NamespacesLimitReached => "it declares more than 65,535 namespaces",
+        Markup::InvalidName(_) => "a name is needed, which begins with a letter, `_` or `:`",
+        Markup::InvalidExternalID(_) => {
+            "after SYSTEM or PUBLIC, the DOCTYPE needs a name in quotes"
+        }
+        Markup::InvalidComment(_) => "a comment holds `--`, or ends with `-`",
+        Markup::InvalidCharacterData(_) => "a text holds `]]>`, which is written `]]&gt;`",
+        _ => "neither an element nor a comment or text stands here; `<` itself is written `&lt;`",
+    }
+}
+
+/// The message for drawings of more elements than the library that resolves them takes.
+pub(crate) const TOO_MANY_ELEMENTS: &str = "the drawing has more than 1,000,000 elements, each as often as `use` repeats it, \
+    or more than 1,024 levels of them; that many are not read";
 
 /// Describes a fault of JSON, without its place.
 pub(crate) fn json(error: &serde_json::Error) -> String {

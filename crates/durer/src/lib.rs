@@ -171,6 +171,7 @@ pub mod info;
 pub mod math;
 pub mod parallel;
 pub mod simd;
+mod stopwatch;
 pub mod trace;
 pub mod work;
 

@@ -28,6 +28,7 @@ use crate::shade::environment::Mirrored;
 use crate::shade::studio::Studio;
 pub use crate::shade::{Exposure, Shading, Surroundings, ToneMap};
 use crate::simd::{Level, default_level};
+use crate::stopwatch::Stopwatch;
 use crate::target::Framebuffer;
 use crate::trace::NoTrace;
 use crate::view::View;
@@ -255,12 +256,12 @@ pub fn render_into(
     lights.tone.map = options.tone_map;
     let smoothed = with_needed_normals(scene, options)?;
     let scene = smoothed.as_ref().unwrap_or(scene);
-    let start = std::time::Instant::now();
+    let start = Stopwatch::start();
     if options.shadows == Shadows::Map {
         let map = shadow_map::Options { side: options.shadow_map_side };
         shadow_map::cast_within(&options.work, scene, &mut lights, &map)?;
     }
-    let shadow_seconds = start.elapsed().as_secs_f64();
+    let shadow_seconds = start.seconds();
     let report = match options.algorithm {
         SurfaceMethod::ZBuffer => {
             let z_options = z_buffer::Options {
@@ -277,9 +278,9 @@ pub fn render_into(
         _ => from_screen_triangles(scene, &view, &lights, options, framebuffer)?,
     };
     options.work.check()?;
-    let start = std::time::Instant::now();
+    let start = Stopwatch::start();
     darken(&view, options, framebuffer);
-    let darken_seconds = start.elapsed().as_secs_f64();
+    let darken_seconds = start.seconds();
     options.work.check()?;
     Ok(Report {
         triangles_in: scene.triangle_count(),
@@ -404,12 +405,12 @@ fn from_screen_triangles(
     options: &RenderOptions,
     framebuffer: &mut Framebuffer,
 ) -> Result<z_buffer::Report> {
-    let start = std::time::Instant::now();
+    let start = Stopwatch::start();
     let sample_reach = options.algorithm.sample_reach();
     let filter = Filter { cull: options.cull, sample_reach, marks: options.marks };
     let input = SurfaceInput::within(&options.work, scene, view, filter)?;
-    let geometry_seconds = start.elapsed().as_secs_f64();
-    let start = std::time::Instant::now();
+    let geometry_seconds = start.seconds();
+    let start = Stopwatch::start();
     let method_options = method::Options {
         samples: options.samples,
         mask: options.mask,
@@ -421,7 +422,7 @@ fn from_screen_triangles(
     };
     let t = &mut NoTrace;
     render_with(options.algorithm, &input, lights, &method_options, framebuffer, t)?;
-    let raster_seconds = start.elapsed().as_secs_f64();
+    let raster_seconds = start.seconds();
     Ok(z_buffer::Report { counts: input.counts, geometry_seconds, raster_seconds })
 }
 

@@ -33,24 +33,113 @@ pub(crate) const fn lanes<S: Simd>() -> usize {
     size_of::<S::i32s>() / size_of::<i32>()
 }
 
-/// Every level that this machine can run, weakest first; tests render at each of them. Every x86-64 processor has
-/// SSE2, so there is no scalar one there.
+/// Returns every level that this machine can run with code of its own, weakest first; tests render at each of
+/// them. Where every processor of an architecture has registers, as those of x86-64 have SSE2's, `scalar` is among them with the feature
+/// `scalar` only.
+///
+/// SSE4.2 is not among them: what it adds makes no kernel faster than SSE2 does, so both run the same code, which saves
+/// a quarter of the kernels.
 pub fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = Vec::new();
+    #[cfg(feature = "scalar")]
+    levels.push(Level::fallback());
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         levels.extend(best.as_sse2().map(|s| s.level()));
-        levels.extend(best.as_sse4_2().map(|s| s.level()));
         levels.extend(best.as_avx2().map(|s| s.level()));
     }
-    if !levels.iter().any(|&level| name(level) == name(best)) {
+    if !levels.iter().any(|&level| name(level) == name(with_code(best))) {
         levels.push(best);
     }
     levels
 }
 
-/// What a level is called: `scalar`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon` or `wasm`.
+/// Returns the level of a name that [`name`] gives, or the machine's best for `auto`; none where the machine lacks it.
+///
+/// ```
+/// use durer::simd::{by_name, levels, name};
+/// let weakest = name(levels()[0]);
+/// assert_eq!(by_name(weakest).map(name), Some(weakest));
+/// assert!(by_name("mmx").is_none());
+/// ```
+pub fn by_name(text: &str) -> Option<Level> {
+    let best = Level::new();
+    if text == "auto" {
+        return Some(best);
+    }
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if text == "sse4.2" {
+        return best.as_sse4_2().map(|s| s.level());
+    }
+    levels().into_iter().find(|&level| name(level) == text)
+}
+
+/// Returns the level whose code a level runs: SSE2's for SSE4.2, its own for all others.
+pub(crate) fn with_code(level: Level) -> Level {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let (Level::Sse4_2(_), Some(sse2)) = (level, level.as_sse2()) {
+        return sse2.level();
+    }
+    level
+}
+
+/// Works out an expression with the instructions of a level, whose token the pattern gets. It does what the macro of the same name in
+/// `fearless_simd` does, but builds no code for SSE4.2.
+macro_rules! dispatch {
+    (@with $token:expr, $simd:pat => $work:expr) => {{
+        let token = $token;
+        let $simd = token;
+        fearless_simd::Simd::vectorize(
+            token,
+            #[inline(always)]
+            || $work,
+        )
+    }};
+    ($level:expr, $simd:pat => $work:expr) => {
+        match $crate::simd::with_code($level) {
+            #[cfg(any(
+                feature = "scalar",
+                not(any(
+                    all(target_arch = "aarch64", target_feature = "neon"),
+                    all(
+                        any(target_arch = "x86", target_arch = "x86_64"),
+                        target_feature = "sse2",
+                        target_feature = "fxsr"
+                    ),
+                    all(target_arch = "wasm32", target_feature = "simd128")
+                ))
+            ))]
+            fearless_simd::Level::Fallback(token) => {
+                $crate::simd::dispatch!(@with token, $simd => $work)
+            }
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            fearless_simd::Level::Sse2(token) => {
+                $crate::simd::dispatch!(@with token, $simd => $work)
+            }
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            fearless_simd::Level::Avx2(token) => {
+                $crate::simd::dispatch!(@with token, $simd => $work)
+            }
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            fearless_simd::Level::Avx512(token) => {
+                $crate::simd::dispatch!(@with token, $simd => $work)
+            }
+            #[cfg(target_arch = "aarch64")]
+            fearless_simd::Level::Neon(token) => {
+                $crate::simd::dispatch!(@with token, $simd => $work)
+            }
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            fearless_simd::Level::WasmSimd128(token) => {
+                $crate::simd::dispatch!(@with token, $simd => $work)
+            }
+            _ => unreachable!("every level has code"),
+        }
+    };
+}
+pub(crate) use dispatch;
+
+/// Returns what a level is called: `scalar`, `sse2`, `sse4.2`, `avx2`, `avx512`, `neon` or `wasm`.
 pub fn name(level: Level) -> &'static str {
     match level {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -15,6 +15,8 @@
 //! assert!(work.charge("glyphs", 600_000).is_ok());
 //! # Ok::<(), durer::Error>(())
 //! ```
+//!
+//! It also counts how far work has come, for whoever shows that: see [`Work::progress`].
 
 use crate::{Error, Result};
 use std::mem::size_of;
@@ -48,6 +50,28 @@ struct Shared {
     stopped: AtomicBool,
     why: Mutex<Option<Error>>,
     stage: Mutex<&'static str>,
+    /// What [`Work::begin`] named last, and how much of it is done and is to be done.
+    counted: Mutex<&'static str>,
+    done: AtomicU64,
+    of: AtomicU64,
+}
+
+/// How far work has come, as [`Work::progress`] tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Progress {
+    /// What is being done: `"rows of tiles"`, `"lines"`, …; empty before anything that is counted.
+    pub stage: &'static str,
+    /// How much of it is done; at most `of`.
+    pub done: u64,
+    /// How much there is to do.
+    pub of: u64,
+}
+
+impl Progress {
+    /// Returns the part that is done, 0 to 1; `None` before anything that is counted.
+    pub fn share(&self) -> Option<f64> {
+        (self.of > 0).then(|| self.done as f64 / self.of as f64)
+    }
 }
 
 /// Two are equal where they are clones of each other, or both have no bound.
@@ -104,6 +128,9 @@ impl Work {
             stopped: AtomicBool::new(false),
             why: Mutex::new(None),
             stage: Mutex::new("start"),
+            counted: Mutex::new(""),
+            done: AtomicU64::new(0),
+            of: AtomicU64::new(0),
         };
         Self(Some(Arc::new(Scope { shared: Arc::new(shared), kept: AtomicU64::new(0) })))
     }
@@ -221,6 +248,34 @@ impl Work {
     /// The stage that the work came to last.
     pub fn stage(&self) -> &'static str {
         self.0.as_ref().map_or("start", |scope| *lock(&scope.shared.stage))
+    }
+
+    /// Begins a stage of so many steps, none of which is done; [`Self::progress`] tells of it from here on.
+    pub fn begin(&self, stage: &'static str, of: u64) {
+        if let Some(scope) = &self.0 {
+            let mut counted = lock(&scope.shared.counted);
+            *counted = stage;
+            scope.shared.done.store(0, Ordering::Relaxed);
+            scope.shared.of.store(of, Ordering::Relaxed);
+        }
+    }
+
+    /// Counts steps of the stage that are done: by the row, tile or thousand elements, as [`Self::check`] is asked.
+    #[inline]
+    pub fn advance(&self, steps: u64) {
+        if let Some(scope) = &self.0 {
+            scope.shared.done.fetch_add(steps, Ordering::Relaxed);
+        }
+    }
+
+    /// Returns how far the work has come in the stage that it is in, from any thread. All parts of one work have it in
+    /// common; stages that run at the same time are counted together.
+    pub fn progress(&self) -> Progress {
+        let Some(scope) = &self.0 else { return Progress::default() };
+        let stage = *lock(&scope.shared.counted);
+        let of = scope.shared.of.load(Ordering::Relaxed);
+        let done = scope.shared.done.load(Ordering::Relaxed).min(of);
+        Progress { stage, done, of }
     }
 
     /// Bytes that are charged now.

@@ -68,12 +68,14 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         ..Report::default()
     };
     let is_shifted = shift.is_some();
+    let mut ended = Ok(());
     let further = {
         let (messages, reader, report) = (&messages, &mut reader, &mut report);
         let mut job = Job { args, to, messages, reader, report, failed: None, shift, fields };
         match (cells, args.region.tiles, mask) {
             (Some(cells), ..) => job.cut_by_cells(&cells)?,
-            (None, Some(zoom), _) => job.tile(zoom)?,
+            // Tiles in files of their own may be there in part.
+            (None, Some(zoom), _) => ended = job.tile(zoom),
             (None, None, mask) if joins(args) => job.join(mask.as_ref())?,
             (None, None, Some(mask)) => job.cut(mask)?,
             (None, None, None) if converts(args, from, to) => job.convert()?,
@@ -81,11 +83,15 @@ pub fn run(args: &ClipArgs) -> Result<(), Failure> {
         }
         [job.fields.told(), job.shift.as_ref().and_then(Shift::told), job.unfit()]
     };
+    if ended.is_err() && report.broken_off.is_none() {
+        return ended;
+    }
     tell(&messages, args, to, &reader, &mut report, is_shifted, further.into_iter().flatten());
     drop(messages);
     report.total_seconds = start.elapsed().as_secs_f64();
     report.peak_memory_bytes = crate::report::peak_memory();
-    if args.json { crate::report::print(&report) } else { Ok(()) }
+    let printed = if args.json { crate::report::print(&report) } else { Ok(()) };
+    ended.and(printed)
 }
 
 /// The warning where features that are joined have different ordinates.

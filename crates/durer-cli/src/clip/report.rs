@@ -1,6 +1,7 @@
 //! What `durer clip --json` says.
 
 use super::srids::Srids;
+use crate::tiles::BrokenOff;
 use durer::clip::mask::Cut;
 use durer::clip::polygon::signed_area;
 use durer_formats::geo::{Geometry, Points};
@@ -61,6 +62,9 @@ pub struct Report {
     /// Tiles that are not empty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tiles: Option<u64>,
+    /// Why not all tiles are there, and the files of those that are.
+    #[serde(flatten)]
+    pub broken_off: Option<BrokenOff>,
     /// What was repaired or left out in reading.
     pub warnings: Vec<String>,
     /// From start to end.

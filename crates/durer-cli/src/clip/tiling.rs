@@ -6,7 +6,7 @@ use super::{Job, rules};
 use crate::failure::Failure;
 use crate::layer::failure;
 use crate::places::is_stream;
-use crate::tiles::Stopped;
+use crate::tiles::{BrokenOff, Stopped};
 use durer::clip::tiles::Tile;
 use durer_formats::geo::{Feature, GeoFormat, Geometry, Member, Writer};
 use rayon::prelude::*;
@@ -91,21 +91,25 @@ impl Job<'_> {
             }
             Ok((writer.finish(&[])?, counts))
         };
-        let (mut out, mut tiles, folder) = (Counts::default(), 0, &self.args.output);
+        let suffix = GeoFormat::GeoJson.suffixes()[0];
+        let (mut out, mut written) = (Counts::default(), Vec::new());
+        let folder = &self.args.output;
         let take = |tile: Tile, made: durer_formats::Result<(Vec<u8>, Counts)>| {
             let (bytes, counts) = made.map_err(|e| Stopped::Written(failure(folder, &e)))?;
+            crate::tiles::deliver(folder, tile, suffix, &bytes).map_err(Stopped::Written)?;
             out.join(&counts);
-            tiles += 1;
-            let suffix = GeoFormat::GeoJson.suffixes()[0];
-            crate::tiles::deliver(folder, tile, suffix, &bytes).map_err(Stopped::Written)
+            written.push(tile);
+            Ok(())
         };
         let done = tiling.visit(&subjects, make, take);
-        done.map_err(|stopped| self.of_tiling(tiling, stopped))?;
+        let done = done.map_err(|stopped| self.of_tiling(tiling, stopped));
+        self.report.broken_off =
+            done.as_ref().err().map(|failure| BrokenOff::new(failure, &written, suffix));
         let repaired = |subject: &&Subject<'_>| subject.repaired.load(Ordering::Relaxed);
         self.report.repaired += subjects.iter().filter(repaired).count() as u64;
         self.report.out.join(&out);
-        self.report.tiles = Some(tiles);
-        Ok(())
+        self.report.tiles = Some(written.len() as u64);
+        done
     }
 
     /// The features that lie in tiles; takes note of those that do not.

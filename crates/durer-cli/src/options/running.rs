@@ -11,7 +11,8 @@ pub struct RunningArgs {
     /// Work on so many threads [default: as many as there are processors]; the pictures are the same
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Work with these SIMD instructions, e.g. sse2 [default: the best of the machine]; the pictures are the same
+    /// Work with these SIMD instructions: scalar, sse2, sse4.2, avx2, avx512, neon or auto [default: auto, the best of the
+    /// machine]; the pictures are the same
     #[arg(long, value_name = "LEVEL", value_parser = values::simd_level)]
     pub simd: Option<durer::simd::Level>,
     /// Take no more memory than this for the work, in bytes; k, M, G are understood [default: half of what the machine or its

@@ -126,6 +126,11 @@ impl TileFormat {
             Self::Geojson => "geojson",
         }
     }
+
+    /// Whether each tile is a file of its own.
+    pub fn is_folder(self) -> bool {
+        matches!(self, Self::Mvt | Self::Geojson)
+    }
 }
 
 fn zooms(text: &str) -> Result<RangeInclusive<u8>, String> {

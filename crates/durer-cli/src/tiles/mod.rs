@@ -36,9 +36,36 @@ struct Report {
     bytes: u64,
     levels: Vec<LevelReport>,
     warnings: Vec<String>,
+    /// Why not all tiles are there, and the files of those that are.
+    #[serde(flatten)]
+    broken_off: Option<BrokenOff>,
     read_seconds: f64,
     total_seconds: f64,
     peak_memory_bytes: Option<u64>,
+}
+
+/// What is said of tiles that could not all be written.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BrokenOff {
+    /// What went wrong.
+    pub error: String,
+    /// The files that were written before, each of them whole, within the folder.
+    pub written: Vec<String>,
+}
+
+impl BrokenOff {
+    /// Tells of tiles in files of a suffix.
+    pub fn new(failure: &Failure, tiles: &[Tile], suffix: &str) -> Self {
+        let written = tiles.iter().map(|tile| format!("{tile}.{suffix}")).collect();
+        Self { error: failure.to_string(), written }
+    }
+}
+
+/// The levels that are made, and the tiles of a folder.
+#[derive(Default)]
+struct Done {
+    levels: Vec<LevelReport>,
+    written: Vec<Tile>,
 }
 
 /// What is said of a level.
@@ -82,16 +109,22 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
     bounded(args, &pyramid)?;
     let mut out = Out::new(format, path)?;
     let maker = Maker::new(args, format, &all);
-    let mut levels = Vec::new();
-    for zoom in args.zoom.clone() {
+    let mut done = Done::default();
+    let made = args.zoom.clone().try_for_each(|zoom| {
         messages.progress.stage(|| format!("level {zoom}"));
-        levels.push(level(zoom, &pyramid, &maker, (&mut out, &args.running.work))?);
+        level(zoom, &pyramid, &maker, (&mut out, &args.running.work), &mut done)
+    });
+    let ended = made.and_then(|()| out.finish(&metadata(args, &all, bounds)));
+    if ended.is_err() && !format.is_folder() {
+        // A file that is not whole is not put into its place.
+        done = Done::default();
     }
+    let Done { levels, written } = done;
+    let broken_off = ended.as_ref().err().map(|f| BrokenOff::new(f, &written, format.name()));
     let (tiles, bytes) = levels.iter().fold((0, 0), |(t, b), l| (t + l.tiles, b + l.bytes));
-    out.finish(&metadata(args, &all, bounds))?;
     let lost = maker.lost();
     let mut warnings = std::mem::take(&mut all.warnings);
-    for message in told(args, lost, tiles) {
+    for message in told(args, lost, tiles).into_iter().filter(|_| ended.is_ok()) {
         messages.warning(&args.output.display().to_string(), &message);
         warnings.push(message);
     }
@@ -107,11 +140,13 @@ pub fn run(args: &TilesArgs) -> Result<(), Failure> {
         bytes,
         levels,
         warnings,
+        broken_off,
         read_seconds,
         total_seconds: start.elapsed().as_secs_f64(),
         peak_memory_bytes: crate::report::peak_memory(),
     };
-    if args.json { crate::report::print(&report) } else { Ok(()) }
+    let printed = if args.json { crate::report::print(&report) } else { Ok(()) };
+    ended.and(printed)
 }
 
 /// Refuses too many tiles before one is made.
@@ -152,12 +187,16 @@ fn level(
     pyramid: &Pyramid,
     maker: &Maker<'_>,
     (out, work): (&mut Out, &Work),
-) -> Result<LevelReport, Failure> {
+    done: &mut Done,
+) -> Result<(), Failure> {
     let mut report = LevelReport { zoom, ..LevelReport::default() };
-    let done = pyramid.visit(
+    let ended = pyramid.visit(
         zoom,
         |tile, pieces| maker.make(tile, pieces),
         |tile: Tile, made| {
+            work.check()?;
+            out.add(tile, &made.bytes).map_err(Stopped::Written)?;
+            done.written.push(tile);
             let length = made.bytes.len() as u64;
             report.tiles += 1;
             report.bytes += length;
@@ -165,11 +204,11 @@ fn level(
             if length > report.largest {
                 (report.largest, report.largest_tile) = (length, tile.to_string());
             }
-            work.check()?;
-            out.add(tile, &made.bytes).map_err(Stopped::Written)
+            Ok(())
         },
     );
-    done.map(|()| report).map_err(|stopped| match stopped {
+    done.levels.push(report);
+    ended.map_err(|stopped| match stopped {
         Stopped::Written(failure) => failure,
         Stopped::Cut(e) => Failure::Data(e.to_string()),
     })

@@ -130,6 +130,45 @@ fn failures_are_skipped_when_that_is_asked_for() {
     assert_eq!(run("cube.obj --skip-failures").code, 0);
 }
 
+/// Two points, one in the west of the world and one in the east.
+const POINTS: &str = r#"{"type":"MultiPoint","coordinates":[[-90,45],[90,45]]}"#;
+
+#[test]
+fn reports_after_failures_say_which_files_are_written() {
+    let folder = Folder::new();
+    folder.write("points.geojson", POINTS);
+    for name in ["tiles", "cut"] {
+        std::fs::create_dir_all(folder.path(name).join("1")).unwrap();
+        // Where a folder is needed.
+        folder.write(&format!("{name}/1/1"), "");
+    }
+    for (command, written) in [
+        ("tiles points.geojson --zoom 0-2 -o tiles", vec!["0/0/0.mvt", "1/0/0.mvt"]),
+        ("clip points.geojson --tiles 1 -o cut", vec!["1/0/0.geojson"]),
+    ] {
+        let ended = folder.run(&format!("{command} --json"));
+        assert_eq!(ended.code, 1, "{command}: {}", ended.err);
+        let report = ended.json();
+        assert_eq!(report["written"], serde_json::json!(written), "{command}");
+        assert_eq!(report["tiles"], written.len(), "{command}");
+        let error = report["error"].as_str().unwrap();
+        assert!(ended.err.contains(error), "{command}: {error}");
+    }
+    // One file is there as a whole, or not at all.
+    std::fs::create_dir(folder.path("a.pmtiles")).unwrap();
+    assert_eq!(folder.run("tiles points.geojson --zoom 0-2 -o a.pmtiles --json").code, 1);
+}
+
+#[test]
+fn info_tells_of_files_before_one_that_is_broken() {
+    let folder = Folder::with_models();
+    let ended = folder.run("info cube.obj broken.obj --json");
+    ended.fails(1, "broken.obj: line 3");
+    assert_eq!(ended.json()[0]["triangles"], 12);
+    let ended = folder.run("info cube.obj broken.obj");
+    assert!(ended.code == 1 && String::from_utf8_lossy(&ended.out).contains("cube.obj"));
+}
+
 #[test]
 fn turntables_are_numbered() {
     let folder = Folder::with_models();

@@ -49,7 +49,7 @@ mod write;
 
 pub use fonts::{Fonts, no_glyphs};
 
-use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning};
+use crate::{Error, Limits, NoResources, Place, Resources, Result, Warning, foreign};
 use durer::math::{DAffine2, DVec2};
 use durer::raster::paint::Canvas;
 use std::collections::BTreeSet;
@@ -111,7 +111,7 @@ impl Drawing {
     /// is called.
     pub fn read(bytes: &[u8], options: &ReadOptions<'_>) -> Result<Self> {
         let text = source::text(bytes, &options.limits)?;
-        let document = parse(&text).map_err(not_xml)?;
+        let document = parse(&text)?;
         let root = document.root_element().tag_name();
         if root != ROOT.into() {
             let name = root.name();
@@ -269,7 +269,7 @@ struct Prepared {
 impl Prepared {
     /// The document that was written anew, if it was.
     fn document(&self) -> Result<Option<roxmltree::Document<'_>>> {
-        self.written.as_ref().map(|written| parse(&written.text).map_err(not_xml)).transpose()
+        self.written.as_ref().map(|written| parse(&written.text)).transpose()
     }
 }
 
@@ -311,17 +311,21 @@ fn prepared(
     Ok(prepared)
 }
 
-fn parse(text: &str) -> std::result::Result<roxmltree::Document<'_>, roxmltree::Error> {
+fn parse(text: &str) -> Result<roxmltree::Document<'_>> {
     let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
-    roxmltree::Document::parse_with_options(text, options)
+    let document = roxmltree::Document::parse_with_options(text, options);
+    document.map_err(|error| not_xml(&error, text))
 }
 
-fn not_xml(error: roxmltree::Error) -> Error {
+fn not_xml(error: &roxmltree::Error, text: &str) -> Error {
+    use roxmltree::Error::{NodesLimitReached, UnclosedRootNode, UnexpectedEndOfStream};
     let at = error.pos();
-    let text = error.to_string();
-    // The message repeats the place at its end.
-    let message = text.split(" at ").next().unwrap_or_default();
-    Error::line(at.row.into(), at.col.into(), format!("not well-formed XML: {message}"))
+    let (line, column) = match error {
+        NodesLimitReached => return Error::whole(foreign::TOO_MANY_ELEMENTS),
+        UnclosedRootNode | UnexpectedEndOfStream => lines::Lines::new(text).at(text.len()),
+        _ => (at.row.into(), at.col.into()),
+    };
+    Error::line(line, column, format!("not well-formed XML: {}", foreign::markup(error)))
 }
 
 /// What usvg makes of a document. Where numbers overflow on its way, as coordinates under a transform by 10²⁰ do, it may panic.
@@ -338,7 +342,10 @@ fn resolved(
 
 fn wrong(error: usvg::Error) -> Error {
     match error {
-        usvg::Error::ParsingFailed(error) => not_xml(error),
+        // The document was parsed before: of these only the count of elements is left.
+        usvg::Error::ParsingFailed(_) | usvg::Error::ElementsLimitReached => {
+            Error::whole(foreign::TOO_MANY_ELEMENTS)
+        }
         usvg::Error::InvalidSize => Error::whole(
             "the drawing has no size; `svg` needs a `viewBox`, or a `width` and `height` above 0",
         ),

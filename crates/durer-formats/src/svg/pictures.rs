@@ -186,7 +186,7 @@ fn within(
     let tree = || {
         let text = source::text(bytes, &options.limits)?;
         let levels = around + super::references::IMAGE;
-        let document = super::parse(&text).map_err(super::not_xml)?;
+        let document = super::parse(&text)?;
         let prepared = prepared(&document, levels, told, true)?;
         for warning in &prepared.warnings {
             told.tell(picture.place.clone(), format!("image `{}`: {warning}", name(&picture.href)));

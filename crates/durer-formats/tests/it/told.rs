@@ -1,7 +1,7 @@
 //! What readers say of files that would have them say something else.
 
 use durer_formats::geo::{GeoFormat, Reader};
-use durer_formats::{NoResources, ReadOptions, read_model};
+use durer_formats::{NoResources, ReadOptions, read_model, svg};
 
 /// Colours a terminal, and turns the direction of writing.
 const FORGED: &str = "\u{1b}[31mX\u{202e}\u{7}\u{85}";
@@ -93,4 +93,119 @@ fn readers_of_map_data_quote_plainly() {
         assert!(!said.is_empty(), "{format}: {file:?} is fine?");
         said.iter().for_each(|message| assert!(is_plain(message), "{format}: {message:?}"));
     }
+}
+
+/// Faults of XML, each within an element `R`, and what drawings are told of them.
+const FAULTS: [(&str, &str); 17] = [
+    ("<R><a></b></R>", "`</b>` stands where `</a>` is needed"),
+    ("<R><a", "the text ends before all elements do"),
+    ("<R><a>", "the text ends before all elements do"),
+    ("<R><q:a/></R>", "`svg` needs `xmlns:q=\"…\"`"),
+    ("<R><a b='1' b='2'/></R>", "an element has the attribute `b` twice"),
+    ("<R xmlns:q='u' xmlns:q='v'/>", "an element has `xmlns:q` twice"),
+    ("<R>&nothing;</R>", "`&nothing;` is no known entity; `&` itself is written `&amp;`"),
+    ("<R>a & b</R>", "after `&` no known entity follows"),
+    ("<R><a b='<'/></R>", "an attribute's value holds `<`, which is written `&lt;`"),
+    ("<R>]]></R>", "a text holds `]]>`, which is written `]]&gt;`"),
+    ("<R><!-- -- --></R>", "a comment holds `--`, or ends with `-`"),
+    ("<R>\u{1}</R>", "the character U+0001 is not allowed in XML"),
+    ("<R><?xml version='1.0'?></R>", "elsewhere than at the very beginning"),
+    ("<R><a b=c/></R>", "`c` stands where a quote is needed"),
+    ("<R><a b/></R>", "`/` stands where `=` is needed"),
+    ("<R><1/></R>", "a name is needed, which begins with a letter, `_` or `:`"),
+    (
+        "<!DOCTYPE R [<!ENTITY a '&b;'><!ENTITY b '&a;'>]><R>&a;</R>",
+        "entities refer to each other in a circle, or too often",
+    ),
+];
+
+/// Words of the libraries that read for us. They speak of types of Rust and of the text's bytes, and some say the place again.
+const FOREIGN: [&str; 24] = [
+    "not '",
+    "expected '",
+    "expected `",
+    "mismatch",
+    "duplicated",
+    "namespace prefix",
+    "malformed",
+    "not declared in",
+    "unexpected",
+    "end of stream",
+    "non-XML",
+    "limit reached",
+    "ill-formed",
+    "syntax error",
+    "EOF while",
+    "invalid type",
+    "missing field",
+    "struct ",
+    "usize",
+    "Some(",
+    "Error(",
+    "corrupt deflate",
+    "invalid Zip",
+    "recursion limit",
+];
+
+fn are_our_words(messages: &[String]) {
+    for message in messages {
+        let theirs = FOREIGN.iter().find(|words| message.contains(**words));
+        assert!(theirs.is_none() && is_plain(message), "{theirs:?} in {message:?}");
+    }
+}
+
+#[test]
+fn faults_of_xml_are_told_in_our_words() {
+    for (file, expected) in FAULTS {
+        let drawing =
+            file.replacen("<R", "<R xmlns='http://www.w3.org/2000/svg'", 1).replace('R', "svg");
+        let told = svg::Drawing::read(drawing.as_bytes(), &svg::ReadOptions::default());
+        let told = told.expect_err(file).to_string();
+        assert!(told.starts_with("line 1, column ") && told.contains(expected), "{file:?}: {told}");
+        are_our_words(&[told]);
+        for (name, root) in [("a.dae", "COLLADA"), ("a.x3d", "X3D"), ("a.amf", "amf")] {
+            are_our_words(&said_of_model(name, file.replace('R', root).as_bytes()));
+        }
+        for (format, root) in
+            [(GeoFormat::Kml, "kml"), (GeoFormat::Gpx, "gpx"), (GeoFormat::Svg, "svg")]
+        {
+            are_our_words(&said_of_map(format, file.replace('R', root).as_bytes()));
+        }
+    }
+}
+
+#[test]
+fn faults_of_json_are_told_in_our_words() {
+    for fault in [
+        "",
+        "{",
+        "[1,",
+        "{\"a\" 1}",
+        "{\"a\":1,}",
+        "nul",
+        "1e999",
+        "\"\\x\"",
+        "[",
+        "{\"scene\":\"x\"}",
+    ] {
+        let gltf = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":{fault}}}");
+        are_our_words(&said_of_model("a.gltf", gltf.as_bytes()));
+        for format in [GeoFormat::GeoJson, GeoFormat::GeoJsonSeq, GeoFormat::TopoJson] {
+            are_our_words(&said_of_map(format, fault.as_bytes()));
+            let within = format!("{{\"type\":\"Feature\",\"geometry\":{fault}}}");
+            are_our_words(&said_of_map(format, within.as_bytes()));
+        }
+    }
+}
+
+#[test]
+fn drawings_of_too_many_elements_are_not_called_ill_formed() {
+    let uses = "<use href='#a'/>".repeat(1100);
+    let twice = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><g id='a'>{}</g>{uses}</svg>",
+        "<rect width='1' height='1'/>".repeat(1000)
+    );
+    let told = svg::Drawing::read(twice.as_bytes(), &svg::ReadOptions::default());
+    let told = told.expect_err("too many").to_string();
+    assert!(told.contains("1,000,000 elements") && !told.contains("well-formed"), "{told}");
 }

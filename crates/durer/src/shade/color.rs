@@ -340,7 +340,7 @@ mod tests {
         for level in crate::simd::levels() {
             for &r in values.as_chunks::<16>().0 {
                 let g = r.map(|v| v * 0.5);
-                let codes: [u32; 16] = fearless_simd::dispatch!(level, simd => {
+                let codes: [u32; 16] = crate::simd::dispatch!(level, simd => {
                     let half = f32x16::splat(simd, 0.5);
                     let (r, g) = (f32x16::from_slice(simd, &r), f32x16::from_slice(simd, &g));
                     encode_opaque_x16(simd, [r, g, half]).into()

@@ -81,8 +81,8 @@ mod tests {
     use crate::math::{DVec3, Vec3, Vec4};
     use crate::scene::{Camera, Light, LightKind, Material, Projection, ShadingModel};
     use crate::shade::{PreparedMaterials, Surface, shade_seen};
+    use crate::simd::dispatch;
     use crate::simd::levels;
-    use fearless_simd::dispatch;
 
     /// Sixteen points of test data.
     type Sixteen = [[[f32; 16]; 3]; 4];

@@ -127,8 +127,8 @@ mod tests {
     use crate::shade::studio::Studio;
     use crate::shade::tone::Tone;
     use crate::shade::{Panorama, PreparedMaterials, Surface, ToneMap, shade_seen};
+    use crate::simd::dispatch;
     use crate::simd::levels;
-    use fearless_simd::dispatch;
     use std::sync::Arc;
 
     fn camera() -> Camera {

@@ -187,7 +187,8 @@ impl Layer {
         }
         let endless = endless(&old, view);
         let colors = unmixed::unmixed(source);
-        let rows = (0..h).take_while(|_| !work.is_stopped());
+        work.begin("rows of a picture", h.into());
+        let rows = (0..h).take_while(|_| !work.is_stopped()).inspect(|_| work.advance(1));
         for (x, y) in rows.flat_map(|y| (0..w).map(move |x| (x, y))) {
             let depth = f64::from(source.depth.get(x, y).unwrap_or(1.0));
             let Some(color) = colors.get(x, y).filter(|_| (0.0..=1.0).contains(&depth)) else {

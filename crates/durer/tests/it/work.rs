@@ -1,8 +1,10 @@
 //! Budgets and stops by themselves.
 
+use crate::scenes;
 use durer::Error;
 use durer::error::in_words;
-use durer::work::Work;
+use durer::pipeline::{DrawOptions, SurfaceMethod, draw, render};
+use durer::work::{Progress, Work};
 
 #[test]
 fn charges_are_given_back() {
@@ -82,4 +84,43 @@ fn bytes_are_told_shortly() {
     let told = [0, 999, 1000, 1536, 64 << 20, 67_500_000, 1 << 30, u64::MAX].map(in_words);
     let expected = ["0 bytes", "999 bytes", "1 kB", "1.5 kB", "64 MB", "64.4 MB", "1 GB", "16 EB"];
     assert_eq!(told, expected);
+}
+
+#[test]
+fn work_tells_how_far_it_has_come() {
+    assert_eq!(Work::default().progress(), Progress::default());
+    let work = Work::stoppable();
+    assert_eq!(work.progress().share(), None);
+    work.begin("rows", 8);
+    work.part().advance(2);
+    assert_eq!(work.progress(), Progress { stage: "rows", done: 2, of: 8 });
+    assert_eq!(work.progress().share(), Some(0.25));
+    work.advance(100);
+    assert_eq!(work.progress().done, 8);
+    work.begin("lines", 3);
+    assert_eq!(work.progress(), Progress { stage: "lines", done: 0, of: 3 });
+}
+
+#[test]
+fn pictures_and_drawings_count_all_of_their_steps() {
+    let (_, scene) = scenes::all().remove(0);
+    for &algorithm in SurfaceMethod::ALL {
+        let work = Work::stoppable();
+        let mut options = scenes::options(&scene, 130, 90);
+        (options.algorithm, options.work) = (algorithm, work.clone());
+        render(&scene, &options).expect("picture");
+        let Progress { stage, done, of } = work.progress();
+        // A painter does not know how many rows it has done.
+        let counts = algorithm != SurfaceMethod::DepthSort;
+        assert!(
+            stage.starts_with("rows") && of > 0 && (done == of || !counts),
+            "{algorithm} {done}/{of}"
+        );
+    }
+    let work = Work::stoppable();
+    let mut options = DrawOptions::new(scenes::options(&scene, 1, 1).camera);
+    options.work = work.clone();
+    draw(&scene, &options).expect("drawing");
+    let Progress { stage, done, of } = work.progress();
+    assert!(stage == "lines" && of > 0 && done == of, "{stage}: {done}/{of}");
 }

@@ -11,10 +11,10 @@
 use super::{Segment, liang_barsky};
 use crate::info::{Class, Info};
 use crate::math::{DVec2, Rect};
-use crate::simd::{Level, default_level};
+use crate::simd::{Level, default_level, dispatch};
 use crate::trace::NoTrace;
 use crate::{Error, Result};
-use fearless_simd::{dispatch, prelude::*};
+use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
 /// The facts of clipping in batches.

@@ -1,6 +1,6 @@
 //! One path in one band of rows: add its edges, resolve shared pixels, sum the rows.
 
-use fearless_simd::dispatch;
+use crate::simd::{default_level, dispatch};
 use fearless_simd::prelude::*;
 use fearless_simd_macros::simd;
 
@@ -15,7 +15,6 @@ use super::{FillRule, Options, Overlap};
 use crate::curve::Contours;
 use crate::math::DVec2;
 use crate::raster::bands::{BAND_ROWS, Edges};
-use crate::simd::default_level;
 
 /// Convex paths with so many edges are filled without cells; with more, finding the two that cross a row costs more than
 /// cells do.

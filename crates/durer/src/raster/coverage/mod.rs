@@ -32,13 +32,13 @@ pub use partition::{Face, INFO as PARTITION, Step as PartitionStep, fill_partiti
 
 use std::ops::Range;
 
+use crate::simd::{Level, default_level, dispatch};
 use fearless_simd::prelude::*;
-use fearless_simd::{dispatch, u32x8};
+use fearless_simd::u32x8;
 
 use crate::curve::Contours;
 use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
-use crate::simd::{Level, default_level};
 use crate::target::Pixels;
 use crate::trace::Tracer;
 use crate::{Error, Result};

@@ -1,7 +1,8 @@
 //! The parts of short lines within a tile, several of them set up at once.
 
+use crate::simd::dispatch;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch, f32x8, i32x8};
+use fearless_simd::{Level, f32x8, i32x8};
 use fearless_simd_macros::simd;
 
 /// Lines that are set up at once.

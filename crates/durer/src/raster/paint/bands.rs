@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use crate::simd::dispatch;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, dispatch, u32x8};
+use fearless_simd::{Level, u32x8};
 use fearless_simd_macros::simd;
 
 use super::color::Space;
@@ -29,6 +30,7 @@ pub(super) fn render<'a, P: Space>(
     }
     let by_band = sort_into_bands(commands, &canvas.lines, target.height(), BAND_ROWS);
     let rows_per_band = width * BAND_ROWS as usize;
+    canvas.work.begin("bands of rows", by_band.len() as u64);
     let paint = |painter: &mut Option<Painter<'a, P>>, (band, rows): (usize, &mut [Color])| {
         if canvas.work.is_stopped() {
             return;
@@ -36,6 +38,7 @@ pub(super) fn render<'a, P: Space>(
         let painter = painter.get_or_insert_with(|| Painter::new(canvas));
         let todo = Todo { items: &by_band[band], commands, lines: &canvas.lines };
         painter.band(level, &todo, band as i32 * BAND_ROWS, rows);
+        canvas.work.advance(1);
     };
     #[cfg(feature = "parallel")]
     {

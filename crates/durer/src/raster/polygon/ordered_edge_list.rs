@@ -12,8 +12,9 @@
 
 use std::ops::Range;
 
+use crate::simd::{Level, default_level, dispatch};
 use fearless_simd::prelude::*;
-use fearless_simd::{dispatch, u32x8};
+use fearless_simd::u32x8;
 
 pub use super::Options;
 use super::crossings::{CrossingEdges, CrossingFiller, Path};
@@ -22,7 +23,6 @@ use crate::info::{Class, Info};
 use crate::raster::bands::BAND_ROWS;
 use crate::raster::coverage::sweep::Sink;
 use crate::raster::span::Span;
-use crate::simd::{Level, default_level};
 use crate::trace::Tracer;
 
 /// The facts.

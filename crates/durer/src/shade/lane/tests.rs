@@ -1,7 +1,7 @@
 //! Numbers one by one and side by side.
 
 use super::*;
-use fearless_simd::dispatch;
+use crate::simd::dispatch;
 
 #[test]
 fn powers_are_close_to_the_platforms() {

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::scene::{Image, Sampler};
+use crate::simd::dispatch;
 use crate::simd::levels;
-use fearless_simd::dispatch;
 
 #[simd]
 fn sixteen<S: Simd>(simd: S, texture: &PreparedTexture<'_>, at: &[[f32; 16]; 6]) -> [[f32; 16]; 4] {

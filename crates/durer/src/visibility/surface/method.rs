@@ -163,6 +163,7 @@ pub fn render_with(
     framebuffer: &mut Framebuffer,
     t: &mut impl Tracer<Step>,
 ) -> crate::Result<()> {
+    input.work.begin("rows", input.view.height().into());
     match method {
         SurfaceMethod::ZBuffer => {
             let z_options = options.z_buffer(input);

@@ -7,7 +7,7 @@
 use crate::math::Vec4;
 use crate::shade::color::{encode_opaque_x16, encode_premultiplied, encode_rgba8};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::{Level, default_level};
+use crate::simd::{Level, default_level, dispatch};
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::visibility::surface::Background;
 use crate::visibility::surface::background::background_rows;
@@ -15,7 +15,7 @@ use crate::visibility::surface::input::SurfaceInput;
 use crate::visibility::surface::lit::{Lighting, Lit, opaque};
 use crate::visibility::surface::patch::Patch;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, dispatch, u32x16};
+use fearless_simd::{Simd, u32x16};
 use fearless_simd_macros::simd;
 
 /// What a picture with one surface per pixel is to have.

@@ -84,6 +84,7 @@ pub fn render(
     let mut layers = Layers::of(input);
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
+        input.work.advance(1);
         row.clear();
         let item = |triangle: u32| input.triangles[triangle as usize].item;
         let active = list.advance(y, |a| t.step(|| Step::Enter { item: item(a.triangle) }));

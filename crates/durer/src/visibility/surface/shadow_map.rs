@@ -189,7 +189,9 @@ fn depths(
         let (masked, mut lit) = (Masked::new(&input), Lit::new(lighting));
         let mut list = ActiveList::new(&input.triangles, view.width(), view.height());
         let mut row = DepthRow::new(view.width());
+        work.begin("rows of shadow maps", view.height().into());
         for y in (0..view.height()).take_while(|_| !work.is_stopped()) {
+            work.advance(1);
             row.clear();
             for a in list.advance(y as i32, |_| ()) {
                 masked.enter(&mut row, a.triangle, [a.x0, a.x1], y as i32, &mut lit, |_, _| ());

@@ -123,6 +123,7 @@ pub fn render(
     let mut layers = Layers::of(input);
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
         t.step(|| Step::Row { y });
+        input.work.advance(1);
         line.y = y;
         line.row.clear();
         let active = list.advance(y, |_| ());

@@ -398,6 +398,7 @@ fn hide(
         covers_of(line, occluders, whole, page.touching, !options.hidden, met, covers);
     };
     let work = options.work.part();
+    work.begin("lines", jobs.len() as u64);
     let hide = |range: Range<usize>| {
         let (mut pieces, mut spans, mut covers) = (Vec::new(), Vec::new(), Vec::new());
         let mut met = new_met();
@@ -408,6 +409,7 @@ fn hide(
             covers_of(&line, &mut met, &mut covers);
             cut(line.piece(), &covers, line.fold, options.hidden, &mut spans, &mut pieces);
         }
+        work.advance(1);
         // There for a while in parts and as a whole.
         work.keep_or_stop("hidden lines", 2 * (pieces.len() * size_of::<Piece>()) as u64);
         pieces

@@ -95,8 +95,8 @@ impl Areas {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simd::dispatch;
     use crate::simd::levels;
-    use fearless_simd::dispatch;
 
     /// The inside lies right of the first edge and left of the second.
     const LEFT: Lanes = [2.25, 21.0, f32::INFINITY, f32::INFINITY];

@@ -29,7 +29,7 @@ use crate::math::Vec4;
 use crate::raster::fixed::HALF_PIXEL;
 use crate::shade::color::premultiply;
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::Level;
+use crate::simd::{Level, dispatch};
 use crate::target::Framebuffer;
 use crate::trace::Tracer;
 use crate::visibility::surface::Background;
@@ -41,7 +41,7 @@ use crate::visibility::surface::nearest::{DepthRow, Masked};
 use crate::visibility::surface::picture::{self, Picture};
 use crate::visibility::surface::setup::Coverage;
 use faces::Faces;
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
 use fearless_simd_macros::simd;
 use fragment::{Fragment, Pool};
 use mask::MaskTable;
@@ -175,6 +175,7 @@ pub fn render(
         pixel: Pixel::default(),
     };
     for y in (0..height as i32).take_while(|_| !input.work.is_stopped()) {
+        input.work.advance(1);
         rows.faces.advance(y);
         rows.row(y, &mut picture, t);
         if let Some(centers) = &mut centers {

@@ -18,10 +18,9 @@ mod planes;
 use crate::info::{Class, Info};
 use crate::parallel;
 use crate::shade::color::{decode_srgb8, encode_srgb8};
-use crate::simd::Level;
+use crate::simd::{Level, dispatch};
 use crate::target::Pixels;
 use crate::view::View;
-use fearless_simd::dispatch;
 use horizon::{Surroundings, light_of_row, mean_of_row};
 use planes::Planes;
 

@@ -8,12 +8,12 @@ use crate::shade::color::encode_srgb8;
 use crate::shade::environment::Mirrored;
 use crate::shade::studio::Studio;
 use crate::shade::tone::Tone;
-use crate::simd::levels;
+use crate::simd::{dispatch, levels};
 use crate::target::NO_ITEM;
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::runs;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, dispatch, u32x16};
+use fearless_simd::{Simd, u32x16};
 
 /// Where the eye is.
 const EYE: DVec3 = DVec3::new(0.3, 0.2, 4.0);

@@ -232,6 +232,7 @@ impl Caster<'_> {
         if self.input.work.is_stopped() {
             return band;
         }
+        self.input.work.advance((bottom - top) as u64);
         for at in (top..bottom).flat_map(|y| (0..columns).map(move |x| [x, y])) {
             let center = eye.cast(at, [0; 2], &mut band.steps);
             band.hits.extend(eye.nearest(center).map(|hit| (at, hit)));

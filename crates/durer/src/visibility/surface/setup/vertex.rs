@@ -3,10 +3,10 @@
 use crate::clip::volume::{self, Borders, ClipVertex};
 use crate::math::{DMat4, DVec2, Vec3};
 use crate::raster::fixed::{GUARD_BAND, SUBPIXELS, snap};
-use crate::simd::Level;
+use crate::simd::{Level, dispatch};
 use crate::visibility::surface::gather::{MAGIC, low_bits, narrowed, transpose, widened};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, dispatch, f32x8, u32x8};
+use fearless_simd::{Simd, f32x8, u32x8};
 use fearless_simd_macros::simd;
 
 /// Bits of [`ScreenVertex::code`]: beyond which border of the view volume a vertex lies.

@@ -11,12 +11,12 @@ mod tests;
 use crate::math::{DMat3, DMat4, Mat3, Vec3};
 use crate::raster::fixed::SUBPIXELS;
 use crate::scene::{Mesh, Projection, Scene, Topology};
-use crate::simd::Level;
+use crate::simd::{Level, dispatch};
 use crate::view::View;
 use crate::visibility::surface::attributes::VisibleTriangle;
 use crate::visibility::surface::normal_plane::NormalPlane;
 use crate::visibility::surface::setup::Run;
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
 use prepare::{normal_planes, prepare, prepare_normals};
 
 pub use prepare::NormalPlanes;

@@ -164,6 +164,7 @@ fn anti_aliased(
     let mut lit = Lit::new(lighting);
     for top in (0..y1).step_by(BAND as usize).take_while(|_| !input.work.is_stopped()) {
         let bottom = y1.min(top + BAND);
+        input.work.advance((bottom - top) as u64);
         let window = Window { x0: 0, y0: top * n, x1: x1 * n, y1: bottom * n };
         let visible = solve(input, lighting, options.division, grid, window, t);
         for (x, y) in (top..bottom).flat_map(|y| (0..x1).map(move |x| (x, y))) {

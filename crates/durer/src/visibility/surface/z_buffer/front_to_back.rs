@@ -100,11 +100,11 @@ mod tests {
     use crate::scene::{Camera, Instance, Mesh, Projection, Scene};
     use crate::shade::{PreparedLights, PreparedMaterials};
     use crate::simd::Level;
+    use crate::simd::dispatch;
     use crate::view::View;
     use crate::visibility::surface::lit::Lighting;
     use crate::visibility::surface::setup::{Filter, runs};
     use crate::visibility::surface::{Cull, Samples};
-    use fearless_simd::dispatch;
 
     /// Far triangles, then a wall of many small ones before most of them; on the right half of the last
     /// rows nothing hides them.

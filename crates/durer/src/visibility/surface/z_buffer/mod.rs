@@ -24,7 +24,8 @@ use crate::math::Vec4;
 use crate::scene::Scene;
 use crate::shade::color::{encode_premultiplied, premultiply};
 use crate::shade::{PreparedLights, PreparedMaterials, Shading};
-use crate::simd::{Level, default_level};
+use crate::simd::{Level, default_level, dispatch};
+use crate::stopwatch::Stopwatch;
 use crate::target::{Framebuffer, NO_ITEM};
 use crate::view::View;
 use crate::visibility::surface::background::background_rows;
@@ -35,7 +36,6 @@ use crate::work::{Charge, Work};
 use band::{Band, bands};
 use bins::{Bins, TileGrid, jobs};
 use blended::{Blended, light_blended};
-use fearless_simd::dispatch;
 use front_to_back::FrontToBack;
 use micropolygon::Fragments;
 use rasterize::{AllPass, FragmentTest, rasterize};
@@ -111,7 +111,7 @@ pub fn render(
     options: &Options,
     framebuffer: &mut Framebuffer,
 ) -> crate::Result<Report> {
-    let start = std::time::Instant::now();
+    let start = Stopwatch::start();
     let runs = runs(scene)?;
     let reach = options.samples.reach();
     let filter = Filter { cull: options.cull, sample_reach: reach, marks: options.marks };
@@ -126,7 +126,7 @@ pub fn render(
         reach,
         level: options.level,
     };
-    let prepared = start.elapsed().as_secs_f64();
+    let prepared = start.seconds();
     let make = bins::Scratch::default;
     let early = early_samples(options.samples, framebuffer);
     let work = &options.work;
@@ -145,20 +145,23 @@ pub fn render(
     for bin in &bins {
         report.counts += bin.counts;
     }
-    report.geometry_seconds = start.elapsed().as_secs_f64() - prepared;
+    report.geometry_seconds = start.seconds() - prepared;
 
     let triangle_count = scene.triangle_count() as u32;
     let occupied = bins::occupied(&bins, &fragments, view);
     let (bins, fragments) = (bins.as_slice(), fragments.as_slice());
     let frame = Frame { view, options, lighting, bins, fragments, occupied, triangle_count };
     let scratch = || Scratch::new(&frame);
-    crate::parallel::map_with(bands(framebuffer), scratch, |scratch, band| {
+    let bands = bands(framebuffer);
+    work.begin("rows of tiles", bands.len() as u64);
+    crate::parallel::map_with(bands, scratch, |scratch, band| {
         if !work.is_stopped() {
             frame.render_band(band, scratch);
+            work.advance(1);
         }
     });
     work.check()?;
-    report.raster_seconds = start.elapsed().as_secs_f64() - report.geometry_seconds;
+    report.raster_seconds = start.seconds() - report.geometry_seconds;
     Ok(report)
 }
 

@@ -10,6 +10,7 @@ use super::rasterize::{AllPass, rasterize};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS};
 use crate::scene::Scene;
 use crate::simd::Level;
+use crate::simd::dispatch;
 use crate::target::NO_ITEM;
 use crate::view::View;
 use crate::visibility::surface::Samples;
@@ -18,7 +19,7 @@ use crate::visibility::surface::setup::{
 };
 use crate::work::{Charge, Work};
 use crate::{Error, Result};
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
 use std::ops::Range;
 
 /// The most items of all pieces: of equal depths the lower item wins, which is decided by the sign of a difference.

@@ -5,12 +5,11 @@ use super::*;
 use crate::math::{DMat4, DVec3, Vec3};
 use crate::scene::{AlphaMode, Camera, Instance, Material, Mesh, Part, Projection, Scene};
 use crate::shade::{PreparedLights, PreparedMaterials};
-use crate::simd::levels;
+use crate::simd::{dispatch, levels};
 use crate::view::View;
 use crate::visibility::surface::lit::Lighting;
 use crate::visibility::surface::setup::{Coverage, Filter, runs};
 use crate::visibility::surface::{Cull, Samples};
-use fearless_simd::dispatch;
 
 /// Sheets one behind another, each of many triangles that share their edges; before and between them some that
 /// cross, and something opaque.
