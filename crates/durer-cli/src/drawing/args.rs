@@ -28,6 +28,10 @@ pub struct DrawingArgs {
     ///
     /// With TO, e.g. 40,25, a crease that has begun goes on, though its edges get blunter, as long as they
     /// turn by more than TO degrees and it goes straight on: for sculpted models, whose edges fade.
+    ///
+    /// Without an angle, and with --smooth, what is beside an edge decides, too: edges from 3 degrees on are creases
+    /// between flat faces that bend no further, and a few edges of up to 60 degrees that begin and end within a round
+    /// part are none. Any other angle than 40 decides alone.
     #[arg(long, value_name = "FROM[,TO]", allow_hyphen_values = true, default_value = "40", value_parser = crease)]
     pub crease: Crease,
     /// Which lines are drawn, joined by commas [default: all but tangent, wire and shadow]
@@ -242,6 +246,12 @@ pub struct Crease {
     pub from: f64,
     /// Creases go on down to here.
     pub to: f64,
+}
+
+impl Default for Crease {
+    fn default() -> Self {
+        Self { from: 40.0, to: 40.0 }
+    }
 }
 
 fn crease(text: &str) -> Result<Crease, String> {

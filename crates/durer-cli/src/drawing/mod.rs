@@ -23,7 +23,7 @@ use crate::shape;
 use crate::values::Size;
 pub use annotations::Annotated;
 use annotations::{FeatureReport, Look};
-use args::{Fill, Hatch, Hidden, Merge, Smooth};
+use args::{Crease, Fill, Hatch, Hidden, Merge, Smooth};
 use callouts::Callouts;
 pub use check::check;
 use durer::math::{DVec2, Vec4};
@@ -356,6 +356,7 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
     });
     let all = geojson || drawing.stubs == Some(0.0);
     let default = hidden_line::Options::default();
+    let smooth = drawing.smooth.unwrap_or(if all { Smooth::Off } else { Smooth::Auto });
     DrawOptions {
         work: args.running.work.clone(),
         style,
@@ -368,7 +369,8 @@ fn draw_options(args: &RenderArgs, kind: Kind, style: DrawStyle, camera: Camera)
             // Programs get all there is; on paper hidden lines may be left out from the start.
             hidden: drawing.hidden != Hidden::Drop || geojson,
             intersections: drawing.intersections.into(),
-            smooth: drawing.smooth.unwrap_or(if all { Smooth::Off } else { Smooth::Auto }).into(),
+            neighbours: smooth != Smooth::Off && drawing.crease == Crease::default(),
+            smooth: smooth.into(),
             weld: drawing.weld,
             stubs: drawing.stubs.unwrap_or(if geojson { 0.0 } else { STUBS }) / 100.0,
             beneath: drawing.beneath.unwrap_or(if all { 0.0 } else { BENEATH }) / 100.0,

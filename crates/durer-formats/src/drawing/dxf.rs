@@ -3,7 +3,7 @@
 //!
 //! Model space in millimetres, y up, the origin in the lower left corner of the sheet. Each layer of the
 //! sheet is one with a colour, a line weight and a line type, CONTINUOUS, HIDDEN or CENTER; polylines are
-//! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, text is TEXT, dimensions are
+//! LWPOLYLINE, curves are LINE, ARC, CIRCLE, ELLIPSE and SPLINE, or LWPOLYLINE too, dots are CIRCLE, text is TEXT, dimensions are
 //! DIMENSION with their blocks, areas are HATCH with solid fill.
 //!
 //! Written from Autodesk's *DXF Reference* (2004).
@@ -387,7 +387,9 @@ pub(super) fn entity(
             let to = Target { layer, pen: sheet.pens.get(*pen) };
             match &points[..] {
                 [a, b] if !closed && strokes == DxfStrokes::Pieces => {
-                    dxf_curve::line(tags, &to, *a, *b);
+                    if !dxf_curve::dot(tags, &to, *a, *b) {
+                        dxf_curve::line(tags, &to, *a, *b);
+                    }
                 }
                 _ => {
                     let straight: Vec<(DVec2, f64)> = points.iter().map(|p| (*p, 0.0)).collect();

@@ -89,6 +89,21 @@ pub(super) fn line(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) {
     tags.class("AcDbLine").point3(10, start).point3(11, end);
 }
 
+/// A stroke shorter than this part of its width is a dot.
+const DOT: f64 = 0.05;
+
+/// Writes a stroke that is a dot as a circle of the pen's width, and returns whether it is one. The circle's own line is
+/// as thin as can be: it is what the dot covers.
+pub(super) fn dot(tags: &mut Tags, to: &Target<'_>, start: DVec2, end: DVec2) -> bool {
+    let Some(pen) = to.pen.filter(|pen| start.distance(end) < DOT * pen.width) else {
+        return false;
+    };
+    begin(tags, "CIRCLE", to.layer, None);
+    tags.int(370, 0).class("AcDbCircle");
+    tags.point3(10, (start + end) / 2.0).real(40, pen.width / 2.0);
+    true
+}
+
 /// Writes a polyline of points, each with the bulge of the arc that it begins.
 pub(super) fn polyline(tags: &mut Tags, to: &Target<'_>, points: &[(DVec2, f64)], closed: bool) {
     begin(tags, "LWPOLYLINE", to.layer, to.pen);

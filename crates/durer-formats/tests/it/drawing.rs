@@ -188,6 +188,29 @@ fn dxf_has_pairs_unique_handles_and_declared_layers() {
 }
 
 #[test]
+fn dots_are_circles_in_dxf() {
+    let dot = |x: f64| vec![DVec2::new(x, 0.0), DVec2::new(x + 0.01, 0.0)];
+    let dash = vec![DVec2::new(0.0, 9.0), DVec2::new(0.1, 9.0)];
+    let strokes = [dot(-20.0), dot(20.0), dash];
+    let lines = strokes.map(|points| line(LineClass::Stipple, 0, points, false)).to_vec();
+    let options = Options {
+        page: "A4".parse().unwrap(),
+        scale: "1:1".parse().unwrap(),
+        ..Options::default()
+    };
+    let drawing = Drawing { lines, ..Drawing::default() };
+    let sheet = lay_out(&drawing, "dots", &options).unwrap().sheet;
+    let text = text_of(|out| write_dxf(out, &sheet, DxfStrokes::Pieces));
+    let all: Vec<&str> = text.lines().collect();
+    let count = |name: &str| all.windows(2).filter(|w| w == &["  0", name]).count();
+    assert_eq!((count("CIRCLE"), count("LINE")), (2, 1));
+    // As wide as the pen for dots: the radius follows the centre.
+    let radii: Vec<&str> =
+        all.windows(2).filter(|w| w[0] == " 40" && w[1] == "0.25").map(|w| w[1]).collect();
+    assert_eq!(radii.len(), 2);
+}
+
+#[test]
 fn hpgl_draws_each_pen_once_and_stays_on_the_paper() {
     let sheet = laid(Hidden::Dashed).sheet;
     let text = text_of(|out| write_hpgl(out, &sheet));

@@ -100,7 +100,15 @@ fn places_of_visible_and_hidden_lines_of_polyhedra() {
 fn lines_go_through_all_corners() {
     let Some(folder) = data::folder() else { return };
     let scene = data::read_model(&folder.join("cases/drawing/pillars_dropped_vertex.obj")).scene;
-    for (x, y, z) in [(1.0, -1.7, 0.9), (0.3, -1.0, 0.5), (2.0, 1.0, 1.5), (1.0, 0.2, -0.8)] {
+    let named = [(1.0, -1.7, 0.9), (0.3, -1.0, 0.5), (2.0, 1.0, 1.5), (1.0, 0.2, -0.8)];
+    // And a spiral around the model, from above to below.
+    let all_around = (0..120).map(|i| {
+        let (s, c) = (2.4 * f64::from(i)).sin_cos();
+        let z = 0.98 - 1.96 * f64::from(i) / 119.0;
+        let r = (1.0 - z * z).sqrt();
+        (r * c, r * s, z)
+    });
+    for (x, y, z) in named.into_iter().chain(all_around) {
         let to_eye = DVec3::new(x, y, z).normalize();
         let camera = Camera {
             eye: to_eye * 100.0,

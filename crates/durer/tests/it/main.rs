@@ -18,6 +18,7 @@ mod conformance_overlay;
 mod conformance_surface_methods;
 mod conformance_visible_surface;
 mod coverage;
+mod crease_steps;
 mod curve_fit;
 mod curve_path;
 mod curve_stroke_font;

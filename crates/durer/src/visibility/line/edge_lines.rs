@@ -2,6 +2,7 @@
 
 use super::facing::{Facing, Pair};
 use super::smooth_silhouette::Whole;
+use super::steps::Steps;
 use super::tangent::Tangents;
 use crate::target::drawing::LineClass;
 use crate::visibility::object::{Bodies, Edges, Faces, Side};
@@ -112,6 +113,8 @@ pub(super) struct Rules<'a> {
     pub classes: ClassSet,
     /// Tangent edges, where they are wanted, and what the triangles are parts of.
     pub tangents: Option<&'a Tangents>,
+    /// What is known of edges besides what they turn by, if anything is.
+    pub steps: Option<&'a Steps>,
     pub whole: Whole<'a>,
     /// Cosine of the crease angle.
     pub crease: f32,
@@ -199,6 +202,7 @@ impl Rules<'_> {
     /// The same between two triangles of one surface.
     fn class_of_two(&self, pair: Pair) -> (Option<LineClass>, Sharpness) {
         let (turns, sharpness) = self.turn(pair);
+        let sharpness = self.known(pair, sharpness);
         let outline = turns.then_some(LineClass::Silhouette).and_then(|c| self.wanted(c));
         let crease =
             |least| (sharpness == least).then_some(LineClass::Crease).and_then(|c| self.wanted(c));
@@ -219,8 +223,26 @@ impl Rules<'_> {
 
     fn is_tangent(&self, pair: Pair) -> bool {
         let Some(tangents) = self.tangents else { return false };
+        self.edge_of_whole(pair).is_some_and(|ends| tangents.contains(ends))
+    }
+
+    /// The edge between the triangles that a pair are parts of, the smaller vertex first, if it is one.
+    fn edge_of_whole(&self, pair: Pair) -> Option<[u32; 2]> {
         let [a, b] = pair.items.map(|item| self.whole.triangle(self.faces, item));
-        a.zip(b).is_some_and(|(a, b)| tangents.contains([a, b]))
+        let (a, b) = a.zip(b)?;
+        let mut common = a.into_iter().filter(|v| b.contains(v));
+        let (p, q) = common.next().zip(common.next())?;
+        common.next().is_none().then_some([p.min(q), p.max(q)])
+    }
+
+    /// How sharp an edge is by what is around it, where that says more than what it turns by.
+    fn known(&self, pair: Pair, sharpness: Sharpness) -> Sharpness {
+        let Some(steps) = self.steps else { return sharpness };
+        match self.edge_of_whole(pair).and_then(|ends| steps.is_crease(ends)) {
+            Some(true) => Sharpness::Sharp,
+            Some(false) => Sharpness::Blunt,
+            None => sharpness,
+        }
     }
 
     /// Whether some of the triangles are of a cap and some are not.

@@ -18,6 +18,7 @@ mod roundness;
 mod simplify;
 mod smooth_silhouette;
 mod smooth_surface;
+mod steps;
 mod stubs;
 mod table;
 mod tangent;

@@ -35,13 +35,9 @@ impl Tangents {
         Self(parallel::map(jobs, of).concat())
     }
 
-    /// Whether the edge between two triangles is one.
-    pub fn contains(&self, [a, b]: [[u32; 3]; 2]) -> bool {
-        let mut common = a.into_iter().filter(|v| b.contains(v));
-        let (Some(p), Some(q), None) = (common.next(), common.next(), common.next()) else {
-            return false;
-        };
-        self.0.binary_search(&[p.min(q), p.max(q)]).is_ok()
+    /// Whether an edge is one.
+    pub fn contains(&self, ends: [u32; 2]) -> bool {
+        self.0.binary_search(&ends).is_ok()
     }
 }
 

@@ -16,8 +16,22 @@ use crate::visibility::object::{Edges, Faces};
 /// angle θ along that side is up to θL/8 away from it: lower triangles may be turned against it by more than θ.
 const SLIVER: f64 = 0.125;
 
+/// Lower than this part of their longest side triangles may still be turned against the surface by half of the crease angle.
+const LOW: f64 = 0.2;
+
 /// How many slivers may lie beside each other; more are a strip of a round part, and turned as that is.
 const SLIVERS: usize = 4;
+
+/// Faces beside a sliver lie in one surface with it if they are turned against each other, and against that surface, by
+/// less than 45°, or half more than the crease angle where that is less: they may be turned a little themselves, where
+/// a triangulation has slivers.
+const BESIDE: f64 = std::f64::consts::FRAC_PI_4;
+
+/// A sliver reaches out of its surface by at most so many times what its longest side does, which is a chord.
+const SAGITTAS: f64 = 3.0;
+
+/// The part of a sliver's turn that faces beside it are turned by at most: else it is no more turned than they are.
+const AS_MUCH: f64 = 0.8;
 
 /// How many times as sharp a round part may bend at one side of a facet as at another. Triangulations are irregular, and
 /// springs bend that much more around their wire than along it.
@@ -30,19 +44,27 @@ const FACET: usize = 4;
 const HUB: usize = 256;
 
 /// Twice the area of a triangle along its normal, and whether it is a sliver.
-pub(super) fn direction([a, b, c]: [DVec3; 3]) -> (DVec3, bool) {
+pub(super) fn direction(corners: [DVec3; 3]) -> (DVec3, bool) {
+    let (across, lowness) = lowness(corners);
+    (across, lowness < SLIVER)
+}
+
+/// Twice the area of a triangle along its normal, and its height as a part of its longest side.
+fn lowness([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let across = (b - a).cross(c - a);
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-    (across, across.length() < longest * SLIVER)
+    (across, across.length() / longest)
 }
 
 /// The directions of faces, slivers as the surface goes.
 pub(super) struct Directions<'a> {
     faces: &'a Faces,
     edges: &'a Edges,
-    /// The cosine of the crease angle, and of a quarter of it.
+    /// The cosine of the crease angle, of a half and a quarter of it, and of what faces beside a sliver may be turned by.
     crease: f64,
+    half: f64,
     quarter: f64,
+    beside: f64,
     /// The slivers that are turned against the surface that they lie in, with its normal, in item order.
     pub turned: Vec<(u32, DVec3)>,
 }
@@ -56,13 +78,15 @@ impl<'a> Directions<'a> {
             let (Some(t), Some(corners)) = (faces.triangle(item), faces.corners(item)) else {
                 continue;
             };
-            match direction(corners) {
-                (_, true) => slivers.push(item),
-                (across, _) => t.iter().for_each(|v| around[*v as usize] += across),
+            let (across, lowness) = lowness(corners);
+            t.iter().for_each(|v| around[*v as usize] += across);
+            if lowness < LOW {
+                slivers.push(item);
             }
         }
-        let (crease, quarter) = (libm::cos(crease), libm::cos(crease / 4.0));
-        let mut found = Self { faces, edges, crease, quarter, turned: Vec::new() };
+        let beside = libm::cos(crease.max(BESIDE.min(crease * 1.5)));
+        let [crease, half, quarter] = [1.0, 0.5, 0.25].map(|part| libm::cos(crease * part));
+        let mut found = Self { faces, edges, crease, half, quarter, beside, turned: Vec::new() };
         let of_surface = |item| Some((item, found.of_surface(item, &around)?));
         found.turned = slivers.into_iter().filter_map(of_surface).collect();
         found
@@ -76,29 +100,32 @@ impl<'a> Directions<'a> {
         self.faces.corners(item).map_or(DVec3::ZERO, |c| direction(c).0.normalize_or_zero())
     }
 
-    fn goes_on(&self, a: DVec3, b: DVec3) -> bool {
-        a.normalize_or_zero().dot(b.normalize_or_zero()) >= self.crease
-    }
-
     /// The direction of the surface at a sliver that lies in it but is turned against the faces beside it. `around`
-    /// has the sum of the faces around each vertex that are no slivers.
+    /// has the sum of the faces around each vertex.
     fn of_surface(&self, item: u32, around: &[DVec3]) -> Option<DVec3> {
         let [_, second, first] = self.sides_by_length(item)?;
-        let beside =
-            |ends| Some(direction(self.faces.corners(self.beyond_slivers(item, ends)?)?).0);
-        let (a, b) = (beside(first)?, beside(second)?);
-        let across = direction(self.faces.corners(item)?).0;
-        if !self.goes_on(a, b) || self.goes_on(a, across) && self.goes_on(b, across) {
-            return None;
-        }
         let ends = first.map(|v| around[v as usize].normalize_or_zero());
         let surface = (ends[0] + ends[1]).try_normalize()?;
-        let beside = self.goes_on(a, surface) && self.goes_on(b, surface);
+        let across = direction(self.faces.corners(item)?).0;
+        let own = across.try_normalize()?;
+        if own.dot(surface) >= self.half {
+            return None;
+        }
+        let beside = |ends| {
+            let corners = self.faces.corners(self.beyond_slivers(item, ends)?)?;
+            direction(corners).0.try_normalize()
+        };
+        let (a, b) = (beside(first)?, beside(second)?);
+        if [a.dot(b), a.dot(surface), b.dot(surface)].into_iter().any(|c| c < self.beside) {
+            return None;
+        }
+        let turned = a.distance(surface).max(b.distance(surface));
         // A riser between two treads is no part of them: these do not bend.
         let [p, q] = first.map(|v| self.faces.points()[v as usize]);
         let sagitta = (q - p).dot(ends[1] - ends[0]).abs() / 8.0;
         let aside = across.cross(surface).length() / p.distance(q);
-        (beside && aside <= 2.0 * sagitta).then_some(surface)
+        (turned <= AS_MUCH * own.distance(surface) && aside <= SAGITTAS * sagitta)
+            .then_some(surface)
     }
 
     /// The sides of a triangle, the shortest first.
@@ -130,8 +157,13 @@ impl<'a> Directions<'a> {
         if 2.0 * cosine * cosine - 1.0 >= self.crease || cosine < self.crease {
             return cosine < self.crease;
         }
-        let least = self.bend(ends, [a, b]) / (UNEVEN * UNEVEN);
-        !(self.is_facet(ends, a, least) || self.is_facet(ends, b, least))
+        !self.is_round(ends, [a, b])
+    }
+
+    /// Whether the surface is round at an edge between two triangles: it bends again beyond one of them.
+    pub fn is_round(&self, ends: [u32; 2], items: [u32; 2]) -> bool {
+        let least = self.bend(ends, items) / (UNEVEN * UNEVEN);
+        items.into_iter().any(|item| self.is_facet(ends, item, least))
     }
 
     /// Half the square of the curvature at an edge between two triangles: of the angle over their mean height.
@@ -151,7 +183,20 @@ impl<'a> Directions<'a> {
     /// How wide the flat face is that a triangle is a part of, straight across from the edge `ends`, as far as that is
     /// looked at, and how much the surface bends that way at its other end: the turn over the mean width of the faces there,
     /// if it is round.
-    pub fn next_bend(&self, mut ends: [u32; 2], mut item: u32) -> (f64, Option<f64>) {
+    pub fn next_bend(&self, ends: [u32; 2], item: u32) -> (f64, Option<f64>) {
+        self.next_turn(ends, item, FLAT)
+    }
+
+    /// Whether the surface bends on at both sides of an edge between two triangles, by half of what it turns by there.
+    pub fn bends_on(&self, ends: [u32; 2], items: [u32; 2]) -> bool {
+        let cosine = self.of(items[0]).dot(self.of(items[1]));
+        // cos(a / 2).
+        let half = ((1.0 + cosine.max(-1.0)) / 2.0).sqrt();
+        items.into_iter().all(|item| self.next_turn(ends, item, half).1.is_some())
+    }
+
+    /// The same as [`Self::next_bend`] as far as faces are turned by less than an angle, which is given by its cosine.
+    fn next_turn(&self, mut ends: [u32; 2], mut item: u32, until: f64) -> (f64, Option<f64>) {
         let [p, q] = ends.map(|v| self.faces.points()[v as usize]);
         let own = self.of(item);
         let (mut at, mut far) = ((p + q) / 2.0, 0.0);
@@ -161,7 +206,7 @@ impl<'a> Directions<'a> {
             far += at.distance(exit);
             let Some(beside) = self.edges.across(side, item) else { return (far, None) };
             let cosine = own.dot(self.of(beside));
-            if cosine < FLAT {
+            if cosine < until {
                 let width = (far + self.height(side, beside)) / 2.0;
                 let turn = self.of(beside).dot(along).abs();
                 return (far, (cosine >= self.crease).then(|| turn / width));

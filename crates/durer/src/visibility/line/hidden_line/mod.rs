@@ -39,6 +39,7 @@ use super::overlap::Piece;
 use super::page::{GridPoint, Page, Projected, Vertex, arranged, on_page};
 use super::roundness::Smooth;
 use super::smooth_silhouette::{Whole, divided};
+use super::steps::Steps;
 use super::tangent::Tangents;
 use crate::info::{Class, Info};
 use crate::math::DVec2;
@@ -76,6 +77,9 @@ pub struct Options {
     /// straight on; radians. `crease` or more, as by default, ends it where it is no crease any more. Lower
     /// angles suit sculpted surfaces; on coarse meshes of round ones they show facets.
     pub crease_end: f64,
+    /// Whether what is beside an edge may decide against `crease`: edges from 3° on between flat faces that bend
+    /// no further are creases, too, and few edges of up to 60° that begin and end within round faces are none.
+    pub neighbours: bool,
     /// Where penetrating faces are looked for, if [`LineClass::Intersection`] is among the classes.
     pub intersections: Intersections,
     /// The material of a section's caps ([`crate::view::section::Section::cap_material`]): where they
@@ -121,6 +125,7 @@ impl Default for Options {
             classes: ClassSet::default(),
             crease: 40.0_f64.to_radians(),
             crease_end: std::f64::consts::PI,
+            neighbours: false,
             intersections: Intersections::default(),
             cap_material: None,
             smooth: Smooth::Off,
@@ -242,39 +247,49 @@ pub fn draw(
     let count = edges.count();
     let wanted = options.classes.contains(LineClass::Tangent);
     let tangents = wanted.then(|| Tangents::new(&faces, &edges, options.crease));
-    let tangents = tangents.as_ref();
+    let steps = options.neighbours.then(|| Steps::new(&faces, &edges, options.crease));
+    let known = Known {
+        whole: Whole(None),
+        tangents: tangents.as_ref(),
+        steps: steps.as_ref().filter(|s| !s.is_empty()),
+    };
     let round = options.smooth.items(&faces, &edges, options.crease);
     let found = if let Some(round) = round {
         let sharp = options.smooth.sharp_from(options.crease);
         let mut divided = divided(scene, faces, &edges, &plane, (&round, sharp));
         edges = divided.faces.take_edges();
-        let whole = Whole(Some(&divided));
-        on_page(&divided.faces, plane, |p| {
-            pieces(&divided.faces, edges, (whole, tangents), p, options, t)
-        })
+        let known = Known { whole: Whole(Some(&divided)), ..known };
+        on_page(&divided.faces, plane, |p| pieces(&divided.faces, edges, known, p, options, t))
     } else {
-        let whole = (Whole(None), tangents);
-        on_page(&faces, plane, |p| pieces(&faces, edges, whole, p, options, t))
+        on_page(&faces, plane, |p| pieces(&faces, edges, known, p, options, t))
     };
     options.work.check()?;
     let lines = arranged(found, options.how());
     Ok(Drawing { window, lines, edges: count, ..Drawing::default() })
 }
 
+/// What is known of faces and edges besides what they look like.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    whole: Whole<'a>,
+    tangents: Option<&'a Tangents>,
+    steps: Option<&'a Steps>,
+}
+
 /// What can be seen, or is hidden, of all lines.
 fn pieces(
     faces: &Faces,
     edges: Edges,
-    (whole, tangents): (Whole<'_>, Option<&Tangents>),
+    known: Known<'_>,
     projected: &Projected,
     options: &Options,
     t: &mut impl Tracer<Step>,
 ) -> Pieces {
     t.step(|| Step::Page(projected.page));
     let (bodies, edges) = Bodies::of_edges(faces, edges);
+    let whole = known.whole;
     let facing = Facing::new(faces, &bodies, &edges, projected, whole, options.tolerance);
-    let sources = (projected, whole, tangents);
-    let lines = Lines::new(faces, &bodies, edges, &facing, options, sources);
+    let lines = Lines::new(faces, &bodies, edges, &facing, options, (projected, known));
     let all = lines.some(0..lines.len()).map(|l| l.ends);
     let occluders = Occluders::new(faces, &bodies, &facing, projected, all);
     drop((bodies, facing));
@@ -301,8 +316,9 @@ impl<'a> Lines<'a> {
         edges: Edges,
         facing: &Facing,
         options: &Options,
-        (projected, whole, tangents): (&'a Projected, Whole<'a>, Option<&Tangents>),
+        (projected, known): (&'a Projected, Known<'a>),
     ) -> Self {
+        let Known { whole, tangents, steps } = known;
         let rules = Rules {
             faces,
             edges: &edges,
@@ -312,6 +328,7 @@ impl<'a> Lines<'a> {
             cap: options.cap_material.map(|m| material_number(Some(m))),
             classes: options.classes,
             tangents,
+            steps,
             whole,
             crease: libm::cos(options.crease) as f32,
             crease_end: libm::cos(options.crease_end.min(options.crease)) as f32,

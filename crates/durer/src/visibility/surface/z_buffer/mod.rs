@@ -128,7 +128,9 @@ pub fn render(
     };
     let prepared = start.seconds();
     let make = bins::Scratch::default;
-    let early = early_samples(options.samples, framebuffer);
+    let Framebuffer { depth, item, normal, .. } = &framebuffer;
+    let with_planes = depth.is_some() || item.is_some() || normal.is_some();
+    let early = early_samples(options.samples, with_planes);
     let work = &options.work;
     let (bins, mut scratch) = crate::parallel::map_and_keep(jobs(&runs), make, |scratch, job| {
         work.check()?;
@@ -167,9 +169,7 @@ pub fn render(
 
 /// Returns the samples at which small triangles are sampled while they are set up; none where there are too many, or
 /// where others are looked at too, as at pixels' centres for the planes besides colour.
-fn early_samples(samples: Samples, framebuffer: &Framebuffer) -> &'static [[i32; 2]] {
-    let Framebuffer { depth, item, normal, .. } = framebuffer;
-    let with_planes = depth.is_some() || item.is_some() || normal.is_some();
+fn early_samples(samples: Samples, with_planes: bool) -> &'static [[i32; 2]] {
     match samples {
         Samples::Four if with_planes => &[],
         Samples::One | Samples::Four => samples.offsets(),

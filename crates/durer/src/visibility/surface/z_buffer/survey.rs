@@ -5,6 +5,7 @@
 //! surfaces that are nowhere in front do not change it.
 
 use super::bins::{ByTile, STAGE, TileGrid, sort_by_tile};
+use super::early_samples;
 use super::micropolygon::{Fragments, MOST_TILES, Micropolygons};
 use super::rasterize::{AllPass, rasterize};
 use super::tile::{SamplePlane, TILE, TILE_PIXELS};
@@ -77,7 +78,8 @@ struct Binned {
 /// Takes triangles; small ones are sampled at once, where pixels have one sample, as in a picture.
 struct Taken<'f> {
     triangles: Vec<ScreenTriangle>,
-    small: Option<Micropolygons<'f>>,
+    early: &'static [[i32; 2]],
+    small: Micropolygons<'f>,
 }
 
 impl Sink for Taken<'_> {
@@ -87,8 +89,8 @@ impl Sink for Taken<'_> {
     }
 
     #[inline(always)]
-    fn takes_sampled(&self) -> bool {
-        self.small.is_some()
+    fn takes_sampled(&self) -> &'static [[i32; 2]] {
+        self.early
     }
 
     #[inline(always)]
@@ -99,9 +101,7 @@ impl Sink for Taken<'_> {
         which: u64,
         primitive: impl Fn(usize) -> (u32, [u32; 3]),
     ) {
-        if let Some(small) = &mut self.small {
-            small.add(simd, None, (sampled, which), primitive);
-        }
+        self.small.add(simd, None, (sampled, which), primitive);
     }
 }
 
@@ -182,15 +182,14 @@ impl Survey {
     ) -> Result<Binned> {
         let Options { filter, level, work, .. } = &self.options;
         let screen = TileGrid::new(self.view.width(), self.view.height());
-        let at_centers = filter.sample_reach == 0 && screen.count() <= MOST_TILES;
-        let small = at_centers.then(|| Micropolygons::new(screen, small));
-        let mut taken = Taken { triangles: Vec::with_capacity(range.len()), small };
+        let early = early_samples(self.options.samples, self.options.centers);
+        let early = if screen.count() <= MOST_TILES { early } else { &[] };
+        let small = Micropolygons::new(screen, early, small);
+        let mut taken = Taken { triangles: Vec::with_capacity(range.len()), early, small };
         let mut assembler = Assembler::new(piece, &self.view, *filter, *level);
         assembler.primitives(run, range, &mut taken);
-        let Taken { triangles, small } = taken;
-        if let Some(mut small) = small {
-            small.finish(*level, None);
-        }
+        let Taken { triangles, mut small, .. } = taken;
+        small.finish(*level, None);
         let mut touched = Vec::with_capacity(triangles.len());
         for (i, triangle) in triangles.iter().enumerate() {
             screen.touched(triangle, filter.sample_reach, |tile| touched.push((tile, i as u32)));
@@ -249,9 +248,9 @@ fn draw(
     let area = [tile, sides.map(|side| side.min(TILE))];
     let mut drawn = false;
     for fragments in small {
-        // There are some only where there is but one sample.
+        // There are none if pixels have more samples than a plane holds.
         if let [plane] = planes {
-            fragments.draw(plane, None, index);
+            dispatch!(level, simd => Fragments::draw(simd, fragments, plane, None, index));
         }
         drawn |= !fragments.nothing_in(index);
     }
