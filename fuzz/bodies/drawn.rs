@@ -7,7 +7,7 @@ use durer::scene::{Projection, Scene};
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::line::hidden_line;
-use durer::visibility::region::weiler_atherton::{Options, VisibleRegion, solve};
+use durer::visibility::region::planar_map::{Options, VisibleRegion, solve};
 
 /// Columns and rows of pixels of the pictures.
 const WIDTH: u32 = 80;

@@ -11,7 +11,7 @@ use durer_formats::{
 use std::io::{Cursor, Write};
 
 /// Small enough for many runs a second.
-fn options() -> ReadOptions {
+pub fn options() -> ReadOptions {
     let limits = Limits {
         primitives: 10_000,
         instances: 1_000,
@@ -95,7 +95,7 @@ fn check_ply(bytes: &[u8], resources: &dyn Resources) {
 }
 
 /// From an open file comes the same as from its bytes, which can be drawn.
-fn check_gltf(bytes: &[u8], resources: &dyn Resources) {
+pub fn check_gltf(bytes: &[u8], resources: &dyn Resources) {
     let model = gltf::read(bytes, resources, &options());
     let opened = gltf::read_file(Cursor::new(bytes), resources, &options());
     // As text, where NaN is NaN.
@@ -144,7 +144,7 @@ fn document(bytes: &[u8]) -> Result<(String, &[u8])> {
 }
 
 /// A GLB of a JSON text and a buffer.
-fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
+pub fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", " ".repeat(json.len().wrapping_neg() % 4));
     let word = |v: usize| (v as u32).to_le_bytes();
     let mut file = b"glTF\x02\0\0\0".to_vec();

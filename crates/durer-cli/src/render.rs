@@ -300,15 +300,13 @@ fn render_model(
     // What the model has kept of the budget goes with it.
     let part = args.running.work.part();
     let reading = input::read_options(&args.reading, &part);
-    if let Some(pieces) = input::in_pieces(job.model, &reading)
-        && !streamed::needs_whole(args)
-    {
-        let pieces = pieces?;
-        if streamed::suits(args, job, &*pieces.pieces) {
-            return streamed::render_model(args, job, pieces, messages, told);
-        }
+    let pieces = input::in_pieces(job.model, &reading).transpose()?;
+    let has_pieces = pieces.is_some();
+    if let Some(pieces) = pieces.filter(|p| streamed::suits(args, job, &*p.pieces)) {
+        return streamed::render_model(args, job, pieces, messages, told);
     }
-    let mut model = input::read(job.model, &reading)?;
+    let model = input::read(job.model, &reading);
+    let mut model = if has_pieces { model.map_err(streamed::hinted)? } else { model? };
     let read_seconds = start.elapsed().as_secs_f64();
     if let Some(axis) = args.view.up_axis {
         model.scene.up_axis = axis.into();

@@ -8,7 +8,7 @@ use durer::shade::PreparedLights;
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::view::projection::{FitOptions, Lens, ViewDirection, fit_box};
-use durer::visibility::region::{Options, draw, weiler_atherton};
+use durer::visibility::region::{Options, draw, planar_map};
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 
@@ -38,7 +38,7 @@ fn main() -> durer::Result<()> {
     let camera = fit_box(scene.bounds().as_ref(), &direction, &fit)?;
     let view = View::new(camera, 800, 800)?;
     let start = Instant::now();
-    let map = weiler_atherton::solve(&scene, &view, &Default::default(), &mut NoTrace)?;
+    let map = planar_map::solve(&scene, &view, &Default::default(), &mut NoTrace)?;
     let (triangles, seconds) = (scene.triangle_count(), start.elapsed().as_secs_f64());
     eprintln!("{triangles} triangles: {seconds:.3} s, {:?} V, E, F, C", map.counts());
     let drawing = draw(&scene, &view, &PreparedLights::of(&scene, &camera), &Options::default())?;

@@ -95,7 +95,7 @@ pub const ALGORITHMS: &[&Info] = &[
     &visibility::polygons::bsp::INFO,
     &visibility::polygons::watkins::INFO,
     &visibility::polygons::regions::INFO,
-    &visibility::region::weiler_atherton::INFO,
+    &visibility::region::planar_map::INFO,
     &visibility::region::SHADOWS,
     &visibility::line::hidden_line::INFO,
     &visibility::line::wireframe::INFO,

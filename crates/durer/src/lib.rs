@@ -112,13 +112,17 @@
 //! | [Warnock](visibility::surface::warnock) | dividing the window until it is simple |
 //! | [Rays](visibility::surface::ray) | casting a ray through each sample; shadows, mirrors and refraction too |
 //!
+//! **And as the papers have it?** [`visibility::polygons`]: the z-buffer's loop, the painter, BSP trees, Watkins' tables,
+//! Weiler and Atherton's cuts and Carpenter's shares on plane polygons, a file each, to be read beside the paper;
+//! [`visibility::line::horizon_curves`], [`clip::polygon::scan_beams`] and [`clip::polygon::sutherland_hodgman::by_borders`] likewise.
+//!
 //! **Which part of an edge?** [`visibility::line`]: [hidden lines](visibility::line::hidden_line) by
 //! quantitative invisibility, [wireframe](visibility::line::wireframe), as a
 //! [drawing](target::drawing). [`visibility::object`] has the welded faces, edges and bodies for solvers
 //! in object space.
 //!
 //! **What of each face can be seen, exactly?** [`visibility::region`]: regions of one colour with exact shadows,
-//! by [Weiler–Atherton](visibility::region::weiler_atherton); [hatching](visibility::region::hatch) for pens.
+//! by a [planar map](visibility::region::planar_map); [hatching](visibility::region::hatch) for pens.
 //!
 //! [Back-face removal](visibility::back_face) leaves out what looks away before anything else is done;
 //! [wireframe](visibility::wireframe) draws all edges, hidden ones too. [`pipeline::status`] tells why nothing

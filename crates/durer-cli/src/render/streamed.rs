@@ -28,7 +28,7 @@ use durer_formats::{Facts, Pieces};
 use std::time::Instant;
 
 /// Whether a picture needs all of the model at once.
-pub fn needs_whole(args: &RenderArgs) -> bool {
+fn needs_whole(args: &RenderArgs) -> bool {
     let asked = &args.picture.algorithm;
     let drawing = &args.drawing;
     drawing::is_wanted(args, super::wanted(args).kind)
@@ -45,7 +45,19 @@ pub fn needs_whole(args: &RenderArgs) -> bool {
         || asks_for_rays(args).is_some()
 }
 
-/// Whether light and shading let a picture be made of pieces.
+/// Adds to what is said of the budget that other pictures need less.
+pub fn hinted(failure: Failure) -> Failure {
+    match failure {
+        Failure::Data(message) if message.contains("--max-memory") => Failure::Data(
+            message
+                + "; a still picture of a given size by the z-buffer, without shadows, edges or a floor, is made in \
+                   pieces and needs less",
+        ),
+        other => other,
+    }
+}
+
+/// Whether pictures of a model can be made of its pieces.
 pub fn suits(args: &RenderArgs, job: &Job, pieces: &dyn Pieces) -> bool {
     let camera = Camera {
         eye: DVec3::Z,
@@ -56,11 +68,12 @@ pub fn suits(args: &RenderArgs, job: &Job, pieces: &dyn Pieces) -> bool {
         far: 1.0,
     };
     let method = Algorithm::Surfaces(SurfaceMethod::ZBuffer);
-    job.pictures.iter().all(|picture| {
+    let of_pieces = job.pictures.iter().all(|picture| {
         let shot = Shot::of(&args.picture, picture.frame);
         let options = picture_options(args, camera, picture, &shot, method);
         pipeline::check_pieces(&options, pieces.has_normals()).is_ok()
-    })
+    });
+    of_pieces && !needs_whole(args)
 }
 
 /// Makes the pictures of a model in pieces.
@@ -110,11 +123,6 @@ impl Streamed<'_> {
         Ok(self.facts.insert(facts).clone())
     }
 
-    /// Shows which pass over the file is being made, of three.
-    fn pass(&self, number: u32, what: &str) {
-        self.messages.progress.stage(|| format!("{}: {what}, pass {number} of 3", self.name));
-    }
-
     /// Renders one picture and writes its files; tells why nothing of the model is seen, where that is so.
     fn render_picture(
         &mut self,
@@ -145,12 +153,16 @@ impl Streamed<'_> {
         options: &RenderOptions,
         report: &mut PictureReport,
     ) -> Result<Seen, Failure> {
-        self.facts()?;
-        self.pass(2, "looking for what is seen");
+        let facts = self.facts()?;
+        let (all, mut done) = (facts.triangles + facts.points, 0);
+        let (messages, name) = (self.messages, self.name);
         let start = Instant::now();
         let mut survey = pipeline::survey(options).map_err(usage)?;
         let args = self.args;
         let passed = self.pieces.pieces.primitives(&mut |piece| {
+            let percent = 100 * done / all.max(1);
+            tell_pass(messages, name, 2, &format!("looking for what is seen, {percent} %"));
+            done += piece.meshes.iter().map(|mesh| mesh.primitive_count() as u64).sum::<u64>();
             dress(args, piece);
             survey.add(piece)
         });
@@ -166,7 +178,7 @@ impl Streamed<'_> {
         options: &RenderOptions,
         report: &mut PictureReport,
     ) -> Result<(Framebuffer, pipeline::Status), Failure> {
-        self.pass(3, "reading what is seen");
+        tell_pass(self.messages, self.name, 3, "reading what is seen");
         let only = self.pieces.pieces.only(&seen.items);
         let (mut scene, _charge) = only.map_err(|e| self.pieces.failure(&e))?;
         dress(self.args, &mut scene);
@@ -188,13 +200,18 @@ impl Streamed<'_> {
 
     /// Hands over all vertices, for the camera.
     fn vertices(&mut self, mut visit: impl FnMut(&Scene)) -> Result<(), Failure> {
-        self.pass(1, "reading for the view");
+        tell_pass(self.messages, self.name, 1, "reading for the view");
         let passed = self.pieces.pieces.vertices(&mut |piece| {
             visit(piece);
             Ok(())
         });
         passed.map_err(|e| self.pieces.failure(&e))
     }
+}
+
+/// Shows which pass over the file is being made.
+fn tell_pass(messages: &Messages, name: &str, number: u32, what: &str) {
+    messages.progress.stage(|| format!("{name}: pass {number} of 3, {what}"));
 }
 
 /// Gives a scene the materials that are asked for.

@@ -143,9 +143,14 @@ fn fill_rules_decide_what_crossing_rings_enclose() {
         "a.wkt",
         "POLYGON((0 0,4 0,4 4,0 4,0 0),(1 1,3 1,3 3,1 3,1 1))\nPOLYGON((0 0,4 4,4 0,0 4,0 0))",
     );
-    for (rule, areas) in
-        [("even-odd", 20.0), ("non-zero", 24.0), ("positive", 20.0), ("negative", 4.0)]
-    {
+    let rules = [
+        ("even-odd", 20.0),
+        ("non-zero", 24.0),
+        ("positive", 20.0),
+        ("negative", 4.0),
+        ("abs-geq-two", 4.0),
+    ];
+    for (rule, areas) in rules {
         let report = folder
             .must(&format!("clip a.wkt --window -9,-9,9,9 --fill-rule {rule} -o o.wkt -q --json"));
         assert_eq!(report.json()["out"]["area"], areas, "{rule}");

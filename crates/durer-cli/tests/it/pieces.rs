@@ -2,6 +2,7 @@
 
 use crate::harness::{Folder, Picture};
 use serde_json::Value;
+use std::f32::consts::{PI, TAU};
 
 /// Enough for a piece and a small picture, too little for the models.
 const BUDGET: &str = "--max-memory 1100k";
@@ -10,7 +11,7 @@ const BUDGET: &str = "--max-memory 1100k";
 fn triangles() -> Vec<[[f32; 3]; 3]> {
     let (rows, columns) = (60, 100);
     let at = |i: u32, j: u32| {
-        let (theta, phi) = (i as f32 * 3.14 / rows as f32, j as f32 * 6.28 / columns as f32);
+        let (theta, phi) = (i as f32 * PI / rows as f32, j as f32 * TAU / columns as f32);
         let radius = 2.0 + 0.3 * libm::sinf(9.0 * theta) * libm::sinf(11.0 * phi);
         let flat = radius * libm::sinf(theta);
         [30.0 + flat * libm::cosf(phi), flat * libm::sinf(phi), radius * libm::cosf(theta)]
@@ -141,7 +142,7 @@ fn compare(folder: &Folder, model: &str, options: &str) {
             assert!(folder.read(&a) == folder.read(&b), "{model} {options}: {a}");
             std::fs::remove_file(folder.path(&a)).unwrap();
         } else {
-            assert!(plane != "", "{model}");
+            assert!(!plane.is_empty(), "{model}");
         }
     }
     let told = |ended: &crate::harness::Ended| {
@@ -256,7 +257,7 @@ fn what_needs_all_of_the_model_is_refused() {
     {
         let output = if options.contains("turntable") { "a%d.png" } else { "a.png" };
         let command = format!("render a.stl -o {output} --size 32x32 --max-memory 600k {options}");
-        folder.run(&command).fails(1, "--max-memory allows");
+        folder.run(&command).fails(1, "--max-memory allows").fails(1, "is made in pieces");
     }
     assert_eq!(folder.names(), ["a.stl"]);
 }

@@ -29,7 +29,7 @@ const MOST_HEADER: u64 = 64 << 10;
 /// What a vertex or a face takes while its piece is made.
 const IN_PIECE: u64 = 80;
 
-/// What a triangle or a point takes on the screen.
+/// What a triangle takes on the screen; a point is two.
 const ON_SCREEN: u64 = 52;
 
 /// A piece ends early at so many corners of triangles, where polygons are large.
@@ -315,7 +315,7 @@ impl<R: Read + Seek> Pieces<R> {
 impl<R: Read + Seek> crate::Pieces for Pieces<R> {
     fn whole(&self) -> u64 {
         let faces = self.faces.as_deref().map(|(element, plan)| (element.count, plan.bytes()));
-        let (count, bytes) = faces.unwrap_or((self.count, 0));
+        let (count, bytes) = faces.unwrap_or((self.count, ON_SCREEN));
         let model = self.count.saturating_mul(self.row + self.plan.bytes());
         model.saturating_add(count.saturating_mul(13 + bytes + ON_SCREEN))
     }

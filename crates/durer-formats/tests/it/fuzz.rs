@@ -8,12 +8,19 @@ use std::path::Path;
 mod drawing;
 #[path = "../../../../fuzz/bodies/geo.rs"]
 mod geo;
+#[path = "../../../../fuzz/bodies/gltf_made.rs"]
+mod gltf_made;
 #[path = "../../../../fuzz/bodies/hdr.rs"]
 mod hdr;
 #[path = "../../../../fuzz/bodies/model.rs"]
 mod model;
 #[path = "../../../../fuzz/bodies/plot.rs"]
 mod plot;
+#[path = "../../../../fuzz/bodies/sheets.rs"]
+mod sheets;
+#[allow(dead_code)]
+#[path = "../../../../fuzz/bodies/surfaces.rs"]
+mod surfaces;
 #[path = "../../../../fuzz/bodies/words.rs"]
 mod words;
 
@@ -54,6 +61,15 @@ const TARGETS: [(&str, Body); 31] = [
     ("formula", plot::formula),
 ];
 
+/// Targets that draw what they make, and so take longer.
+const DRAWN: [(&str, Body); 5] = [
+    ("gltf_made", gltf_made::gltf_made),
+    ("sheet", sheets::sheet),
+    ("marks", sheets::marks),
+    ("curves", sheets::curves),
+    ("maps", sheets::maps),
+];
+
 /// The files of a target's folder of seeds; there must be some.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
@@ -66,7 +82,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
 
 #[test]
 fn seeds_and_their_beginnings() {
-    for (target, body) in TARGETS {
+    for (target, body) in TARGETS.into_iter().chain(DRAWN) {
         for seed in seeds(target) {
             body(&seed);
             (0..8).for_each(|i| body(&seed[..seed.len() * i / 8]));
@@ -95,5 +111,14 @@ proptest! {
             seed.splice(at..(at + 1).min(seed.len()), [byte]);
         }
         body(&seed);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes_are_drawn(bytes in prop::collection::vec(any::<u8>(), 0..512)) {
+        DRAWN.iter().for_each(|(_, body)| body(&bytes));
     }
 }

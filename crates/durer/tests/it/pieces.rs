@@ -73,7 +73,7 @@ fn surveyed(pieces: &[Scene], options: &RenderOptions) -> Seen {
 /// Compares the pictures of a scene as a whole and in pieces of several sizes.
 fn compare(scene: &Scene, options: &RenderOptions) {
     let (expected, whole) = render(scene, options).expect("picture");
-    for at_once in [37, 1000, 1 << 20] {
+    for at_once in [150, 1 << 20] {
         let seen = surveyed(&in_pieces(scene, at_once), options);
         let kept = only(scene, seen.items.iter().map(|&item| item as usize));
         let triangles = scene.triangle_count();
@@ -90,10 +90,10 @@ fn compare(scene: &Scene, options: &RenderOptions) {
 
 #[test]
 fn pictures_in_pieces_are_those_of_the_whole() {
-    let mut scene = soup(2000);
+    let mut scene = soup(700);
     for samples in [Samples::One, Samples::Four, Samples::Sixteen] {
         for planes in [false, true] {
-            let mut options = scenes::options(&scene, 150, 130);
+            let mut options = scenes::options(&scene, 100, 70);
             options.samples = samples;
             (options.depth, options.item, options.normal) = (planes, planes, planes);
             compare(&scene, &options);

@@ -9,7 +9,7 @@ use durer::target::drawing::{Drawing, LineClass, Region, RegionKind};
 use durer::trace::NoTrace;
 use durer::view::View;
 use durer::visibility::line::hidden_line;
-use durer::visibility::region::weiler_atherton::solve;
+use durer::visibility::region::planar_map::solve;
 use durer::visibility::region::{Fill, Merge, Options, draw};
 
 fn floor(z: f64, side: f64) -> Vec<Triangle> {

@@ -9,9 +9,7 @@ use durer::shade::PreparedLights;
 use durer::target::drawing::{LineClass, Region, RegionKind};
 use durer::trace::{NoTrace, Recorder};
 use durer::view::View;
-use durer::visibility::region::weiler_atherton::{
-    Options, VisibleMap, VisibleRegion, replay, solve,
-};
+use durer::visibility::region::planar_map::{Options, VisibleMap, VisibleRegion, replay, solve};
 use durer::visibility::region::{self, Fill, Merge, hatch};
 use durer::visibility::surface::Cull;
 

@@ -6,7 +6,7 @@
 //! way, and so is the outside. Coherence used: areas. Cost: O(n²) cuts where few overlap; memory O(regions).
 //!
 //! Deviations: cuts are made by the overlay, which takes any polygons; polygons that pierce each other are divided where
-//! their planes meet. [`crate::visibility::region`] finds the same regions of models by a planar map, in far less time.
+//! their planes meet. [`crate::visibility::region::planar_map`] finds the same regions of models, in far less time.
 
 use super::Face;
 use crate::clip::line::HalfPlane;

@@ -8,8 +8,8 @@
 
 use super::Options;
 use super::paint::colors;
+use super::planar_map::faces::{Face, Frame, Place, Projector, float, surfaces};
 use super::shadow::{LIT, World};
-use super::weiler_atherton::faces::{Face, Frame, Place, Projector, float, surfaces};
 use crate::Result;
 use crate::clip::polygon::overlay::{self, overlay};
 use crate::clip::polygon::{BooleanOp, FillRule, Shapes};

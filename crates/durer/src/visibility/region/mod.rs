@@ -1,15 +1,15 @@
 //! Visible regions: what of the faces of a scene can be seen, as exact polygons.
 //!
 //! [`draw`] gives a finished [`Drawing`]: filled regions, flat-shaded, disjoint or trapped, with exact
-//! shadows where they are asked for. [`weiler_atherton::solve`] gives the planar map behind it, whose
+//! shadows where they are asked for. [`planar_map::solve`] gives the planar map behind it, whose
 //! faces know the triangle that they show; [`hatch`] replaces tones by lines.
 
 mod caps;
 pub mod hatch;
 mod paint;
+pub mod planar_map;
 mod shadow;
 mod trap;
-pub mod weiler_atherton;
 
 pub use caps::draw_caps;
 pub use shadow::INFO as SHADOWS;
@@ -23,9 +23,9 @@ use crate::trace::NoTrace;
 use crate::view::View;
 use crate::visibility::surface::Cull;
 use paint::Paint;
+use planar_map::faces::{Face, Frame};
+use planar_map::merge;
 use shadow::{Lamps, World};
-use weiler_atherton::faces::{Face, Frame};
-use weiler_atherton::merge;
 
 /// Which neighbours become one region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -91,9 +91,9 @@ pub fn draw(
     scene.check()?;
     let world = World::new(scene)?;
     let lamps = Lamps::new(&world, view, lights, options.shadows)?;
-    let how = weiler_atherton::Options { cull: options.cull };
+    let how = planar_map::Options { cull: options.cull };
     let more = |frame: &Frame, faces: &[Face]| lamps.edges(frame, faces);
-    let map = weiler_atherton::divide(scene, view, &how, more, &mut NoTrace)?;
+    let map = planar_map::divide(scene, view, &how, more, &mut NoTrace)?;
     let paint = Paint::new(scene, view, lights, options, &world, &lamps, &map);
     let patches = merge::patches(&map.map, &paint.labels);
     let half = map.frame.half() * map.frame.unit;

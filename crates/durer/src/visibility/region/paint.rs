@@ -1,9 +1,9 @@
 //! Which faces of the map are one region, and its colour.
 
+use super::planar_map::VisibleMap;
+use super::planar_map::merge::{self, NOTHING, Patches};
 use super::shadow::{LIT, Lamps, World, chosen};
 use super::trap::{self, Trap};
-use super::weiler_atherton::VisibleMap;
-use super::weiler_atherton::merge::{self, NOTHING, Patches};
 use super::{Fill, Merge, Options};
 use crate::math::DVec2;
 use crate::parallel;

@@ -5,10 +5,10 @@
 //! divides it in the eye's; whether a region is lit is asked at a point in it. Deviation: the lit polygons
 //! are not merged into the model; their borders divide the picture beside the faces' own.
 
-use super::weiler_atherton::cells::Cells;
-use super::weiler_atherton::edges::Edge;
-use super::weiler_atherton::faces::{Face, Frame, float, nearest};
-use super::weiler_atherton::{self as visible, VisibleMap};
+use super::planar_map::cells::Cells;
+use super::planar_map::edges::Edge;
+use super::planar_map::faces::{Face, Frame, float, nearest};
+use super::planar_map::{self as visible, VisibleMap};
 use crate::Result;
 use crate::clip::volume::{self, ClipVertex, clip_segment};
 use crate::info::{Class, Info};

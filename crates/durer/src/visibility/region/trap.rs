@@ -8,9 +8,9 @@
 //! the background through again. So shapes that hang together and are all that narrow get one shape
 //! beneath them, which is painted first and reaches under whatever lies around.
 
-use super::weiler_atherton::faces::float;
-use super::weiler_atherton::merge::{self, NOTHING, Patch, Patches};
-use super::weiler_atherton::planar::Planar;
+use super::planar_map::faces::float;
+use super::planar_map::merge::{self, NOTHING, Patch, Patches};
+use super::planar_map::planar::Planar;
 use crate::math::DVec2;
 
 /// What the shapes of a map need to know of each other.

@@ -2,14 +2,15 @@
 
 use super::*;
 use crate::math::{DMat4, DVec3};
-use crate::scene::{Camera, Instance, Light, LightKind, Material, Part, Projection};
-use crate::shade::ToneMap;
+use crate::scene::{Camera, Instance, Light, LightKind, Material, Mesh, Part, Projection, Scene};
 use crate::shade::color::encode_srgb8;
 use crate::shade::environment::Mirrored;
 use crate::shade::studio::Studio;
 use crate::shade::tone::Tone;
+use crate::shade::{PreparedMaterials, ToneMap};
 use crate::simd::{dispatch, levels};
 use crate::target::NO_ITEM;
+use crate::view::View;
 use crate::visibility::surface::patch::Patch;
 use crate::visibility::surface::setup::runs;
 use fearless_simd::prelude::*;

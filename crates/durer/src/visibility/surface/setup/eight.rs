@@ -159,7 +159,8 @@ pub fn set_up<S: Simd>(
     let negative = narrowed(simd, area).simd_lt(simd.splat_f32x8(0.0));
     let (b, c) = (c.where_set(negative, b), b.where_set(negative, c));
     if !rules.sampled.is_empty() {
-        let small = (columns.is_small() & rows.is_small()).to_bitmask() & eight.seen;
+        let samples = rules.sampled.len();
+        let small = (columns.is_small(samples) & rows.is_small(samples)).to_bitmask() & eight.seen;
         if small != 0 {
             cover(simd, [a, b, c], [columns.first, rows.first], rules, &mut eight.sampled);
             eight.sampled.which &= small;

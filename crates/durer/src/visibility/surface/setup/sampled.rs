@@ -63,10 +63,12 @@ impl<S: Simd> Span<S> {
         (nowhere | self.first.simd_ge(i32x8::splat(simd, pixels))).to_bitmask()
     }
 
-    /// Whether there are at most [`SIDE`].
+    /// Returns whether there are so few that triangles are sampled at once: at most [`SIDE`] with one sample per pixel.
+    /// With more, larger triangles would leave fragments in more pixels than their own numbers take.
     #[inline(always)]
-    pub fn is_small(&self) -> mask32x8<S> {
-        (self.end - self.first).simd_le(SIDE)
+    pub fn is_small(&self, samples: usize) -> mask32x8<S> {
+        let most = if samples > 1 { SIDE - 1 } else { SIDE };
+        (self.end - self.first).simd_le(most)
     }
 }
 

@@ -72,7 +72,7 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         let drawn = (&scene, &view, runs.as_slice());
         let lighting = Lighting::by_material(drawn, (&materials, &lights), samples.reach(), level);
         let (jobs, mut scratch) = (jobs(&runs), Default::default());
-        let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &mut scratch));
+        let bins = jobs.iter().map(|job| Bins::new(job, &lighting, filter, &[], &mut scratch));
         let bins: Vec<Bins> = bins.collect();
         let (mut lit, area) = (Lit::new(lighting), [[0, 0], [64, 64]]);
         let mut planes = SamplePlane::of(samples.offsets());
@@ -103,7 +103,7 @@ fn sheets_look_as_if_all_fragments_were_sorted() {
         });
         assert!(taken[0] > 0 && taken[1] > 4, "{taken:?}");
         let background = |_: i32| Vec4::new(0.1, 0.2, 0.3, 0.5);
-        let area = Area { tile: [0; 2], size: [64; 2], alone: None, background: &background };
+        let area = Area { tile: [0; 2], size: [64; 2], background: &background };
         let mut pictures = [[0; TILE_PIXELS]; 2];
         for (blended, codes) in [&sheets, &sorted].into_iter().zip(&mut pictures) {
             dispatch!(level, simd =>

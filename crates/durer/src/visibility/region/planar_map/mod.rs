@@ -1,6 +1,7 @@
-//! Visible regions by division along the edges of faces: Weiler and Atherton's way.
+//! Visible regions by a planar map: all divisions along edges of faces at once.
 //!
-//! K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977. Class: object
+//! The regions of K. Weiler, P. Atherton, *Hidden Surface Removal Using Polygon Area Sorting*, SIGGRAPH 1977; their own way
+//! is [`crate::visibility::polygons::regions`]. Class: object
 //! space; the result does not depend on pixels. Cost: O((n + k) log n) on usual scenes, for n faces and k visible
 //! pieces of edges; at worst every face lies over every other, O(n²).
 //!
@@ -44,8 +45,8 @@ use planar::Planar;
 
 /// The facts.
 pub const INFO: Info = Info {
-    name: "weiler-atherton",
-    title: "Weiler–Atherton",
+    name: "planar-map",
+    title: "Visible regions by a planar map",
     authors: "Kevin Weiler, Peter Atherton",
     year: 1977,
     source: "Hidden Surface Removal Using Polygon Area Sorting, SIGGRAPH",
@@ -131,7 +132,7 @@ pub struct VisibleMap {
 /// use durer::scene::{Camera, Instance, Mesh, Projection, Scene};
 /// use durer::trace::NoTrace;
 /// use durer::view::View;
-/// use durer::visibility::region::weiler_atherton::solve;
+/// use durer::visibility::region::planar_map::solve;
 ///
 /// // Two right triangles; the nearer one hides a corner of the other.
 /// let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
